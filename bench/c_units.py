@@ -22,15 +22,15 @@ BENCH = Path(__file__).parent
 UNIT = """\
 #include "cubeacp.h"
 
-icd_status_t unit_begin(icd_client_t *client, uint8_t *buffer, size_t size, uint32_t now);
+icd_status_t unit_begin(cubeacp_client_t *client, uint8_t *buffer, size_t size, uint32_t now);
 bool unit_send(icd_client_t *client, const uint8_t **bytes, size_t *count);
 void unit_receive(icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count);
 int32_t unit_roll;
 
-icd_status_t unit_begin(icd_client_t *client, uint8_t *buffer, size_t size, uint32_t now)
+icd_status_t unit_begin(cubeacp_client_t *client, uint8_t *buffer, size_t size, uint32_t now)
 {
-    const icd_status_t status = icd_client_init(client, cubeacp_link(), ICD_BUS_UART, buffer, size);
-    return status != ICD_OK ? status : ICD_REQUEST(client, now, CUBEACP_ESTIMATED_ATTITUDE_ANGLES);
+    const icd_status_t status = cubeacp_client_uart(client, buffer, size);
+    return status != ICD_OK ? status : cubeacp_request_estimated_attitude_angles(client, now);
 }
 
 bool unit_send(icd_client_t *client, const uint8_t **bytes, size_t *count)
@@ -42,8 +42,7 @@ static void on_event(void *context, const icd_event_t *event)
 {
     cubeacp_estimated_attitude_angles_t angles;
     (void)context;
-    if (event->kind == ICD_EVENT_DONE &&
-        cubeacp_estimated_attitude_angles_decode(&angles, event->data, event->length) == ICD_OK) {
+    if (cubeacp_receive_estimated_attitude_angles(&angles, event) == ICD_OK) {
         unit_roll = angles.estimated_roll_angle;
     }
 }

@@ -58,7 +58,7 @@ def sample(cls: Any) -> bytes:
 
 def bare(cls: Any) -> Callable[[bytes], Any]:
     """struct.unpack of the frame, flags as whole bytes."""
-    layout = sys.modules[cls.__module__]._STRUCT.format
+    layout = import_module(f"{PACKAGE}._compiled").Codec(cls).form.format
     return lambda frame: struct.unpack(layout, frame)
 
 

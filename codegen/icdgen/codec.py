@@ -33,13 +33,15 @@ def decode(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]
 
 
 def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
-    """The frame, reserved bits 0. Raises `CodecError` for a missing, unknown or unfit value."""
+    """The frame, reserved bits 0; values of views are not looked at. Raises `CodecError` for a missing, unknown or unfit value."""
     known = {field.name for field in message.fields}
     for name in raw:
         if name not in known:
             raise CodecError(f"{message.name} has no field {name!r}")
     bits = 0
     for field in message.fields:
+        if field.view:
+            continue
         if field.name not in raw:
             raise CodecError(f"no value for {field.name!r}")
         bits |= _written(node, field, raw[field.name])

@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 KIND = "models"
 
 
-def load_checked(paths: list[Path], plug_ins: Sequence[Language] = ()) -> Loaded:
+def load_checked(paths: list[Path], plug_ins: Sequence[Language] = (), with_positions: bool = False) -> Loaded:
     """Like `icdgen.loading.load`. A remembered model carries no positions and comes without texts.
 
     With plug-ins nothing is remembered: what they say of names may change with any file of theirs.
     """
-    if plug_ins:
+    if plug_ins or with_positions:
         from icdgen.loading import load
 
         return load(paths, plug_ins=plug_ins)

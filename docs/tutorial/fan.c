@@ -3,16 +3,16 @@
 
 int main(int argc, char **argv)
 {
-    static icd_client_t client;
+    static sirocco_client_t fan;
     static uint8_t buffer[SIROCCO_CLIENT_BYTES], frame[SIROCCO_LONGEST];
     sirocco_fan_state_t state;
     icd_event_t end;
     const int port = port_open("127.0.0.1", argc > 1 ? argv[1] : "4000");
-    icd_client_init(&client, sirocco_link(), ICD_BUS_UART, buffer, sizeof buffer);
+    sirocco_client_uart(&fan, buffer, sizeof buffer);
 
-    ICD_REQUEST(&client, port_now(), SIROCCO_FAN_STATE);
-    end = port_ask(port, &client, frame, sizeof frame); /* sends, waits, asks again */
-    if (sirocco_fan_state_decode(&state, frame, end.length) != ICD_OK) {
+    sirocco_request_fan_state(&fan, port_now());
+    end = port_ask(port, &fan.client, frame, sizeof frame); /* sends, waits, asks again */
+    if (sirocco_receive_fan_state(&state, &end) != ICD_OK) {
         return fprintf(stderr, "no reply\n"), 1;
     }
     printf("%.1f rpm, %.0f mA, bearing %.2f C\n", sirocco_fan_state_speed_rpm(&state),

@@ -21,6 +21,7 @@
 #include "bootloader/program_information.h"
 #include "bootloader/copy_to_internal_flash_progress.h"
 #include "bootloader/link.h"
+#include "bootloader/client.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
 #define BOOTLOADER_ICD_DIGEST "d2e4997b46248f80"

@@ -53,6 +53,7 @@
 #include "common/hole_map_7.h"
 #include "common/hole_map_8.h"
 #include "common/link.h"
+#include "common/client.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
 #define COMMON_ICD_DIGEST "7bb2ab51d9f372bf"

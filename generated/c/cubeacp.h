@@ -128,6 +128,7 @@
 #include "cubeacp/uart_log_configuration.h"
 #include "cubeacp/inertial_pointing_reference_vector.h"
 #include "cubeacp/link.h"
+#include "cubeacp/client.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
 #define CUBEACP_ICD_DIGEST "968abd943efa63cb"

@@ -531,15 +531,17 @@ typedef struct {
     uint8_t id;
     const uint8_t *data;
     size_t length;
-    uint32_t attempts;       /**< Of DONE, REFUSED, TIMEOUT: how often it was sent. */
-    icd_reason_t reason;     /**< Of REFUSED. */
-    int64_t code;            /**< Of REFUSED: the error code, -1 if the bus tells none. */
-    int64_t parameter;       /**< Of REFUSED: the parameter at fault, -1 if the bus tells none. */
-    uint32_t number;         /**< Of PACKET. */
-    uint32_t missing;        /**< Of INCOMPLETE: packets. */
-    uint8_t source;          /**< On CAN. */
-    uint8_t destination;     /**< Of MESSAGE on CAN. */
-    icd_can_kind_t can_kind; /**< Of MESSAGE on CAN. */
+    const icd_link_t *link;    /**< Of DONE, REFUSED, TIMEOUT: that of the node, else NULL. */
+    icd_direction_t direction; /**< Of DONE, REFUSED, TIMEOUT: that of the request. */
+    uint32_t attempts;         /**< Of DONE, REFUSED, TIMEOUT: how often it was sent. */
+    icd_reason_t reason;       /**< Of REFUSED. */
+    int64_t code;              /**< Of REFUSED: the error code, -1 if the bus tells none. */
+    int64_t parameter;         /**< Of REFUSED: the parameter at fault, -1 if the bus tells none. */
+    uint32_t number;           /**< Of PACKET. */
+    uint32_t missing;          /**< Of INCOMPLETE: packets. */
+    uint8_t source;            /**< On CAN. */
+    uint8_t destination;       /**< Of MESSAGE on CAN. */
+    icd_can_kind_t can_kind;   /**< Of MESSAGE on CAN. */
 } icd_event_t;
 
 /** Is told of each event, with the context that was given along. */
@@ -926,12 +928,16 @@ typedef struct {
     size_t length;
 } icd_request_t;
 
+typedef struct icd_client icd_client_t;
+
 /** One request at a time, from sending to its outcome. */
-typedef struct {
+struct icd_client {
     const icd_link_t *link;
     icd_client_settings_t settings; /**< May be changed while no request is going on. */
     icd_bus_t bus;
-    bool ready; /* icd_client_init() was successful */
+    bool ready;                               /* it was begun without an error */
+    bool (*fits)(const icd_client_t *client); /* CAN: whether the request fits its packets */
+    void (*expire)(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context); /* CAN: old packets */
     icd_client_state_t state;
     bool checks_telecommands;
     bool checks_telemetry;
@@ -958,31 +964,35 @@ typedef struct {
     icd_uart_decoder_t decoder;
     icd_can_joiner_t joiner;
     icd_can_slot_t slot;
-} icd_client_t;
+};
 
 /** Bytes of buffer that a client needs: NODE_CLIENT_BYTES is the constant for a node. */
 ICDGEN_API size_t icd_client_bytes(const icd_link_t *link);
 
 /**
- * A client on one bus with the times of the ICD. ICD_ERROR_UNSUPPORTED if the node is not on that bus, ICD_ERROR_LENGTH
- * if the buffer is smaller than icd_client_bytes(); it refuses every request then. The client must stay where it is.
+ * Begins a client on the UART, with the times of the ICD. ICD_ERROR_UNSUPPORTED if the node is not on that bus,
+ * ICD_ERROR_LENGTH if the buffer is smaller than icd_client_bytes(); it refuses every request then. The client must
+ * stay where it is. NODE_client_uart() begins one that takes the messages of the node only, and so the next two.
  */
+ICDGEN_API icd_status_t icd_client_uart(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size);
+
+/** On I2C, as icd_client_uart(). */
+ICDGEN_API icd_status_t icd_client_i2c(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size);
+
+/** On CAN, as icd_client_uart(); `address` is ours, to which the node replies. */
 ICDGEN_API icd_status_t
-icd_client_init(icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size);
+icd_client_can(icd_client_t *client, const icd_link_t *link, uint8_t address, uint8_t *buffer, size_t size);
 
 /** Uses checksums where the ICD has them for the bus. */
 ICDGEN_API void icd_client_use_checksums(icd_client_t *client);
-
-/** Our address on CAN. */
-ICDGEN_API void icd_client_set_address(icd_client_t *client, uint8_t address);
 
 /** When icd_client_tick() wants to be called at the latest; false: not at all. */
 ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadline);
 
 /**
  * Begins a request; its data are copied. ICD_ERROR_UNKNOWN_ID, ICD_ERROR_BUSY while another one is going on or has not
- * been taken by the output functions, ICD_ERROR_LENGTH, ICD_ERROR_UNSUPPORTED if icd_client_init() failed; nothing has
- * happened then.
+ * been taken by the output functions, ICD_ERROR_LENGTH, ICD_ERROR_UNSUPPORTED if the client could not be begun; nothing
+ * has happened then. `on_event` NULL: that a telecommand needs no acknowledge, and is done at once, is told to nobody.
  */
 ICDGEN_API icd_status_t icd_client_start(
     icd_client_t *client, uint32_t now, const icd_request_t *request, icd_event_fn *on_event, void *context);
@@ -993,10 +1003,13 @@ ICDGEN_API icd_status_t icd_client_start(
  */
 ICDGEN_API void icd_client_cancel(icd_client_t *client);
 
-/** Requests telemetry. */
+/** Requests telemetry. NODE_request_MESSAGE() does so by name. */
 ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id);
 
-/** Sends a telecommand, whose data are copied. One that is not acknowledged is ICD_EVENT_DONE at once. */
+/**
+ * Sends a telecommand, whose data are copied. One that is not acknowledged is ICD_EVENT_DONE at once.
+ * NODE_send_MESSAGE() does so by name.
+ */
 ICDGEN_API icd_status_t icd_client_send(
     icd_client_t *client,
     uint32_t now,
@@ -1007,13 +1020,8 @@ ICDGEN_API icd_status_t icd_client_send(
     icd_event_fn *on_event,
     void *context);
 
-ICDGEN_API icd_status_t icdgen_client_request_of(icd_client_t *client, uint32_t now, const char *node, unsigned id);
-
-/**
- * Requests the telemetry of that name, such as ICD_REQUEST(&client, now, NODE_IDENTIFICATION); ICD_ERROR_UNKNOWN_ID if
- * it is a message of another node, whatever its id.
- */
-#define ICD_REQUEST(client, now, name) icdgen_client_request_of(client, now, name##_TELEMETRY)
+/** Whether the event is the reply to a request for that telemetry of that node, or of one that includes it. */
+ICDGEN_API bool icd_is_reply(const icd_event_t *event, const char *node, uint8_t id);
 
 /** The next bytes for the UART; false when there are none. They last until the next call. */
 ICDGEN_API bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count);

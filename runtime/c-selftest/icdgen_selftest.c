@@ -42,10 +42,15 @@ static uint64_t extended(uint64_t bits, unsigned bytes)
 static uint64_t member(const icdgen_selftest_field_t *field, const void *message)
 {
     const uint8_t *at = (const uint8_t *)message + field->offset;
+    uint8_t seen[8];
     uint64_t bits;
     uint16_t two;
     uint32_t four;
     bool flag;
+    if (field->view != NULL) {
+        field->view(message, seen);
+        at = seen;
+    }
     if (field->type == ICDGEN_SELFTEST_BOOL) {
         (void)memcpy(&flag, at, sizeof flag);
         return flag ? 1u : 0u;
@@ -137,6 +142,8 @@ static void assemble(const run_t *run, const uint8_t *at)
         const icdgen_selftest_field_t *field = &run->message->fields[i];
         if (field->type == ICDGEN_SELFTEST_BYTES) {
             (void)memcpy((uint8_t *)run->node->value + field->offset, at, field->packed);
+        } else if (field->view != NULL) {
+            /* what it reads is there with the members */
         } else {
             set_member(field, run->node->value, packed(field, at));
         }

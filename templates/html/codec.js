@@ -24,10 +24,11 @@ const icdgenCodec = (() => {
     return message.fields.map((field) => read(field, frame));
   }
 
-  /** The frame of raw values in the order of the fields; reserved bits are 0. Throws a CodecError for a value that does not fit. */
+  /** The frame of raw values in the order of the fields; reserved bits are 0. Throws a CodecError for a value that does not fit; views have none. */
   function encode(message, raw) {
     const frame = new Uint8Array(message.length);
     message.fields.forEach((field, index) => {
+      if (field.view) return;
       check(field, raw[index]);
       write(field, frame, raw[index]);
     });
@@ -77,7 +78,8 @@ const icdgenCodec = (() => {
 
   /** The raw values of a fresh message: 0, or what is demanded. */
   function fresh(message) {
-    return message.fields.map((field) => (field.type === "bytes" ? new Uint8Array(field.bits / 8) : BigInt(field.const ?? 0)));
+    const raw = message.fields.map((field) => (field.type === "bytes" ? new Uint8Array(field.bits / 8) : BigInt(field.const ?? 0)));
+    return decode(message, encode(message, raw));
   }
 
   /** Exact physical value of a scaled field as [numerator, denominator]; null without a scale. */

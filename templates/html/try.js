@@ -70,6 +70,7 @@
     const box = make("input", { type: "text", id: `raw-${key}`, class: "n", "aria-label": `${field.name}, raw`, autocomplete: "off", spellcheck: "false" });
     const value = makeValue(field, key);
     const note = make("span", { class: "remark" });
+    if (field.view) [box, value].filter(Boolean).forEach((widget) => widget.setAttribute("disabled", ""));
     box.addEventListener("change", () => edit(index, box, () => values.parseRaw(field, box.value)));
     if (value) value.addEventListener("change", () => edit(index, value, () => parseValue(field, value)));
     const element = () => make("tr", { class: `k${key}` }, make("th", { scope: "row" }, field.name), make("td", {}, box), make("td", {}, ...(value ? [value] : []), note), make("td", {}, field.unit ?? ""));
@@ -106,8 +107,8 @@
       say(error.message, true);
       return;
     }
-    raw = changed;
-    const frame = codec.encode(plan, raw);
+    const frame = codec.encode(plan, changed);
+    raw = codec.decode(plan, frame); // views follow
     bytes.value = frames.hex(frame);
     show(frame, []);
   }
@@ -148,6 +149,7 @@
 
   const owners = new Uint16Array(plan.length * 8);
   fields.forEach((field, index) => {
+    if (field.view) return;
     if (field.type === "bytes") owners.fill(index + 1, field.first * 8, field.first * 8 + field.bits);
     else for (const [byte, shift, bits] of field.pieces) owners.fill(index + 1, byte * 8 + 8 - shift - bits, byte * 8 + 8 - shift);
   });

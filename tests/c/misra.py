@@ -84,7 +84,9 @@ def places(rows: set[tuple[str, str, str]], folder: Path) -> Places:
 def template(path: Path) -> str:
     """What made a file."""
     name = (
-        path.name if path.name in ("enums.h", "link.h", "link.c") else "message.h" if len(path.parts) > 1 else "node.h"
+        path.name
+        if path.name in ("enums.h", "link.h", "link.c", "client.h")
+        else "message.h" if len(path.parts) > 1 else "node.h"
     )
     return f"{name}.j2"
 

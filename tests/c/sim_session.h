@@ -62,7 +62,7 @@ static inline void session_becomes(session_t *session, const icd_link_t *link)
     if (session->buffer == NULL || session->frame == NULL) {
         port_failed("no memory");
     }
-    icd_client_init(&session->client, &session->link, ICD_BUS_UART, session->buffer, icd_client_bytes(link));
+    icd_client_uart(&session->client, &session->link, session->buffer, icd_client_bytes(link));
 }
 
 static inline void session_open(session_t *session, const icd_link_t *link, const char *host, const char *number)

@@ -14,14 +14,14 @@ BOTH = """\
 int {name}(void);
 int {name}(void)
 {{
-    static icd_client_t client;
+    static {node}_client_t client;
     static uint8_t buffer[CUBEACP_CLIENT_BYTES];
     const uint8_t *bytes;
     size_t count;
-    if (icd_client_init(&client, {node}_link(), ICD_BUS_UART, buffer, sizeof buffer) != ICD_OK) {{
+    if ({node}_client_uart(&client, buffer, sizeof buffer) != ICD_OK) {{
         return -1;
     }}
-    if (ICD_REQUEST(&client, 0, COMMON_IDENTIFICATION) != ICD_OK || !icd_client_output(&client, &bytes, &count)) {{
+    if ({node}_request_identification(&client, 0) != ICD_OK || !icd_client_output(&client.client, &bytes, &count)) {{
         return -2;
     }}
     return bytes[2];
@@ -71,7 +71,7 @@ def test_a_unit_of_a_program_that_shares_the_layer_has_nothing_of_it(folder, com
     linker = {"g++": "g++"}.get(compiler, compiler)
     subprocess.run([linker, *units, *layer, "-o", folder / "shared"], check=True)
     subprocess.run([folder / "shared"], check=True)
-    assert symbols(units[0], "tT") == set() and symbols(units[0], "U") >= {"icd_client_init", "icd_client_output"}
+    assert symbols(units[0], "tT") == set() and symbols(units[0], "U") >= {"icd_client_uart", "icd_client_output"}
     assert "icd_client_start" in symbols(layer[0], "T")
 
 

@@ -22,7 +22,7 @@ LATE = r"""
 #include <stdio.h>
 
 typedef struct {
-    icd_client_t client;
+    cubeacp_client_t client;
     uint32_t now;
     bool resets; /* the next request is a Reset */
 } program_t;
@@ -32,15 +32,14 @@ static void on_event(void *context, const icd_event_t *event)
 {
     static const char *const names[] = {"done", "refused", "timeout", "stray"};
     program_t *const program = (program_t *)context;
-    const uint8_t reset[COMMON_RESET_LENGTH] = {0};
+    const common_reset_t reset = {0};
     printf("%s %u\n", event->kind == ICD_EVENT_DONE ? names[0]
                        : event->kind == ICD_EVENT_REFUSED ? names[1]
                        : event->kind == ICD_EVENT_TIMEOUT ? names[2] : names[3], event->id);
     if (event->kind == ICD_EVENT_TIMEOUT && program->resets) {
-        assert(icd_client_send(&program->client, program->now, COMMON_RESET_ID, reset, sizeof reset, false, on_event,
-                               program) == ICD_OK);
+        assert(cubeacp_send_reset(&program->client, program->now, &reset, on_event, program) == ICD_OK);
     } else if (event->kind == ICD_EVENT_TIMEOUT) {
-        assert(ICD_REQUEST(&program->client, program->now, CUBEACP_ESTIMATED_ANGULAR_RATES) == ICD_OK);
+        assert(cubeacp_request_estimated_angular_rates(&program->client, program->now) == ICD_OK);
     }
 }
 
@@ -50,9 +49,9 @@ static void transfer(program_t *program, uint32_t takes)
     static const uint8_t read_bytes[CUBEACP_LONGEST];
     const uint8_t *bytes;
     size_t count, read;
-    assert(icd_client_transfer(&program->client, &bytes, &count, &read));
+    assert(icd_client_transfer(&program->client.client, &bytes, &count, &read));
     program->now += takes;
-    icd_client_transferred(&program->client, program->now, read_bytes, read, on_event, program);
+    icd_client_transferred(&program->client.client, program->now, read_bytes, read, on_event, program);
 }
 
 int main(void)
@@ -62,9 +61,9 @@ int main(void)
         static program_t program;
         program.now = 0;
         program.resets = resets != 0;
-        assert(icd_client_init(&program.client, cubeacp_link(), ICD_BUS_I2C, buffer, sizeof buffer) == ICD_OK);
-        program.client.settings.retries = 0;
-        assert(ICD_REQUEST(&program.client, 0, CUBEACP_ESTIMATED_ATTITUDE_ANGLES) == ICD_OK);
+        assert(cubeacp_client_i2c(&program.client, buffer, sizeof buffer) == ICD_OK);
+        program.client.client.settings.retries = 0;
+        assert(cubeacp_request_estimated_attitude_angles(&program.client, 0) == ICD_OK);
         transfer(&program, 1001); /* the time-out begins the next request, which is not that of these bytes */
         transfer(&program, 1);
     }
@@ -94,26 +93,27 @@ static void on_event(void *context, const icd_event_t *event)
 
 int main(void)
 {
-    static icd_client_t client;
+    static cubeacp_client_t acp;
+    icd_client_t *const client = &acp.client;
     static uint8_t buffer[CUBEACP_CLIENT_BYTES];
     static const uint8_t late[] = {0x1F, 0x7F, 0x92, 0, 0, 0, 0, 0, 0, 0x1F, 0xFF};
     const uint8_t *bytes;
     size_t count;
     uint32_t deadline;
     int events = 0;
-    assert(icd_client_init(&client, cubeacp_link(), ICD_BUS_UART, buffer, sizeof buffer) == ICD_OK);
-    icd_client_cancel(&client); /* nothing: no harm */
-    assert(ICD_REQUEST(&client, 0, COMMON_IDENTIFICATION) == ICD_OK);
-    icd_client_cancel(&client);
-    assert(!icd_client_output(&client, &bytes, &count)); /* what was not taken is not sent */
-    assert(!icd_client_deadline(&client, &deadline));
-    assert(ICD_REQUEST(&client, 0, CUBEACP_ESTIMATED_ATTITUDE_ANGLES) == ICD_OK);
-    assert(icd_client_output(&client, &bytes, &count) && count == 5u && bytes[2] == 146u);
-    icd_client_cancel(&client);
-    assert(ICD_REQUEST(&client, 1, COMMON_IDENTIFICATION) == ICD_OK);
-    assert(icd_client_output(&client, &bytes, &count) && bytes[2] == 128u);
-    icd_client_received(&client, 2, late, sizeof late, on_event, &events);
-    assert(events == 1 && client.state == ICD_CLIENT_WAIT);
+    assert(cubeacp_client_uart(&acp, buffer, sizeof buffer) == ICD_OK);
+    icd_client_cancel(client); /* nothing: no harm */
+    assert(cubeacp_request_identification(&acp, 0) == ICD_OK);
+    icd_client_cancel(client);
+    assert(!icd_client_output(client, &bytes, &count)); /* what was not taken is not sent */
+    assert(!icd_client_deadline(client, &deadline));
+    assert(cubeacp_request_estimated_attitude_angles(&acp, 0) == ICD_OK);
+    assert(icd_client_output(client, &bytes, &count) && count == 5u && bytes[2] == 146u);
+    icd_client_cancel(client);
+    assert(cubeacp_request_identification(&acp, 1) == ICD_OK);
+    assert(icd_client_output(client, &bytes, &count) && bytes[2] == 128u);
+    icd_client_received(client, 2, late, sizeof late, on_event, &events);
+    assert(events == 1 && client->state == ICD_CLIENT_WAIT);
     return 0;
 }
 """
@@ -123,42 +123,6 @@ def test_a_request_that_is_cancelled_is_not_in_the_way_of_the_next(headers, tmp_
     source = tmp_path / "cancel.c"
     source.write_text(CANCEL)
     program = harness.compile(source, "-std=c99", *harness.SANITIZERS, f"-I{headers}", output=tmp_path / "cancel")
-    done = subprocess.run([program], capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
-
-
-OTHERS = r"""
-#include "bootloader.h"
-#include "cubeacp.h"
-#include <assert.h>
-
-static icd_status_t ask(const icd_link_t *link, int which)
-{
-    static icd_client_t client;
-    static uint8_t buffer[CUBEACP_CLIENT_BYTES > BOOTLOADER_CLIENT_BYTES ? CUBEACP_CLIENT_BYTES : BOOTLOADER_CLIENT_BYTES];
-    assert(icd_client_init(&client, link, ICD_BUS_UART, buffer, sizeof buffer) == ICD_OK);
-    return which == 0 ? ICD_REQUEST(&client, 0, CUBEACP_CURRENT_ADCS_STATE)
-        : which == 1 ? ICD_REQUEST(&client, 0, BOOTLOADER_STATE)
-                     : ICD_REQUEST(&client, 0, COMMON_IDENTIFICATION);
-}
-
-int main(void)
-{
-    assert(ask(cubeacp_link(), 0) == ICD_OK);
-    assert(ask(cubeacp_link(), 1) == ICD_ERROR_UNKNOWN_ID); /* the same id as the one above */
-    assert(ask(bootloader_link(), 0) == ICD_ERROR_UNKNOWN_ID);
-    assert(ask(bootloader_link(), 1) == ICD_OK);
-    assert(ask(cubeacp_link(), 2) == ICD_OK && ask(bootloader_link(), 2) == ICD_OK && ask(common_link(), 2) == ICD_OK);
-    assert(ask(common_link(), 0) == ICD_ERROR_UNKNOWN_ID);
-    return 0;
-}
-"""
-
-
-def test_a_message_of_another_node_is_not_requested_and_a_shared_one_is(headers, tmp_path):
-    source = tmp_path / "others.c"
-    source.write_text(OTHERS)
-    program = harness.compile(source, "-std=c99", *harness.SANITIZERS, f"-I{headers}", output=tmp_path / "others")
     done = subprocess.run([program], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
 

@@ -113,7 +113,9 @@ static void try_on(const icd_link_t *link, icd_bus_t bus, size_t size)
     icd_can_packet_t packet;
     icd_client_t client;
     memset(&packet, 0, sizeof packet);
-    printf(" %d", (int)icd_client_init(&client, link, bus, buffer, size));
+    printf(" %d", (int)(bus == ICD_BUS_UART ? icd_client_uart(&client, link, buffer, size)
+                        : bus == ICD_BUS_I2C ? icd_client_i2c(&client, link, buffer, size)
+                                             : icd_client_can(&client, link, 2, buffer, size)));
     printf("%d", (int)icd_client_request(&client, 0, link->telemetry[0].id));
     if (bus == ICD_BUS_CAN) {{
         icd_client_packet(&client, 1, &packet, on_event, NULL);

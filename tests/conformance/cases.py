@@ -32,10 +32,12 @@ class MessageCases:
     def __init__(self, node: str, message: dict, enums: dict[str, dict[int, str]], never_set: list[str]) -> None:
         self.node, self.message, self.enums, self.never_set = node, message, enums, never_set
         self.fields: list[dict] = message["fields"]
+        self.views = {field["name"] for field in self.fields if "view" in field}
         self.scaled = [field for field in self.fields if "factor" in field]
         self.texts = [field for field in self.fields if field["type"] == "text"]
         self.id = message.get("id", message.get("set_id"))
         self.fresh = {field["name"]: shown(field, field["default"]) for field in self.fields}
+        self.given = self.owned(self.fresh)  # what makes such a message
 
     def all(self) -> Iterator[Case]:
         """Everything that the vectors of the message demand."""
@@ -47,7 +49,9 @@ class MessageCases:
         for field in self.fields:
             yield from self.unfit(field)
         for field in (*self.scaled, *self.texts):
-            yield from self.settings(field)
+            if field["name"] not in self.views:
+                yield from self.settings(field)
+        yield from self.set_views()
 
     def request(self, op: str, **more: object) -> dict:
         return {"op": op, "node": self.node, "kind": self.message["kind"], "id": self.id, **more}
@@ -62,16 +66,32 @@ class MessageCases:
         answer = {"ok": True, "raw": raw, "physical": physical, "bytes": encoded}
         why = vector["why"]
         yield Case(why, self.request("decode", bytes=vector["bytes"]), answer)
-        yield Case(why, self.request("encode", raw=raw), answer)
+        yield Case(why, self.request("encode", raw=self.owned(raw)), answer)
         names = self.names(raw)
         if names:
             yield Case(why, self.request("decode", bytes=vector["bytes"], names=True), {**answer, "names": names})
-        physical = {name: value for name, value in physical.items() if value is not None}
+        physical = {name: value for name, value in self.owned(physical).items() if value is not None}
         if physical:
-            rest = {name: value for name, value in raw.items() if name not in physical}
+            rest = {name: value for name, value in self.owned(raw).items() if name not in physical}
             yield Case(
                 why, self.request("encode", raw=rest, physical=physical), self.from_physical(raw, physical, answer)
             )
+
+    def owned(self, values: dict) -> dict:
+        """Without those of views, which are not set."""
+        return {name: value for name, value in values.items() if name not in self.views}
+
+    def seen(self, raw: dict) -> dict:
+        """Raw values of which the views are not known."""
+        return {name: ... if name in self.views else value for name, value in raw.items()}
+
+    def set_views(self) -> Iterator[Case]:
+        """A view is no field that could be set."""
+        for field in self.fields:
+            if field["name"] in self.views:
+                request = self.request("encode", raw=self.fresh)
+                yield Case("a view set", request, {"ok": False, "error": "unknown-field", "field": ...})
+                return
 
     def names(self, raw: dict) -> dict[str, str | None]:
         """Name of each enum field's member."""
@@ -83,13 +103,17 @@ class MessageCases:
             if field["name"] in physical:
                 filled = physical[field["name"]].ljust(field["bits"] // 4, "0")
                 if filled != raw[field["name"]]:
-                    answer = {**answer, "raw": {**answer["raw"], field["name"]: filled}, "bytes": ...}
+                    raws = {**self.seen(answer["raw"]), field["name"]: filled}
+                    answer = {**answer, "raw": raws, "bytes": ...} | ({"physical": ...} if self.views else {})
         for field in self.scaled:
+            if field["name"] in self.views:
+                continue
             back = nearest(field, physical[field["name"]])
             if back is None:
                 return {"ok": False, "error": "range", "field": field["name"]}
             if back != raw[field["name"]]:
-                answer = {"ok": True, "raw": {**answer["raw"], field["name"]: back}, "physical": ..., "bytes": ...}
+                raws = {**self.seen(answer["raw"]), field["name"]: back}
+                answer = {"ok": True, "raw": raws, "physical": ..., "bytes": ...}
         return answer
 
     def routes(self) -> Iterator[Case]:
@@ -132,13 +156,13 @@ class MessageCases:
         """Raw values that encoding refuses."""
         name = field["name"]
         for value in field.get("unfit", ()):
-            request = self.request("encode", raw={**self.fresh, name: value})
+            request = self.request("encode", raw={**self.given, name: value})
             yield Case(f"{name} = {value}", request, {"ok": False, "error": "range", "field": name})
 
     def settings(self, field: dict) -> Iterator[Case]:
         """Physical values set, exact ties and unfit ones among them."""
         name = field["name"]
-        rest = {key: value for key, value in self.fresh.items() if key != name}
+        rest = {key: value for key, value in self.given.items() if key != name}
         refusal = {"ok": False, "error": "range", "field": name}
         if field["type"] == "text":
             given = [(text.encode().hex(), raw) for text, raw in field["set"]]
@@ -146,7 +170,9 @@ class MessageCases:
             given = [*field["set"], *((bits, None) for bits in self.never_set)]
         for bits, raw in given:
             request = self.request("encode", raw=rest, physical={name: bits})
-            full = {key: raw if key == name else self.fresh[key] for key in self.fresh}  # in the order of the fields
+            full = {
+                key: raw if key == name else value for key, value in self.seen(self.fresh).items()
+            }  # in the order of the fields
             answer = refusal if raw is None else {"ok": True, "raw": full, "physical": ..., "bytes": ...}
             yield Case(f"{name} set to {bits}", request, answer)
 

@@ -118,6 +118,9 @@ messages:
 WIDE = """\
 icdgen: 1
 node: {name: wide, title: Wide ids, byte_order: little, bit_order: lsb0, id_bits: 32}
+enums:
+  - name: Turn
+    members: [{value: -5, name: Left}, {value: 100, name: Right}]
 messages:
   - name: Wide
     id: [0x12, 0x34, 0x56, 0x78]
@@ -140,6 +143,25 @@ messages:
       - {at: 187, bits: 3, name: Turned Bits, type: uint, bit_order: msb0}
       - {at: 184, bits: 2, name: Straight Bits, type: uint}
       - {at: 192, bits: 64, name: Big Double, type: float, byte_order: big}
+  - name: Arrays
+    id: 0x01020306
+    kind: telemetry
+    length: 119
+    fields:
+      - {at: 0, bits: 16, count: 6, name: Type, type: int, unit: C, formula: raw*0.01, min: -20, max: 80}
+      - {at: 96, bits: 12, count: 4, name: Big Bits, type: int, byte_order: big, bit_order: msb0, formula: raw*0.5}
+      - {at: 144, bits: 1, count: 8, name: Flags, type: bool}
+      - {at: 152, bits: 1, count: 4, name: Few Flags, type: bool, bit_order: msb0}
+      - {at: 156, bits: 2, count: 2, name: Between, type: uint, bit_order: msb0}
+      - {at: 160, bits: 32, count: 3, name: Floats, type: float}
+      - {at: 256, bits: 64, count: 2, name: Big Doubles, type: float, byte_order: big}
+      - {at: 384, bits: 24, count: 2, name: Threes, type: uint, formula: raw*1e-25}
+      - {at: 432, bits: 8, count: 40, name: Octets, type: uint, special: [{value: 255, meaning: unknown}]}
+      - {at: 752, bits: 16, count: 1, name: One, type: uint, const: 7}
+      - {at: 768, bits: 16, count: 2, name: Big Words, type: uint, byte_order: big}
+      - {at: 803, bits: 8, count: 3, name: Crossing, type: uint}
+      - {at: 827, bits: 32, count: 2, name: Crossing Floats, type: float}
+      - {at: 896, bits: 8, count: 7, name: Small, type: int}
   - name: Keywords
     id: 0x01020305
     kind: telecommand
@@ -158,9 +180,34 @@ messages:
     length: 45
     reserved: 2
     fields:
-      - {at: 0, bits: 8, name: Str, type: text}
+      - {at: 0, bits: 8, name: Str, identifier: one str, type: text}
       - {at: 8, bits: 320, name: 'Odd "name" \\ */', identifier: odd name, type: text}
       - {at: 328, bits: 16, name: Text, type: text}
+  - name: Views
+    id: 0x01020307
+    kind: telecommand
+    length: 27
+    reserved: 1
+    fields:
+      - {at: 0, bits: 8, name: Mode, type: uint}
+      - {at: 0, bits: 24, name: Seen before it is there, type: int, view: true, byte_order: big, formula: raw*0.1, unit: V}
+      - {at: 8, bits: 16, name: Rate, type: int, byte_order: big, const: -7}
+      - {at: 24, bits: 5, name: Narrow, type: uint}
+      - {at: 29, bits: 3, name: Rest, type: int, formula: raw*2^-70}
+      - {at: 28, bits: 1, name: Top of it, identifier: type, type: bool, view: true}
+      - {at: 25, bits: 7, name: Across, type: int, view: true, special: [{value: -64, meaning: none}], min: -10.5}
+      - {at: 32, bits: 64, name: Eight bytes, type: float}
+      - {at: 36, bits: 60, name: Within a double, type: uint, view: true, bit_order: msb0, byte_order: big}
+      - {at: 64, bits: 32, name: Half a double, type: float, view: true, byte_order: big}
+      - {at: 96, bits: 64, name: Eight, type: text}
+      - {at: 97, bits: 63, name: Long, type: int, view: true, formula: raw*1e-19 + 3}
+      - {at: 96, bits: 64, name: Real, type: float, view: true}
+      - {at: 160, bits: 32, name: Four bytes, type: float}
+      - {at: 160, bits: 32, name: Its bits, type: uint, view: true, formula: raw*0.5}
+      - {at: 191, bits: 1, name: Its sign, type: uint, view: true}
+      - {at: 192, bits: 16, name: Seconds, type: uint}
+      - {at: 200, bits: 8, name: Two of them, type: enum, enum: Turn, view: true, special: [{value: 7, meaning: odd}]}
+      - {at: 195, bits: 9, name: Wider than them, type: enum, enum: Turn, view: true}
   - {name: Lowest byte of it, id: 0x78, kind: telemetry, length: 0}
   - {name: Lowest half of it, id: 0x5678, kind: telemetry, length: 0}
   - {name: Without its highest bit, id: 0x7FFFFFFF, kind: telecommand, length: 0}

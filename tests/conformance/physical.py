@@ -53,7 +53,7 @@ def scaled_fields(icd: Icd) -> Iterator[tuple[Message, Field]]:
     for node in icd.nodes:
         for message in node.messages:
             for field in message.fields:
-                if field.scale:
+                if field.scale and not field.view:
                     yield message, field
 
 

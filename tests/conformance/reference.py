@@ -94,7 +94,7 @@ class Reference:
         if not isinstance(given, dict) or not isinstance(physical, dict):
             raise Refusal("request")
         node, message = self.message(request)
-        fields = {field.name: field for field in message.fields}
+        fields = {field.name: field for field in message.owners}
         for name in given:
             if name not in fields:
                 raise Refusal("unknown-field", field=name)
@@ -102,7 +102,7 @@ class Reference:
             if name not in fields or not (fields[name].scale or fields[name].type == "text"):
                 raise Refusal("unknown-field", field=name)
         raw = {}
-        for field in message.fields:
+        for field in message.owners:
             if field.name in physical and field.type == "text":
                 value = hex_bytes(physical[field.name]).decode("utf-8")
                 raw[field.name] = fitting(field, codec.raw_from_text, value)
@@ -113,11 +113,12 @@ class Reference:
                 raw[field.name] = raw_value(field, given[field.name])
             else:
                 raise Refusal("missing-field", field=field.name)
-        return described(node, message, raw)
+        return described(node, message, codec.decode(node, message, codec.encode(node, message, raw)))
 
     def constants(self, request: dict) -> dict:
-        _, message = self.message(request)
-        default = {f.name: bytes(f.bits // 8) if f.is_bytes else f.const or 0 for f in message.fields}
+        node, message = self.message(request)
+        fresh = {f.name: bytes(f.bits // 8) if f.is_bytes else f.const or 0 for f in message.owners}
+        default = codec.decode(node, message, codec.encode(node, message, fresh))
         return {
             "name": message.name,
             "ids": list(message.ids),
@@ -147,7 +148,7 @@ class Reference:
         if len(values) > MOST_VALUES or any(type(value) is not int for value in values):
             raise Refusal("request")
         _, message = self.message(request)
-        field = next((field for field in message.fields if field.name == name and field.scale), None)
+        field = next((field for field in message.owners if field.name == name and field.scale), None)
         if field is None:
             raise Refusal("unknown-field", field=name)
         found, failures = [], 0

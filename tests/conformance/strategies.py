@@ -153,9 +153,14 @@ def _own_orders(draw) -> dict:
     return found
 
 
+def _width(field: dict) -> int:
+    """The bits of a field, or of all elements of an array."""
+    return field["bits"] * field.get("count", 1)
+
+
 def _bits_of(field: dict, orders: dict) -> int:
     """The bits of the frame that a field has: bit w of byte b is bit 8 * b + w."""
-    places = (divmod(at, 8) for at in range(field["at"], field["at"] + field["bits"]))
+    places = (divmod(at, 8) for at in range(field["at"], field["at"] + _width(field)))
     return sum(1 << 8 * byte + (bit if orders["bit_order"] == "lsb0" else 7 - bit) for byte, bit in places)
 
 
@@ -180,10 +185,30 @@ def _fields(draw, enums: list[dict], orders: dict) -> tuple[list[dict], int]:
         fields.append({"at": at, "bits": field.pop("bits"), **names.one("field"), **field, **own})
         if is_plain and (straight or at % 8 + fields[-1]["bits"] <= 8) and draw(st.booleans()):
             fields[-1]["bitfields"] = draw(_division(names, fields[-1]["bits"]))
-        end = max(end, at + fields[-1]["bits"])
+        end = max(end, at + _width(fields[-1]))
         at = draw(st.sampled_from((end, end, end // 8 * 8)))
+    fields += draw(_views(fields, used, names, enums, orders))
     order = draw(st.permutations(fields)) if draw(st.booleans()) else fields
     return order, (end + 7) // 8
+
+
+@st.composite
+def _views(draw, fields: list[dict], used: int, names: Names, enums: list[dict], orders: dict) -> list[dict]:
+    """Views of bits that fields have, where a place that was drawn has no others."""
+    found = []
+    for _ in range(draw(st.sampled_from((0, 0, 1, 3))) if fields else 0):
+        place = draw(st.sampled_from(fields))
+        at = place["at"] + draw(st.integers(0, _width(place) - 1) | st.just(0))
+        field = {**draw(_field(enums)), **draw(_own_orders())}
+        if field["type"] in ("bytes", "text"):
+            continue
+        if field["type"] in ("uint", "int") and draw(st.booleans()):
+            field["bits"] = min(field["bits"], place["bits"])
+        for key in ("const", "count", *(("byte_order", "bit_order") if field["type"] == "bool" else ())):
+            field.pop(key, None)
+        if not _bits_of({"at": at, **field}, {**orders, **field}) & ~used:
+            found.append({"at": at, "bits": field.pop("bits"), **names.one("view"), **field, "view": True})
+    return found
 
 
 @st.composite
@@ -203,17 +228,18 @@ def _division(draw, names: Names, bits: int) -> list[dict]:
 @st.composite
 def _field(draw, enums: list[dict]) -> dict:
     kind = draw(st.sampled_from(("uint", "int", "uint", "int", "bool", "enum", "float", "bytes", "text")))
-    if kind == "bool":
-        return {"bits": 1, "type": kind}
-    if kind == "float":
-        return {"bits": draw(st.sampled_from((32, 64))), "type": kind}
     if kind in ("bytes", "text"):
         return {"bits": 8 * draw(st.integers(1, 12)), "type": kind}
+    array = {"count": draw(st.sampled_from((1, 2, 3, 8, 9)))} if draw(st.integers(0, 3)) == 0 else {}
+    if kind == "bool":
+        return {"bits": 1, "type": kind, **array}
+    if kind == "float":
+        return {"bits": draw(st.sampled_from((32, 64))), "type": kind, **array}
     if kind == "enum":
         enum = draw(st.sampled_from(enums))
-        return {"bits": draw(st.integers(_needed(enum), 64)), "type": kind, "enum": enum["name"]}
+        return {"bits": draw(st.integers(_needed(enum), 64)), "type": kind, "enum": enum["name"], **array}
     bits = draw(st.integers(1, 64) | st.sampled_from((1, 7, 8, 9, 15, 16, 17, 24, 31, 32, 33, 53, 54, 63, 64)))
-    field: dict = {"bits": bits, "type": kind}
+    field: dict = {"bits": bits, "type": kind, **array}
     if draw(st.booleans()):
         field["formula"] = draw(_formula())
     if draw(st.booleans()):

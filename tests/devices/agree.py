@@ -62,14 +62,22 @@ def compare(node: str, messages: list[Definition], testee: Answering, frames: in
                 value = raw[name]
                 if isinstance(value, int) and value.bit_length() > part["bits"]:
                     into.impossible += 1
-                elif not _same(said["raw"][name], value, part):
-                    into.differences.append(f"{about}: {name} is {said['raw'][name]!r}, the library says {value!r}")
+                elif not _same(_ours(said["raw"], part), value, part):
+                    into.differences.append(
+                        f"{about}: {name} is {_ours(said['raw'], part)!r}, the library says {value!r}"
+                    )
         for name, bits in said["physical"].items():
             if name in physical:
                 into.values += 1
                 formula = next(part["formula"] for part in one.fields if part["name"] == name)
                 _physical(about, name, _double(bits), physical[name], _exact(formula, said["raw"][name]), into)
     into.messages += len(messages)
+
+
+def _ours(raw: dict[str, object], part: dict) -> object:
+    """A raw value of an answer; of an array a list."""
+    name = part["name"]
+    return [raw[f"{name}[{index}]"] for index in range(part["count"])] if "count" in part else raw[name]
 
 
 def _physical(about: str, name: str, ours: float, theirs: object, exact: float, into: Agreement) -> None:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import importlib.resources
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from tests.devices.definition import Definition, Definitions, formula, node, unit
+from tests.devices.definition import Definition, Definitions, Values, formula, node, unit
 
 
 def databases() -> Iterator[Definitions]:
@@ -50,11 +50,57 @@ def _definition(message: Any) -> Definition:
         fields.append(one | scale)
     if message.is_multiplexed():
         cause = "fields that are there under a condition"
-    fields.sort(key=lambda one: int(one["at"]))
+    fields = sorted(_with_views(fields), key=lambda one: int(one["at"]))
+    read = _reader(message, any("view" in one for one in fields))
     return Definition(
         message.name, message.frame_id, "telemetry", message.length, fields, enums,
-        cause, lambda data: message.decode(data, False, False), lambda data: message.decode(data, False),
+        cause, lambda data: read(data, False), lambda data: read(data, True),
     )  # fmt: skip
+
+
+def _reader(message: Any, is_overlapping: bool) -> Callable[[bytes, bool], Values]:
+    """The library's reading, raw or scaled; signals that overlap it reads only one by one."""
+    from cantools.database import Message
+
+    parts = [message]
+    if is_overlapping:
+        head = message.frame_id, message.name, message.length
+        parts = [Message(*head, [signal], is_extended_frame=True, strict=False) for signal in message.signals]
+    return lambda data, scaled: {
+        name: value for part in parts for name, value in part.decode(data, False, scaled).items()
+    }
+
+
+def _with_views(fields: list[dict]) -> list[dict]:
+    """The fields, those that overlap larger ones as views; bits of these that no signal has by itself become fields."""
+    owned, left = 0, 0
+    for one in sorted(fields, key=lambda one: -int(one["bits"])):
+        mask = _mask(one)
+        if mask & owned:
+            one["view"] = True
+            left |= mask
+        else:
+            owned |= mask
+    return [*fields, *_remaining(left & ~owned)]
+
+
+def _mask(one: dict) -> int:
+    """The bits of the frame: bit w of byte b is bit 8 * b + w."""
+    places = (divmod(at, 8) for at in range(one["at"], one["at"] + one["bits"]))
+    return sum(1 << 8 * byte + (7 - bit if one.get("bit_order") == "msb0" else bit) for byte, bit in places)
+
+
+def _remaining(mask: int) -> Iterator[dict]:
+    """A field for each run of bits within a byte."""
+    at = 0
+    while mask >> at:
+        start = at
+        while mask >> at & 1 and (at == start or at % 8):
+            at += 1
+        if at > start:
+            yield {"at": start, "bits": at - start, "name": f"Others at {start}", "type": "uint"}
+        else:
+            at += 1
 
 
 def _range(signal: Any) -> range:

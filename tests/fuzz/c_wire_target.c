@@ -216,6 +216,20 @@ static void receive(icd_client_t *client, input_t *input, uint32_t now, seen_t *
     free(bytes);
 }
 
+static icd_status_t begin_client(
+    icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t address, uint8_t *buffer, size_t size)
+{
+    switch (bus) {
+    case ICD_BUS_UART:
+        return icd_client_uart(client, link, buffer, size);
+    case ICD_BUS_I2C:
+        return icd_client_i2c(client, link, buffer, size);
+    case ICD_BUS_CAN:
+    default:
+        return icd_client_can(client, link, address, buffer, size);
+    }
+}
+
 /* Each request ends in exactly one outcome, and time ends all of them. */
 static void client(const icd_link_t *link, icd_bus_t bus, input_t *input)
 {
@@ -226,8 +240,7 @@ static void client(const icd_link_t *link, icd_bus_t bus, input_t *input)
     uint32_t now = 0xFFFFF000u, deadline;
     size_t started = 0, rounds = 0;
     memset(data, 0, link->longest);
-    if (icd_client_init(one, link, bus, buffer, size) == ICD_OK) {
-        icd_client_set_address(one, 1);
+    if (begin_client(one, link, bus, 1, buffer, size) == ICD_OK) {
         if ((take(input) & 1u) != 0u) {
             icd_client_use_checksums(one);
         }

@@ -6,26 +6,15 @@ So many mutants fit into one build: each is a node of its own, and the vectors o
 from __future__ import annotations
 
 import copy
-import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from decimal import Decimal
 
+from icdgen.backends.assurance.changes import OTHER_TYPES, formulas
 from icdgen.icd.build import plain
 from icdgen.icd.model import Enum, Icd, Message, Node
 
 Change = Callable[[dict], object]
 
-# Types that a field of the same width could be instead.
-_OTHER_TYPES = {
-    "uint": ("int", "float", "bytes", "bool"),
-    "int": ("uint", "float", "bytes"),
-    "enum": ("uint", "int"),
-    "bool": ("uint", "int"),
-    "float": ("uint", "int", "bytes"),
-    "bytes": ("uint", "int"),
-    "text": ("uint", "int", "bytes"),
-}
 _HEAD = ("title", "byte_order", "bit_order", "id_bits", "node_type", "interface_version")
 _NUMBER_KEYS = ("formula", "formula_for", "unit", "special", "min", "max", "above", "below", "const")
 
@@ -86,7 +75,7 @@ class _Home:
             one.pop("contains", None)
             one.pop("listed", None)
             if message.fields:  # what the manual divides in words is its parts
-                one["fields"] = [{"type": "uint", **plain(field.source), "at": field.at} for field in message.fields]
+                one["fields"] = [{"type": "uint", **plain(field.source), "at": field.at} for field in message.members]
             tree["messages"] = [one]
             used = {field.get("unit") for field in one.get("fields") or ()}
             tree["units"] = [unit for symbol, unit in self.units.items() if symbol in used]
@@ -150,14 +139,20 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
         yield _number("offset", field, "at", step)
     for step in (-1, 1) if field["type"] not in ("bytes", "text") else (-8, 8):
         yield _number("width", field, "bits", step)
-    for other in _OTHER_TYPES[field["type"]]:
+    for step in (-1, 1) if "count" in field else ():
+        yield _number("count", field, "count", step)
+    if field.get("view"):
+        yield "view", "no view", lambda f: f.pop("view")
+    for other in OTHER_TYPES[field["type"]]:
+        if other == "bytes" and field.get("view"):
+            continue
         yield "type", f"{field['type']} -> {other}", lambda f, o=other: _retype(f, o)
     for key, values in (("byte_order", ("little", "big")), ("bit_order", ("lsb0", "msb0"))):
         if key in field:
             other = values[field[key] == values[0]]
             yield key.replace("_", " "), f"{key} {other}", lambda f, k=key, o=other: f.update({k: o})
     if "formula" in field:
-        for text in _formulas(field["formula"]):
+        for text in formulas(field["formula"]):
             yield "formula", f"{field['formula']} -> {text}", lambda f, t=text: f.update(formula=t)
         yield "formula", f"{field['formula']} -> none", lambda f: f.pop("formula")
     if "const" in field:
@@ -185,17 +180,6 @@ def _retype(field: dict, type_: str) -> None:
     if type_ not in ("uint", "int"):
         for key in _NUMBER_KEYS:
             field.pop(key, None)
-
-
-def _formulas(text: str) -> Iterator[str]:
-    """Each number of the formula one more and one less in its last digit, ten times and a tenth; the sign turned."""
-    for match in re.finditer(r"[0-9]+(?:\.[0-9]+)?", text):
-        number = Decimal(match.group())
-        last = Decimal(1).scaleb(int(number.as_tuple().exponent))
-        for other in (number - last, number + last, number * 10, number / 10):
-            yield f"{text[: match.start()]}{other:f}{text[match.end() :]}"
-    yield text.replace("raw", "-raw", 1) if "=" not in text else text.replace("value", "-value", 1)
-    yield f"{text} + 1"
 
 
 def _node(home: _Home) -> Iterator[Mutant]:

@@ -55,8 +55,11 @@ for found in pkgutil.walk_packages(icdgen_messages.__path__, "icdgen_messages.")
 assert not failed, "\\n".join([f"{len(failed)} of {seen}:", *failed])
 node = import_module("icdgen_messages.cubeacp")
 message, hints = node.TELEMETRY[146], typing.get_type_hints
-assert hints(message.from_bytes)["return"] is message
-assert hints(message)["FIELDS"]
+assert bytes in typing.get_args(hints(message.from_bytes)["data"])
+assert hints(message) == {info.attribute: int for info in message.FIELDS}
+state = node.CurrentAdcsState
+assert [*hints(state)] == [info.attribute for info in state.FIELDS]
+assert hints(state)["control_mode"] is node.ConModeSelect
 assert hints(node.decode_telemetry)["return"] is icdgen_messages.Message
 print(seen)
 """
@@ -79,7 +82,7 @@ def oldest() -> list[str]:
 def test_annotations_of_all_that_is_public_can_be_evaluated(interpreter):
     done = subprocess.run([interpreter, "-c", PROGRAM], cwd=ROOT / "generated/python", capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert int(done.stdout) > 1500
+    assert int(done.stdout) > 450
 
 
 def test_importing_a_node_loads_nothing_that_only_annotations_name():

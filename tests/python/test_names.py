@@ -45,6 +45,8 @@ def clashes(tmp_path, tree) -> list[tuple[str, str]]:
         "decode many",
         "Decode Table",
         "from_physical",
+        "from dict",
+        "to JSON",
         "Int",
         "float",
         "bytes",
@@ -57,7 +59,7 @@ def test_fields_named_like_what_every_message_has_are_found(tmp_path, name):
     assert name.lower().replace(" ", "_").replace("asdict", "as_dict") in other
 
 
-@pytest.mark.parametrize("name", ["Self", "cls", "Property", "classmethod"])
+@pytest.mark.parametrize("name", ["Self", "cls", "str"])
 def test_fields_that_would_break_the_class_are_found(tmp_path, name):
     assert len(clashes(tmp_path, node(messages=[message(name)]))) == 1
 

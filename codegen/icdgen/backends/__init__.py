@@ -29,6 +29,7 @@ _BUILT_IN = {
     "vectors": "icdgen.backends.vectors:VectorsBackend",
     "c-selftest": "icdgen.backends.c_selftest:CSelftestBackend",
     "html": "icdgen.backends.html:HtmlBackend",
+    "assurance": "icdgen.backends.assurance:AssuranceBackend",
 }
 
 

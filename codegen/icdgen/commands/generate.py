@@ -27,6 +27,7 @@ class _Languages(click.Option):
 @click.option("--check", is_flag=True, help="Write nothing; exit 1 with a short diff if the output is not current.")
 @click.option("--depfile", type=PATH, help="Also write a Make/Ninja dependency file.")
 @click.option("--templates", type=PATH, help="Folder of templates that replace shipped ones of the same name.")
+@click.option("--measured", type=PATH, help="Folder of measurements that go into the pack of `--lang assurance`.")
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing on success.")
 @click.pass_obj
 def generate(
@@ -37,6 +38,7 @@ def generate(
     check: bool,
     depfile: Path | None,
     templates: Path | None,
+    measured: Path | None,
     quiet: bool,
 ) -> None:
     """Generate code from ICDs: files or folders; without any, those of icdgen.toml, else those shipped."""
@@ -47,7 +49,7 @@ def generate(
     if out is None:
         base = config.out or Path("generated")
         out = base / asked[0] if len(set(asked)) == 1 else base
-    job = Job(asked, out, paths, templates or config.templates, depfile, check, config.looked_at)
+    job = Job(asked, out, paths, templates or config.templates, depfile, check, measured, config.looked_at)
     outcome = run(job)
     if outcome.loaded.findings:
         print_findings(outcome.loaded.findings, outcome.loaded.texts, "text", err=True)

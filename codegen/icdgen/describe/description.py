@@ -11,10 +11,11 @@ from icdgen.describe.bounds import Bound, bounds
 from icdgen.describe.comments import Comment, field_comment, message_comment
 from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
+from icdgen.describe.errata import tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding, storage_of
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.model import Enum, Field, Icd, Message, Node
+from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
 
 
 class FieldDescription(Named[Field]):
@@ -118,7 +119,7 @@ class FieldDescription(Named[Field]):
 
     @cached_property
     def comment(self) -> Comment:
-        return field_comment(self.model)
+        return field_comment(self.model, told_elsewhere(self.model, self.message.tellers) if self.model.errata else {})
 
 
 class Id(NamedTuple):
@@ -137,18 +138,36 @@ class MessageDescription(Named[Message]):
         self._description, self.node = description, node
 
     @cached_property
-    def fields(self) -> tuple[FieldDescription, ...]:
-        """In the order of the ICD, each element of an array."""
+    def all_fields(self) -> tuple[FieldDescription, ...]:
+        """Fields and views, in the order of the ICD; each element of an array."""
         return tuple(map(self._field, self.model.fields))
 
     @cached_property
-    def members(self) -> tuple[FieldDescription, ...]:
-        """In the order of the ICD, an array as one: what is declared in code."""
+    def all_members(self) -> tuple[FieldDescription, ...]:
+        """Members and views, in the order of the ICD: what is declared in code."""
         declared = self.model.members
-        return self.fields if declared is self.model.fields else tuple(map(self._field, declared))
+        return self.all_fields if declared is self.model.fields else tuple(map(self._field, declared))
 
     def _field(self, field: Field) -> FieldDescription:
         return FieldDescription(field, self, self._description.enum(field.enum) if field.enum else None)
+
+    @cached_property
+    def views(self) -> tuple[FieldDescription, ...]:
+        """What reads bits of others: it is asked of a message, and never set."""
+        return tuple(field for field in self.all_fields if field.model.view)
+
+    @cached_property
+    def members(self) -> tuple[FieldDescription, ...]:
+        """What a message is made of, in the order of the ICD, an array as one."""
+        return self._owners(self.all_members)
+
+    @cached_property
+    def fields(self) -> tuple[FieldDescription, ...]:
+        """What has bits of its own, in the order of the ICD, each element of an array."""
+        return self._owners(self.all_fields)
+
+    def _owners(self, fields: tuple[FieldDescription, ...]) -> tuple[FieldDescription, ...]:
+        return tuple(field for field in fields if not field.model.view) if self.views else fields
 
     @cached_property
     def ids(self) -> tuple[Id, ...]:
@@ -178,12 +197,17 @@ class MessageDescription(Named[Message]):
 
     @property
     def has_floats(self) -> bool:
-        return any(field.type == "float" for field in self.model.fields)
+        return any(field.type == "float" for field in self.model.owners)
 
     @cached_property
     def has_wide_steps(self) -> bool:
         """Whether the formula of a field has numbers of many digits."""
-        return any(field.steps is not None and field.steps.is_wide for field in self.fields)
+        return any(field.steps is not None and field.steps.is_wide for field in self.all_fields)
+
+    @cached_property
+    def tellers(self) -> dict[str, Message | Field | Enum | Member]:
+        """By the ids of errata: which part of the message tells of it."""
+        return tellers((self.model, *self.model.members))
 
     @cached_property
     def comment(self) -> Comment:

@@ -126,14 +126,15 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     """How much of what is sent the reader understands."""
     if sent.length != reader.length:
         return NO, (f"{sent.length} bytes come, {reader.length} are expected",)
-    absent = [p.any for p in pair.parts if not p.both and (p.before if reader is pair.old else p.after) is not None]
+    own = [p for p in pair.parts if not p.any.view]  # views read what the others carry
+    absent = [p.any for p in own if not p.both and (p.before if reader is pair.old else p.after) is not None]
     wrong = [(p, why) for p in pair.kept if (why := _misread(p))]
     if not absent and not wrong:
         return YES, ()
     reasons = _together((p.any.name, why) for p, why in wrong)
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
-    verdict = NO if len(absent) + len(wrong) == len(reader.fields) else PARTLY
+    verdict = NO if len(absent) + len(wrong) == len(reader.members) - len(reader.views) else PARTLY
     return verdict, tuple(reasons)
 
 
@@ -170,7 +171,7 @@ def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
     old, new = pair.old, pair.new
     if old.length != new.length:
         return NO, (f"{old.length} bytes are sent, {new.length} are expected",)
-    found = [(one, *_disobeyed(one)) for one in pair.parts]
+    found = [(one, *_disobeyed(one)) for one in pair.parts if not one.any.view]
     reasons = _together((one.any.name, why) for one, why, _ in found if why)
     return (NO if any(refused for *_, refused in found) else PARTLY if reasons else YES), tuple(reasons)
 

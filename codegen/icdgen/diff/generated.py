@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from icdgen import backends
 from icdgen.diagnostics import Place
@@ -24,6 +24,9 @@ from icdgen.diff.pairs import (
 from icdgen.icd.located import Map
 from icdgen.icd.model import TELEMETRY, Enum, Field, Icd, Message, Node
 from icdgen.naming import camel
+
+if TYPE_CHECKING:
+    from icdgen.describe import FieldDescription
 
 LANGUAGES = ("c", "python", "rust")
 
@@ -145,7 +148,8 @@ def what_differs(pair: IdentifiedPair) -> Difference | None:
     if not isinstance(pair, FieldPair) or not pair.both or is_called_otherwise(pair):
         return None
     old, new = pair.old, pair.new
-    if pair.owner.has_another_vocabulary or old.enum or new.enum or (old.type, old.bits) != (new.type, new.bits):
+    is_typed_otherwise = (old.type, old.bits, old.count) != (new.type, new.bits, new.count)
+    if pair.owner.has_another_vocabulary or old.enum or new.enum or is_typed_otherwise:
         return None
     return _decisive(old), _decisive(new), pair.owner.new_node.vocabulary
 
@@ -165,7 +169,7 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
     """The generated names of one side of each sample, by language, all in one message of an ICD of its own."""
     marks = [Map(Place("")) for _ in samples]
     fields = [
-        replace(pair.new if side else pair.old, name=f"Sample {number}", identifier=None, source=mark)
+        replace(pair.new if side else pair.old, name=f"Sample {number}", identifier=None, source=mark, count=0)
         for number, (pair, mark) in enumerate(zip(samples, marks, strict=True))
     ]
     found: dict[int, list[tuple[str, str]]] = {id(mark): [] for mark in marks}
@@ -182,7 +186,7 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
 
 def _decisive(field: Field) -> object:
     enum = field.enum.name if field.enum is not None else None
-    return field.type, field.bits, enum, field.unit, field.scale, field.special, field.limits, field.const
+    return field.type, field.bits, field.count, enum, field.unit, field.scale, field.special, field.limits, field.const
 
 
 def _is_sound(field: Field) -> bool:
@@ -251,15 +255,16 @@ class _Cut:
 
     def message(self, message: Message, names: dict[str, str]) -> Message:
         pair = self.match.messages[id(message)]
-        fields = {id(self.side_of(p)): p for p in pair.parts}
-        own = []
-        for one in message.fields:
-            if id(fields[id(one)]) not in self.kept or not _is_sound(one):
+        fields = {_place(side): p for p in pair.parts if (side := self.side_of(p)) is not None}
+        own: list[Field] = []
+        for one in message.members:
+            part = fields[_place(one)]
+            if id(part) not in self.kept or not _is_sound(one):
                 continue
             enum = self.enums.get(id(one.enum), one.enum)
-            field = self.marked(one, fields[id(one)], enum=enum)
-            self.fields[id(fields[id(one)])] = field
-            own.append(field)
+            field = self.marked(one, part, enum=enum)
+            self.fields[id(part)] = field
+            own += field.elements
         made = self.marked(message, pair, fields=tuple(own), node=names.get(message.node, message.node))
         self.messages[id(pair)] = made
         return made
@@ -300,13 +305,26 @@ class _Cut:
         message, field = self.messages[id(pair.owner)], self.fields[id(pair)]
         if field.type == "enum" and field.enum is None:
             return f"u{field.bits}" if language == "rust" else "int"
-        one = next(one for one in describe(self.icd).message(message).fields if one.model is field)
+        members = describe(self.icd).message(message).all_members
+        one = next(one for one in members if one.model.source is field.source)
         if language == "rust":
             return rust.raw_type(one)
         if language == "c":
-            return f"uint8_t[{field.bits // 8}]" if field.is_bytes else c.type_of(one)
-        plain = {"uint": "int", "enum": "int", "text": "bytes"}.get(field.type, field.type)
-        return camel(one.enum.words) if one.enum is not None else plain
+            array = f"[{field.count}]" if field.count else ""
+            return f"uint8_t[{field.bits // 8}]" if field.is_bytes else f"{c.type_of(one)}{array}"
+        if one.count:
+            return f"tuple[{_python_type(one)}, ...]"
+        return _python_type(one)
+
+
+def _python_type(one: FieldDescription) -> str:
+    kind = one.model.type
+    plain = {"uint": "int", "enum": "int", "text": "bytes"}.get(kind, kind)
+    return camel(one.enum.words) if one.enum is not None else plain
+
+
+def _place(field: Field) -> tuple[str, int]:
+    return field.name, field.at
 
 
 def _sort(name: Name) -> tuple[str, bool]:

@@ -84,9 +84,10 @@ def _causes(message: MessagePair, move: Move, old: _Order, new: _Order) -> None:
     before_old, before_new = old.before(first), new.before(first)
     start_old = before_old.old.at if before_old else -1
     start_new = before_new.new.at if before_new else -1
-    move.lost = [pair for pair in message.lost if start_old <= pair.old.at < first.old.at]
-    move.gained = [pair for pair in message.gained if start_new <= pair.new.at < first.new.at]
-    if before_old is not None and before_old is before_new and before_old.old.bits != before_old.new.bits:
+    lost, gained = ([pair for pair in side if not pair.any.view] for side in (message.lost, message.gained))
+    move.lost = [pair for pair in lost if start_old <= pair.old.at < first.old.at]
+    move.gained = [pair for pair in gained if start_new <= pair.new.at < first.new.at]
+    if before_old is not None and before_old is before_new and before_old.old.width != before_old.new.width:
         move.resized = [before_old]
     longer = (message.new.length - message.old.length) * 8
     at_the_end = last is old.rows[-1] or last is new.rows[-1]

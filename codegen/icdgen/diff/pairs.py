@@ -207,7 +207,11 @@ def orders(node: Node) -> tuple[str, str]:
 
 def position(node: Node, one: Field) -> Position:
     """The bits that the field lies on, comparable between nodes of different byte and bit order."""
-    return (byte_range(one),) if one.is_bytes else pieces(one, node)
+    if one.is_bytes:
+        return (byte_range(one),)
+    return (
+        tuple(piece for element in one.elements for piece in pieces(element, node)) if one.count else pieces(one, node)
+    )
 
 
 def kind(one: Field) -> str:

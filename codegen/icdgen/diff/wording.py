@@ -29,7 +29,7 @@ def bits(number: int) -> str:
 
 def span(field: Field) -> str:
     """``bits 16 to 31``"""
-    return bit_range(field.at, field.bits)
+    return bit_range(field.at, field.width)
 
 
 def number(value: Fraction | int | None) -> str:
@@ -49,7 +49,11 @@ def formula(scale: Scale | None) -> str:
 
 
 def type_of(field: Field) -> str:
-    """``16-bit int``, ``4-bit enum Mode``, ``4-bit signed enum Mode``"""
+    """``16-bit int``, ``4-bit enum Mode``, ``4-bit signed enum Mode``, ``6 elements, 16-bit int``"""
+    return f"{count(field.count, 'element')}, {_type_of(field)}" if field.count else _type_of(field)
+
+
+def _type_of(field: Field) -> str:
     if field.type == "enum":
         return f"{field.bits}-bit {'signed ' if field.signed else ''}enum {field.enum.name if field.enum else '?'}"
     return "bool" if field.type == "bool" and field.bits == 1 else f"{field.bits}-bit {field.type}"

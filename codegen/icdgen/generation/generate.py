@@ -24,12 +24,14 @@ class Job:
     templates: Path | None = None
     depfile: Path | None = None
     check: bool = False
+    measured: Path | None = None  # folder of measurements, for the papers that have them
     configs: dict[Path, str] = field(default_factory=dict)  # configuration files that were read or looked for
 
 
 @dataclass(eq=False, repr=False)
 class Outcome:
     loaded: Loaded
+    may_be_remembered: bool = True  # nothing but the files of `inputs` and icdgen itself decides
     plans: list[write.Plan] = field(default_factory=list)
     inputs: dict[Path, str] = field(default_factory=dict)  # what decides the output -> its fingerprint when read
 
@@ -43,12 +45,20 @@ def run(job: Job) -> Outcome:
     chosen = [backends.get(name) for name in dict.fromkeys(job.languages)]
     if job.templates is not None and not os.path.isdir(job.templates):
         raise UserError(f"there is no folder {job.templates}", "--templates names a folder of templates")
-    outcome = Outcome(load_checked(job.icds, [backend for backend in chosen if backend.name not in backends.names()]))
+    if job.measured is not None and not any(hasattr(backend, "measured") for backend in chosen):
+        raise UserError(
+            "measurements go into the assurance pack only", "add `--lang assurance`, or leave --measured out"
+        )
+    plug_ins = [backend for backend in chosen if backend.name not in backends.names()]
+    lined = any(getattr(backend, "needs_lines", False) for backend in chosen)
+    outcome = Outcome(load_checked(job.icds, plug_ins, lined), may_be_remembered=not plug_ins and not lined)
     if not outcome.loaded.ok:
         return outcome
     outcome.inputs = outcome.loaded.inputs | job.configs
     for backend in chosen:
         render = Renderer.of(backend, job.templates)
+        if hasattr(backend, "measured"):
+            backend.measured = job.measured
         out = job.out / backend.name if len(chosen) > 1 else job.out
         outcome.plans.append(write.plan(out, backend.name, backend.files(outcome.loaded.icd, render)))
         outcome.inputs |= render.looked_at
@@ -88,7 +98,7 @@ def _escape(path: str) -> str:
 
 def remember(name: str, note: str, job: Job, outcome: Outcome) -> None:
     """So that the same command over the same files, with its outputs still in place, ends at once."""
-    if not name or outcome.loaded.findings or set(job.languages) - set(backends.names()):
+    if not name or outcome.loaded.findings or not outcome.may_be_remembered:
         return
     files = {os.path.abspath(path): seen for path, seen in outcome.inputs.items()}
     for plan in outcome.plans:

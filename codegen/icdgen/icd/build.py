@@ -137,7 +137,7 @@ class Builder:
     def fields(self, around: Orders, item: Map) -> tuple[model.Field, ...]:
         """The field, the elements of an array, or the parts that it is divided into; ``around``: the orders of its message."""
         if "count" in item:
-            return elements(self.field(item, around), item["count"])
+            return replace(self.field(item, around), count=item["count"]).elements
         if "bitfields" not in item:
             return (self.field(item, around),)
         parts = division.parts_of(item)
@@ -176,6 +176,7 @@ class Builder:
             summary=get("summary", ""),
             byte_order=byte_order,
             bit_order=bit_order,
+            view=get("view", False),
             errata=self.applied.about(item),
             source=item,
         )
@@ -190,16 +191,6 @@ class Builder:
 
 def _id(item: Map, key: str) -> int | None:
     return wire_ids.number(item[key]) if key in item else None
-
-
-def elements(first: model.Field, count: int) -> tuple[model.Field, ...]:
-    """The elements of an array: they follow each other without a gap."""
-    return tuple(
-        replace(
-            first, name=f"{first.name}[{n}]", at=first.at + n * first.bits, element=model.Element(first.name, n, count)
-        )
-        for n in range(count)
-    )
 
 
 def orders(item: Map, around: Orders = ("", "")) -> Orders:

@@ -44,6 +44,8 @@ def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Obstacle]
         if key in field:
             message = f"{name} is divided, so its value has no `{key}`: its parts have"
             yield Obstacle(field, key, message, "move it to the parts; an erratum removes what is printed")
+    if field.get("view"):
+        yield Obstacle(field, "view", f"{name} is divided, so it is no view", "make the parts views of the message")
     taken: dict[int, str] = {}
     for part in parts_of(field):
         at, size, title = part.get("at"), part.get("bits"), f"`{part.get('name')}`"

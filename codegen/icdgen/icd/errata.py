@@ -118,12 +118,13 @@ def _erratum(entry: Map) -> Erratum:
         held=tuple((entry.get("held") or {}).items()),
         changes=bool(entry.get("held")),
         is_note="what" in entry,
+        source=entry,
     )
 
 
 def _targets(tree: Map, where: Map, named: _ByName) -> Iterator[Map]:
     if "section" in where:
-        yield from _section(tree, str(where["section"]))
+        yield from section(tree, str(where["section"]))
     elif "enum" in where:
         for enum in named.of(tree, "enums", where["enum"]):
             if "member" not in where:
@@ -169,7 +170,8 @@ def _named(owner: Map, key: str, name: object) -> Iterator[Map]:
             yield item
 
 
-def _section(tree: Map, path: str) -> Iterator[Map]:
+def section(tree: Map, path: str) -> Iterator[Map]:
+    """The mapping at a path of keys, ``protocol.uart``, if there is one."""
     node: object = tree
     for step in path.split("."):
         if isinstance(node, Map) and step in node:

@@ -36,6 +36,7 @@ class Erratum:
     held: tuple[tuple[str, object], ...] = ()
     changes: bool = False
     is_note: bool = False
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
     def label(self) -> str:
@@ -135,6 +136,7 @@ class Field:
     summary: str = ""
     byte_order: str = ""  # its own or its message's; empty: the node's
     bit_order: str = ""  # likewise; `at` is counted by it
+    view: bool = False  # it reads bits that other fields have, and has none: see `Message.owners`
     element: Element | None = None
     count: int = 0  # of an array that stands as one: its elements, of which this is the first but for its name
     errata: tuple[Erratum, ...] = ()
@@ -143,6 +145,23 @@ class Field:
     def orders(self, node: Node) -> tuple[str, str]:
         """Byte order and bit order; ``node`` is the one that declares its message."""
         return self.byte_order or node.byte_order, self.bit_order or node.bit_order
+
+    @property
+    def width(self) -> int:
+        """Its bits; of an array that stands as one, those of all elements."""
+        return self.bits * (self.count or 1)
+
+    @property
+    def elements(self) -> tuple[Field, ...]:
+        """The fields that an array which stands as one is made of; else the field itself.
+
+        They follow each other without a gap.
+        """
+        return tuple(map(self._element, range(self.count))) or (self,)
+
+    def _element(self, index: int) -> Field:
+        at, element = self.at + index * self.bits, Element(self.name, index, self.count)
+        return replace(self, name=f"{self.name}[{index}]", at=at, element=element, count=0)
 
     @property
     def is_bytes(self) -> bool:
@@ -211,6 +230,18 @@ class Message:
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
+    def owners(self) -> tuple[Field, ...]:
+        """The fields that have bits of their own: what a message is made of. The others are views of these."""
+        if not any(field.view for field in self.fields):
+            return self.fields
+        return tuple(field for field in self.fields if not field.view)
+
+    @property
+    def views(self) -> tuple[Field, ...]:
+        """The fields that read bits of others."""
+        return tuple(field for field in self.fields if field.view)
+
+    @property
     def members(self) -> tuple[Field, ...]:
         """The fields as the ICD declares them: an array stands as one."""
         if all(field.element is None for field in self.fields):
@@ -219,8 +250,8 @@ class Message:
 
     @property
     def fresh(self) -> dict[str, int | bytes]:
-        """The raw values of a new message by the names of its fields."""
-        return {field.name: field.fresh for field in self.fields}
+        """The raw values of a new message by the names of its fields, but for views."""
+        return {field.name: field.fresh for field in self.owners}
 
     @property
     def telecommand_id(self) -> int | None:

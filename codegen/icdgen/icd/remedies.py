@@ -32,7 +32,7 @@ _KEYS = {
     "width": "`bits:`", "description": "`summary:`", "comment": "`summary:`", "values": "`enum:`, with the members under `enums:`",
 }  # fmt: skip
 
-_REPEATED = frozenset({"count", "repeat", "array", "times", "elements"})
+_REPEATED = frozenset({"count", "repeat", "array", "times", "elements", "length"})
 
 
 def of_syntax(problem: str, line: str, column: int) -> str:
@@ -70,6 +70,8 @@ def of_value(key: str, value: object) -> str:
 def of_key(key: str, known: list[str]) -> str:
     """What is written instead of a key that the format does not know; nothing if there is no telling."""
     if key.lower() in _REPEATED:
-        return "what is repeated cannot be described: write a field for each element"
+        if "count" in known:
+            return "write `count:`: `{at: 0, bits: 16, count: 6, name: Temperatures, type: int}` is an array of six numbers"
+        return "only fields are repeated, by `count:`: what else there is several times is written as often"
     meant = _KEYS.get(key.lower(), "")
     return f"write {meant}" if meant and re.search(r"`(\w+):", meant)[1] in known else ""  # type: ignore[index]

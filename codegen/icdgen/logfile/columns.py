@@ -95,6 +95,8 @@ def _columns(icd: Icd, known: Facts, slot: LogBit, start: int) -> Iterator[Colum
         if field.at + field.bits > slot.length * 8:
             continue  # the slot does not hold it
         name = f"{frame}__{_identifier(field, owner.vocabulary)}"
+        if field.element is not None and field.identifier:
+            name += f"_{field.element.index}"
         if field.unit:
             name += f"_{naming.snake(naming.words(field.unit.identifier))}"
         pieces = tuple(p._replace(byte=p.byte + start) for p in layout.pieces(field, owner))

@@ -27,7 +27,7 @@ _COLUMNS = [
 
 def field_table(message: Message, node: Node, width: int | None = None) -> str:
     """Fields and reserved bits in the order of the frame; empty for a message without any."""
-    rows: list[tuple[int, tuple[str, ...]]] = [(field.at, _row(field)) for field in message.fields]
+    rows: list[tuple[int, tuple[str, ...]]] = [(field.at, _row(field)) for field in message.members]
     reserved = ("reserved", "", "", "", "", "", "")
     rows += [(gap.at, (str(gap.at), str(gap.bits), *reserved)) for gap in layout.gaps(message, node)]
     return render(_COLUMNS, [row for _, row in sorted(rows, key=lambda r: r[0])], width)
@@ -38,11 +38,14 @@ def _row(field: Field) -> tuple[str, ...]:
     resolution = factor_text(field.scale.factor) if field.scale else ""
     unit = field.unit.symbol if field.unit else ""
     kind = field.enum.name if field.enum else field.type
-    return (str(field.at), str(field.bits), kind, field.name, unit, resolution, low, high, "; ".join(_notes(field)))
+    bits = f"{field.count} x {field.bits}" if field.count else str(field.bits)
+    return (str(field.at), bits, kind, field.name, unit, resolution, low, high, "; ".join(_notes(field)))
 
 
 def remarks(field: Field, number: Callable[[Fraction], str] = exact_text) -> Iterator[str]:
-    """What is constant, exclusive limits, and what special values mean; ``number`` writes numbers."""
+    """What is constant, exclusive limits, and what special values mean, that it is a view; ``number`` writes numbers."""
+    if field.view:
+        yield "a view of bits that other fields have"
     if told := orders_text(field):
         yield told
     if field.const is not None:

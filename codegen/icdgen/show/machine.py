@@ -75,7 +75,7 @@ def _message(message: Message) -> _Object:
         acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
         contains=[{"message": part.message, "offset": part.at} for part in message.contains],
         **_ids(message.errata),
-    ) | {"fields": [_field(f) for f in message.fields]}
+    ) | {"fields": [_field(f) for f in message.members]}
 
 
 def _field(field: Field) -> _Object:
@@ -90,6 +90,7 @@ def _field(field: Field) -> _Object:
         formula=field.formula if scale else None,
         special=[_attributes(one) for one in field.special],
         limits=_limits(field.limits),
+        view=True if field.view else None,
         **_ids(field.errata),
     )
 
@@ -131,7 +132,7 @@ def _places(node: Node) -> Iterator[tuple[_Object, tuple[Erratum, ...]]]:
     """Every object of the node that errata can concern, with those that do."""
     for message in node.messages:
         yield {"message": message.name}, message.errata
-        for field in message.fields:
+        for field in message.members:
             yield {"message": message.name, "field": field.name}, field.errata
     for enum in node.enums:
         yield {"enum": enum.name}, enum.errata

@@ -16,9 +16,10 @@ from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.sim import faults
 from icdgen.sim.line import Line
 from icdgen.sim.values import raw_of
+from icdgen.values.encode import listed
 from icdgen.values.entry import from_physical
 from icdgen.values.errors import BadValue, NotFound
-from icdgen.values.find import find_field, find_message, find_node
+from icdgen.values.find import find_array, find_field, find_message, find_node
 
 Wave = Mapping[str, Any]  # as a script has it
 WAVES = ("sine", "ramp", "steps", "noise")
@@ -71,7 +72,10 @@ class Control:
 
     def set(self, name: str, key: str, value: object) -> None:
         """Sets a field of a frame, now and from every start on. Raises `icdgen.errors.UserError`."""
-        message, one = locate(self.icd, self.node, name, key)
+        for message, one, given in of_fields(self.icd, self.node, name, key, value):
+            self._set(message, one, given)
+
+    def _set(self, message: Message, one: Field, value: object) -> None:
         self.moving = [m for m in self.moving if (m[0].name, m[1].name) != (message.name, one.name)]
         if isinstance(value, Mapping):
             self.moving.append((message, one, value))
@@ -117,8 +121,24 @@ class Control:
         return "ok"
 
 
-def locate(icd: Icd, node: Node, name: str, key: str) -> tuple[Message, Field]:
-    """The field of a frame of the node, or of a program that it starts. Raises `icdgen.errors.UserError`."""
+def of_fields(icd: Icd, node: Node, name: str, key: str, value: object) -> list[tuple[Message, Field, object]]:
+    """A field of a frame and its value; of an array, each element and its own, from a list or a text of one.
+
+    Raises `icdgen.errors.UserError`.
+    """
+    message = locate_message(icd, node, name)
+    vocabulary = find_node(icd, message.node).vocabulary
+    elements = find_array(message, key, vocabulary)
+    if not elements:
+        return [(message, find_field(message, key, vocabulary), value)]
+    if isinstance(value, Mapping):
+        return [(message, one, value) for one in elements]
+    texts = listed(key, str(value), len(elements))
+    return [(message, one, text) for one, text in zip(elements, texts, strict=True)]
+
+
+def locate_message(icd: Icd, node: Node, name: str) -> Message:
+    """The frame of the node, or of a program that it starts. Raises `icdgen.errors.UserError`."""
     message, wrong = None, None
     for one in (node, *(n for n in icd.nodes if n is not node)):
         try:
@@ -129,11 +149,13 @@ def locate(icd: Icd, node: Node, name: str, key: str) -> tuple[Message, Field]:
     if message is None:
         assert wrong
         raise wrong
-    return message, find_field(message, key, find_node(icd, message.node).vocabulary)
+    return message
 
 
 def fitting(message: Message, one: Field, value: object) -> int | bytes:
     """The raw value of what a user gave. Raises `icdgen.errors.UserError`."""
+    if one.view:
+        raise UserError(f"{message.name}, {one.name}: a view has no bits of its own", "set the fields that have them")
     raw = from_physical(one, "true" if value is True else "false" if value is False else str(value))
     if isinstance(raw, int) and one.type != "float" and not one.raw_min <= raw <= one.raw_max:
         raise UserError(f"{message.name}, {one.name}: {value} does not fit", f"{one.bits} bits hold the raw value")
@@ -181,11 +203,11 @@ def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
         raise UserError(f"{where}: `set` is no mapping of messages to fields", HELP)
     for name, fields in values.items():
         for key, value in fields.items():
-            message, one = locate(icd, node, str(name), str(key))
-            if isinstance(value, Mapping):
-                _check_wave(f"{where}, {name}, {key}", one, value)
-            else:
-                fitting(message, one, value)
+            for message, one, given in of_fields(icd, node, str(name), str(key), value):
+                if isinstance(given, Mapping):
+                    _check_wave(f"{where}, {name}, {key}", one, given)
+                else:
+                    fitting(message, one, given)
     spoiled = row.get("faults")
     if spoiled is not None and not (isinstance(spoiled, list) and all(isinstance(one, str) for one in spoiled)):
         raise UserError(f"{where}: `faults` is no list of texts", HELP)
@@ -199,6 +221,8 @@ def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
 
 
 def _check_wave(where: str, one: Field, wave: Wave) -> None:
+    if one.view:
+        raise UserError(f"{where}: a view has no bits of its own", "let the fields move that have them")
     numbers = [wave.get(key, 1) for key in ("min", "max", "period")]
     if set(wave) - {"wave", "min", "max", "period"} or wave.get("wave", "sine") not in WAVES or one.is_bytes:
         raise UserError(f"{where}: there is no such wave", f"{{wave: {'|'.join(WAVES)}, min: -1, max: 1, period: 60}}")

@@ -52,8 +52,8 @@ class Values:
 
 
 def allowed_values(message: Message) -> dict[str, int | bytes]:
-    """Values that the ICD allows, 0 where it does."""
-    return {field.name: _allowed_value(field) for field in message.fields}
+    """Values that the ICD allows, 0 where it does; views read what comes of them."""
+    return {field.name: _allowed_value(field) for field in message.owners}
 
 
 def _allowed_value(field: Field) -> int | bytes:

@@ -14,7 +14,7 @@ from icdgen.icd.model import Field, Icd, Message
 from icdgen.values import numbers
 from icdgen.values.entry import from_physical, members, raw_value, without_unit
 from icdgen.values.errors import BadValue
-from icdgen.values.find import find_field, find_message, find_node
+from icdgen.values.find import find_array, find_field, find_message, find_node
 from icdgen.values.frame import Frame, frame, violations
 
 
@@ -32,13 +32,13 @@ def encode(
     given: dict[str, str] = {}
     for assignment in assignments:
         with wrong.collect():
-            field, text = _split(message, assignment, node.vocabulary)
-            if field.name in given:
-                raise BadValue(f"`{field.name}` is given twice: {given[field.name]} and {text}")
-            given[field.name] = text
+            for field, text in split(message, assignment, node.vocabulary):
+                if field.name in given:
+                    raise BadValue(f"`{field.name}` is given twice: {given[field.name]} and {text}")
+                given[field.name] = text
     misnamed = bool(wrong.messages)
     values, notes = _values(message, given, raw, wrong)
-    missing = [f.name for f in message.fields if f.name not in given and f.const is None]
+    missing = [f.name for f in message.owners if f.name not in given and f.const is None]
     if missing and not misnamed:
         with wrong.collect():
             raise BadValue(
@@ -68,16 +68,34 @@ class _Wrong:
             raise BadValue("\n".join(self.messages), next(filter(None, self.helps), help))
 
 
-def _split(message: Message, assignment: str, vocabulary: tuple[str, ...]) -> tuple[Field, str]:
-    """The field and the text of its value; a field's name may itself hold a `=`."""
+def split(message: Message, assignment: str, vocabulary: tuple[str, ...]) -> list[tuple[Field, str]]:
+    """The field and the text of its value, or those of all elements of an array: ``temperatures=[1, 2.5, 3]``.
+
+    A field's name may itself hold a ``=``. Raises `NotFound`, `Ambiguous`, `BadValue`.
+    """
     exact = [f for f in message.fields if assignment.startswith(f.name + "=")]
     if exact:
         field = max(exact, key=lambda f: len(f.name))
-        return field, assignment[len(field.name) + 1 :].strip()
+        return [(field, assignment[len(field.name) + 1 :].strip())]
     name, equals, text = assignment.partition("=")
     if not equals:
         raise BadValue(f"`{assignment}` is not of the form name=value", "for instance `speed=100`")
-    return find_field(message, name.strip(), vocabulary), text.strip()
+    elements = find_array(message, name.strip(), vocabulary)
+    if elements:
+        return list(zip(elements, listed(name.strip(), text, len(elements)), strict=True))
+    return [(find_field(message, name.strip(), vocabulary), text.strip())]
+
+
+def listed(name: str, text: str, count: int) -> list[str]:
+    """The texts of an array's elements: of ``[1, 2.5, 3]``. Raises `BadValue`."""
+    text = text.strip()
+    parts = [part.strip() for part in text[1:-1].split(",")] if text[:1] == "[" and text[-1:] == "]" else []
+    if len(parts) != count:
+        said = f"{len(parts)} given" if parts else f"not {text}"
+        some = ", ".join(["1", "2", "3"][:count]) + (", ..." if count > 3 else "")
+        help = f"`{name}=[{some}]`, or `{name}[0]=1` for one"
+        raise BadValue(f"`{name}` takes {count} values in brackets, {said}", help)
+    return parts
 
 
 def _values(

@@ -21,6 +21,7 @@ def members(field: Field) -> str:
 
 def raw_value(field: Field, text: str) -> int | bytes:
     """The raw value itself; the bits of a float as ``0x...``. Raises `BadValue`; does not look at the range."""
+    _settable(field)
     if field.is_bytes:
         return _bytes(field, text)
     if field.type == "float":
@@ -37,8 +38,14 @@ def raw_value(field: Field, text: str) -> int | bytes:
 
 def from_physical(field: Field, text: str) -> int | bytes:
     """The raw value of a text, else the one nearest to a physical value. Raises `BadValue`; does not look at the range."""
+    _settable(field)
     reader: _Reader = _READERS.get(field.type, _integer)
     return reader(field, text)
+
+
+def _settable(field: Field) -> None:
+    if field.view:
+        raise BadValue("a view has no bits of its own", "set the fields that have them")
 
 
 def _bool(field: Field, text: str) -> int:

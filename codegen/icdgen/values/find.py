@@ -100,6 +100,13 @@ def find_field(message: Message, key: str, vocabulary: tuple[str, ...] = ()) -> 
     raise NotFound(f"{message.name} has no field `{key}`", help)
 
 
+def find_array(message: Message, key: str, vocabulary: tuple[str, ...] = ()) -> tuple[Field, ...]:
+    """The elements of the array of that name, in any case, or of that identifier; none if there is no such array."""
+    arrays = [one for one in message.members if one.count]
+    found = by_name(arrays, key, vocabulary)
+    return found[0].elements if len(found) == 1 else ()
+
+
 def by_name(items: Sequence[_Named], key: str, vocabulary: tuple[str, ...]) -> list[_Named]:
     """Items of exactly this name, else of this name in any case, else of these words, however they are joined."""
     steps: list[Callable[[_Named], bool]] = [
@@ -135,7 +142,9 @@ def _ids(message: Message, kind: str | None) -> tuple[int | None, ...]:
 
 
 def _names(item: _HasName) -> Iterable[str]:
-    return filter(None, (item.name, item.identifier))
+    element = getattr(item, "element", None)
+    identifier = f"{item.identifier}[{element.index}]" if element is not None and item.identifier else item.identifier
+    return filter(None, (item.name, identifier))
 
 
 def _joined(text: str, vocabulary: tuple[str, ...]) -> str:

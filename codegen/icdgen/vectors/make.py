@@ -34,7 +34,7 @@ class MessageVectors:
     """All that is demanded of the code of one message."""
 
     message: Message
-    default: Raw  # a fresh message: 0, empty, or what ``const`` says
+    default: Raw  # a fresh message: 0, empty, or what ``const`` says; of views, what they read then
     rows: tuple[Row, ...]
     lengths: tuple[int, ...]  # frames of these lengths are refused
     unfit: dict[str, list[int]]  # raw values that encoding refuses, by field
@@ -71,13 +71,13 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
         if frame not in frames:
             frames[frame] = None
             rows.append(frame_row(node, message, f"chosen values {number}", frame))
-    settable = [field for field in message.fields if field.scale or field.type == "text"]
+    settable = [field for field in message.owners if field.scale or field.type == "text"]
     return MessageVectors(
         message=message,
-        default=message.fresh,
+        default=codec.decode(node, message, codec.encode(node, message, message.fresh)),
         rows=tuple(rows),
         lengths=tuple(sorted({0, max(message.length - 1, 0), message.length + 1} - {message.length})),
-        unfit={field.name: unfit for field in message.fields if (unfit := patterns.unfit(field))},
+        unfit={field.name: unfit for field in message.owners if (unfit := patterns.unfit(field))},
         settings={field.name: settings(field) for field in settable},
     )
 

@@ -90,12 +90,12 @@ def _numbers(field: Field) -> Iterator[int]:
 
 
 def raw_columns(message: Message) -> Iterator[dict[str, int | bytes]]:
-    """Raw values of all fields, so that each field takes each of its values; neighbours are out of step."""
-    columns = [values(field) for field in message.fields]
+    """Raw values of all fields but views, so that each takes each of its values; neighbours are out of step."""
+    columns = [values(field) for field in message.owners]
     for row in range(max(map(len, columns), default=0)):
         yield {
             field.name: column[(row + index) % len(column)]
-            for index, (field, column) in enumerate(zip(message.fields, columns, strict=True))
+            for index, (field, column) in enumerate(zip(message.owners, columns, strict=True))
         }
 
 

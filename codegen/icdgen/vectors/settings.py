@@ -24,6 +24,12 @@ def bits_of(value: float) -> str:
     return struct.pack(">d", value).hex()
 
 
+def float_of(bits: str) -> float:
+    """The double that 16 hex digits stand for."""
+    value: float = struct.unpack(">d", bytes.fromhex(bits))[0]
+    return value
+
+
 Settings = list[tuple[str, "int | bytes | None"]]
 
 

@@ -94,6 +94,8 @@ def _field(vectors: MessageVectors, field: Field) -> str:
         row["enum"] = field.enum.name
     if field.scale is not None:
         row["factor"], row["offset"] = str(field.scale.factor), str(field.scale.offset)
+    if field.view:
+        row["view"] = True
     row["default"] = raw_json(field, vectors.default[field.name])
     if field.special:
         row["special"] = [special.value for special in field.special]

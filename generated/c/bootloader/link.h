@@ -23,11 +23,6 @@
 /** Bytes of a bit for each packet of such a block. */
 #define BOOTLOADER_BLOCK_BITMAP_BYTES 128u
 
-/* Messages for ICD_REQUEST(): whose they are, and their ids. */
-#define BOOTLOADER_STATE_TELEMETRY BOOTLOADER_NODE, 132u
-#define BOOTLOADER_PROGRAM_INFORMATION_TELEMETRY BOOTLOADER_NODE, 232u
-#define BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_TELEMETRY BOOTLOADER_NODE, 233u
-
 /** What the wire layer needs to know about Bootloader. */
 ICDGEN_API const icd_link_t *bootloader_link(void);
 

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Iterator
 
-from ._base import Buffer, Message
+from . import _lazy
 
 _FLOAT32, _FLOAT64 = struct.Struct("<f"), struct.Struct("<d")
 _BITS32, _BITS64 = struct.Struct("<I"), struct.Struct("<Q")
@@ -50,7 +49,7 @@ def float64_bits(value: float) -> int:
     return int(bits)
 
 
-def keep_nans(message: Message, data: Buffer) -> None:
+def keep_nans(message: _lazy.Message, data: _lazy.Buffer) -> None:
     """Sets the aligned 32-bit floats of ``message`` again, exactly as in ``data``."""
     frame = memoryview(data).tobytes()
     for name, byte in _aligned(message):
@@ -58,7 +57,7 @@ def keep_nans(message: Message, data: Buffer) -> None:
         setattr(message, name, float32(bits))
 
 
-def with_nans(message: Message, frame: bytes) -> bytes:
+def with_nans(message: _lazy.Message, frame: bytes) -> bytes:
     """``frame`` with the exact bits of the aligned 32-bit floats of ``message``."""
     exact = bytearray(frame)
     for name, byte in _aligned(message):
@@ -67,9 +66,11 @@ def with_nans(message: Message, frame: bytes) -> bytes:
     return bytes(exact)
 
 
-def _aligned(message: Message) -> Iterator[tuple[str, int]]:
+def _aligned(message: _lazy.Message) -> _lazy.Iterator[tuple[str, int]]:
     for info in message.FIELDS:
         if info.type != "float" or info.bits != 32 or info.at % 8:
             continue
+        if info.elements:
+            continue  # its elements are read as bits
         if info.byte_order in ("", message.BYTE_ORDER):
             yield info.attribute, info.at // 8

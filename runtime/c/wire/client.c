@@ -10,35 +10,70 @@ ICDGEN_API size_t icd_client_bytes(const icd_link_t *link)
     return ICDGEN_SIZE(link->longest_telecommand + (slot > link->longest ? slot : link->longest));
 }
 
-static inline icd_status_t icdgen_client_input_init(icd_client_t *client, uint8_t *buffer, size_t size)
+/* What is common to all buses. */
+static inline icd_status_t icdgen_client_init(
+    icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
 {
-    const icd_link_t *const link = client->link;
-    const size_t first = ICDGEN_SIZE(link->longest_telecommand);
-    if (size < icd_client_bytes(link)) {
-        return ICD_ERROR_LENGTH;
-    }
-    switch (client->bus) {
-    case ICD_BUS_UART:
-        return icd_uart_decoder_init(&client->decoder, link, buffer + first, ICDGEN_SIZE(link->longest));
-    case ICD_BUS_CAN:
-        return icd_can_joiner_init(&client->joiner, link, 0, &client->slot, 1, buffer + first, size - first);
-    case ICD_BUS_I2C:
-    default:
-        return link->i2c_address < 0 ? ICD_ERROR_UNSUPPORTED : ICD_OK;
-    }
-}
-
-ICDGEN_API icd_status_t
-icd_client_init(icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
-{
-    icd_status_t status;
     (void)memset(client, 0, sizeof *client);
     client->link = link;
     client->bus = bus;
     client->settings = link->client;
     client->whole = buffer;
     client->encoder.ended = true;
-    status = icdgen_client_input_init(client, buffer, size);
+    return size < icd_client_bytes(link) ? ICD_ERROR_LENGTH : ICD_OK;
+}
+
+ICDGEN_API icd_status_t icd_client_uart(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size)
+{
+    icd_status_t status = icdgen_client_init(client, link, ICD_BUS_UART, buffer, size);
+    if (status == ICD_OK) {
+        status = icd_uart_decoder_init(
+            &client->decoder, link, buffer + ICDGEN_SIZE(link->longest_telecommand), ICDGEN_SIZE(link->longest));
+    }
+    client->ready = status == ICD_OK;
+    return status;
+}
+
+ICDGEN_API icd_status_t icd_client_i2c(icd_client_t *client, const icd_link_t *link, uint8_t *buffer, size_t size)
+{
+    icd_status_t status = icdgen_client_init(client, link, ICD_BUS_I2C, buffer, size);
+    if (status == ICD_OK && link->i2c_address < 0) {
+        status = ICD_ERROR_UNSUPPORTED;
+    }
+    client->ready = status == ICD_OK;
+    return status;
+}
+
+static inline icd_status_t icdgen_client_split(const icd_client_t *client, icd_can_splitter_t *splitter)
+{
+    const icd_can_kind_t kind = client->direction == ICD_TELECOMMAND ? ICD_CAN_TELECOMMAND : ICD_CAN_REQUEST;
+    return icd_can_split(
+        splitter, client->link, kind, client->whole[0], client->address, client->link->can->node_address,
+        client->whole + 1, client->whole_length - 1u);
+}
+
+static inline bool icdgen_client_fits_can(const icd_client_t *client)
+{
+    icd_can_splitter_t splitter;
+    return icdgen_client_split(client, &splitter) == ICD_OK;
+}
+
+static inline void icdgen_client_expire_can(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
+{
+    icd_can_expire(&client->joiner, now, on_event, context);
+}
+
+ICDGEN_API icd_status_t
+icd_client_can(icd_client_t *client, const icd_link_t *link, uint8_t address, uint8_t *buffer, size_t size)
+{
+    const size_t first = ICDGEN_SIZE(link->longest_telecommand);
+    icd_status_t status = icdgen_client_init(client, link, ICD_BUS_CAN, buffer, size);
+    client->address = address;
+    client->fits = icdgen_client_fits_can;
+    client->expire = icdgen_client_expire_can;
+    if (status == ICD_OK) {
+        status = icd_can_joiner_init(&client->joiner, link, address, &client->slot, 1, buffer + first, size - first);
+    }
     client->ready = status == ICD_OK;
     return status;
 }
@@ -52,12 +87,6 @@ ICDGEN_API void icd_client_use_checksums(icd_client_t *client)
         form != NULL && ((ICDGEN_U32(form->telemetry_buses) >> ICDGEN_U32(client->bus)) & 1u) != 0u;
 }
 
-ICDGEN_API void icd_client_set_address(icd_client_t *client, uint8_t address)
-{
-    client->address = address;
-    client->joiner.address = address;
-}
-
 ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadline)
 {
     *deadline = client->until;
@@ -67,6 +96,8 @@ ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadli
 static inline void icdgen_client_end(
     icd_client_t *client, uint32_t now, icd_event_t *event, icd_event_fn *on_event, void *context)
 {
+    event->link = client->link;
+    event->direction = client->direction;
     event->id = client->message->id;
     event->attempts = client->attempts;
     client->echo = client->attempts > 1u || event->kind == ICD_EVENT_TIMEOUT;
@@ -112,15 +143,10 @@ static inline bool icdgen_client_has_output(const icd_client_t *client)
         client->splitter.next < client->splitter.count;
 }
 
-static inline bool icdgen_client_fits_bus(const icd_client_t *client)
+static inline void icdgen_client_ignore(void *context, const icd_event_t *event)
 {
-    icd_can_splitter_t splitter;
-    const icd_link_t *const link = client->link;
-    return client->bus != ICD_BUS_CAN ||
-        icd_can_split(
-            &splitter, link, client->direction == ICD_TELECOMMAND ? ICD_CAN_TELECOMMAND : ICD_CAN_REQUEST,
-            client->whole[0], client->address, link->can->node_address, client->whole + 1,
-            client->whole_length - 1u) == ICD_OK;
+    (void)context;
+    (void)event;
 }
 
 ICDGEN_API icd_status_t icd_client_start(
@@ -147,8 +173,11 @@ ICDGEN_API icd_status_t icd_client_start(
         telecommand && client->checks_telecommands, client->whole, ICDGEN_SIZE(client->link->longest_telecommand),
         &client->whole_length);
     client->direction = request->direction;
-    if (status != ICD_OK || !icdgen_client_fits_bus(client)) {
-        return status != ICD_OK ? status : ICD_ERROR_LENGTH;
+    if (status == ICD_OK && client->fits != NULL && !client->fits(client)) {
+        status = ICD_ERROR_LENGTH;
+    }
+    if (status != ICD_OK) {
+        return status;
     }
     client->message = message;
     client->repeat = request->repeat || !telecommand || (message->flags & ICD_SETTING) != 0u;
@@ -157,7 +186,7 @@ ICDGEN_API icd_status_t icd_client_start(
         client->state = ICD_CLIENT_HOLD;
         client->until = client->echo_end;
     } else {
-        icdgen_client_send(client, now, on_event, context);
+        icdgen_client_send(client, now, on_event != NULL ? on_event : icdgen_client_ignore, context);
     }
     return ICD_OK;
 }
@@ -177,19 +206,13 @@ ICDGEN_API void icd_client_cancel(icd_client_t *client)
     client->state = ICD_CLIENT_IDLE;
 }
 
-static inline void icdgen_client_ignore(void *context, const icd_event_t *event)
-{
-    (void)context;
-    (void)event;
-}
-
 ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id)
 {
     icd_request_t request;
     (void)memset(&request, 0, sizeof request);
     request.direction = ICD_TELEMETRY;
     request.id = id;
-    return icd_client_start(client, now, &request, icdgen_client_ignore, NULL);
+    return icd_client_start(client, now, &request, NULL, NULL);
 }
 
 ICDGEN_API icd_status_t icd_client_send(
@@ -212,12 +235,10 @@ ICDGEN_API icd_status_t icd_client_send(
     return icd_client_start(client, now, &request, on_event, context);
 }
 
-ICDGEN_API icd_status_t icdgen_client_request_of(icd_client_t *client, uint32_t now, const char *node, unsigned id)
+ICDGEN_API bool icd_is_reply(const icd_event_t *event, const char *node, uint8_t id)
 {
-    if (!icd_has_messages_of(client->link, node)) {
-        return ICD_ERROR_UNKNOWN_ID;
-    }
-    return icd_client_request(client, now, ICDGEN_U8(id));
+    return event->kind == ICD_EVENT_DONE && event->direction == ICD_TELEMETRY && event->id == id &&
+        event->link != NULL && icd_has_messages_of(event->link, node);
 }
 
 ICDGEN_API bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count)
@@ -246,11 +267,8 @@ ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *p
         return false;
     }
     if (client->splitter.next >= client->splitter.count && client->pending != 0u) {
-        const icd_can_kind_t kind = client->direction == ICD_TELECOMMAND ? ICD_CAN_TELECOMMAND : ICD_CAN_REQUEST;
         client->pending--;
-        (void)icd_can_split(
-            &client->splitter, client->link, kind, client->whole[0], client->address, client->link->can->node_address,
-            client->whole + 1, client->whole_length - 1u);
+        (void)icdgen_client_split(client, &client->splitter);
     }
     return icd_can_next(&client->splitter, packet);
 }

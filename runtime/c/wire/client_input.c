@@ -158,8 +158,8 @@ static inline void icdgen_client_on_can(void *context, const icd_event_t *event)
 
 ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
 {
-    if (client->bus == ICD_BUS_CAN) {
-        icd_can_expire(&client->joiner, now, on_event, context);
+    if (client->expire != NULL) {
+        client->expire(client, now, on_event, context);
     }
     if (client->echo && icdgen_reached(now, client->echo_end)) {
         client->echo = false;

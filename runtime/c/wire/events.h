@@ -2,6 +2,7 @@
 #define ICDGEN_WIRE_EVENTS_H
 
 #include "forms.h"
+#include "link.h"
 
 /* ---- events ------------------------------------------------------------------------------------------------------ */
 
@@ -33,15 +34,17 @@ typedef struct {
     uint8_t id;
     const uint8_t *data;
     size_t length;
-    uint32_t attempts;       /**< Of DONE, REFUSED, TIMEOUT: how often it was sent. */
-    icd_reason_t reason;     /**< Of REFUSED. */
-    int64_t code;            /**< Of REFUSED: the error code, -1 if the bus tells none. */
-    int64_t parameter;       /**< Of REFUSED: the parameter at fault, -1 if the bus tells none. */
-    uint32_t number;         /**< Of PACKET. */
-    uint32_t missing;        /**< Of INCOMPLETE: packets. */
-    uint8_t source;          /**< On CAN. */
-    uint8_t destination;     /**< Of MESSAGE on CAN. */
-    icd_can_kind_t can_kind; /**< Of MESSAGE on CAN. */
+    const icd_link_t *link;    /**< Of DONE, REFUSED, TIMEOUT: that of the node, else NULL. */
+    icd_direction_t direction; /**< Of DONE, REFUSED, TIMEOUT: that of the request. */
+    uint32_t attempts;         /**< Of DONE, REFUSED, TIMEOUT: how often it was sent. */
+    icd_reason_t reason;       /**< Of REFUSED. */
+    int64_t code;              /**< Of REFUSED: the error code, -1 if the bus tells none. */
+    int64_t parameter;         /**< Of REFUSED: the parameter at fault, -1 if the bus tells none. */
+    uint32_t number;           /**< Of PACKET. */
+    uint32_t missing;          /**< Of INCOMPLETE: packets. */
+    uint8_t source;            /**< On CAN. */
+    uint8_t destination;       /**< Of MESSAGE on CAN. */
+    icd_can_kind_t can_kind;   /**< Of MESSAGE on CAN. */
 } icd_event_t;
 
 /** Is told of each event, with the context that was given along. */

@@ -2,83 +2,101 @@
 
 from __future__ import annotations
 
-from typing import (
-    TYPE_CHECKING,
-    Any,
-    ClassVar,
-    Literal,
-    NamedTuple,
-    Optional,
-    TypeVar,
-    Union,
+# Itself: what annotations name is loaded when they are evaluated.
+from . import _lazy
+from ._fields import FieldInfo, View, field, scaled, text, whole
+
+__all__ = [
+    "FieldInfo",
+    "Message",
+    "MessageType",
+    "field",
+    "scaled",
+    "text",
+    "view",
+    "whole",
+]
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from inspect import Signature
+    from typing import Callable, ClassVar, Literal
+
+    from typing_extensions import ParamSpec, dataclass_transform
+
+    from ._hints import M
+
+    P = ParamSpec("P")
+else:
+
+    def dataclass_transform(**_):
+        return lambda cls: cls
+
+
+@dataclass_transform(
+    kw_only_default=True, field_specifiers=(field, scaled, whole, text)
 )
+class MessageType(type):
+    """Makes the class of a message: a dataclass with slots, of fields that `field` declares.
 
-from ._enumeration import OpenEnum, is_signed
-
-Buffer = Union[bytes, bytearray, memoryview]
-EnumClass = type[OpenEnum]
-# Annotations of what users see can be evaluated with Python 3.9, which knows neither `int | None` nor `Self`.
-_MaybeEnum = Optional[EnumClass]
-_MaybeInt = Optional[int]
-_MaybeFloat = Optional[float]
-_M = TypeVar("_M", bound="Message")
-
-
-class FieldInfo(NamedTuple):
-    """What the ICD says of a field.
-
-    Limits are those of the physical value, or of the raw one if there is no scale.
+    `Message.from_bytes` and `Message.to_bytes` are compiled from these when they are
+    first used, and what `dataclasses` wants is made when it is asked for.
     """
 
-    attribute: str
-    """The attribute that holds the raw value."""
-    name: str
-    """The manual's name, verbatim."""
-    at: int
-    """Offset in bits from the start of the frame."""
-    bits: int
-    """Width in bits."""
-    type: str
-    """``uint``, ``int``, ``bool``, ``enum``, ``float``, ``bytes`` or ``text``."""
-    unit: str = ""
-    """Unit of the physical value, or of the raw one if there is no scale."""
-    physical: str = ""
-    """The property that holds the physical value, of ``text`` a `str`.
-
-    Empty if the field has neither a scale nor a text.
-    """
-    scale: tuple[int, int, int] = (1, 0, 1)
-    """``(p, c, q)``: the physical value is exactly ``(raw * p + c) / q``."""
-    enum: _MaybeEnum = None
-    """The enumeration of the values."""
-    const: _MaybeInt = None
-    """The only valid raw value."""
-    special: tuple[tuple[int, str], ...] = ()
-    """Raw values with a meaning of their own."""
-    minimum: _MaybeFloat = None
-    maximum: _MaybeFloat = None
-    above: _MaybeFloat = None
-    below: _MaybeFloat = None
-    byte_order: str = ""
-    """``little`` or ``big``; empty where it is the message's."""
-    bit_order: str = ""
-    """``lsb0`` or ``msb0``; empty where it is the message's."""
+    def __new__(
+        mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _lazy.Any]
+    ) -> _lazy.Any:
+        """The class. Values of fields stand in slots, so their declarations go."""
+        if "LENGTH" in namespace:
+            infos: list[FieldInfo] = []
+            notes = namespace.get("__annotations__", {})
+            for key, declared in list(namespace.items()):
+                if isinstance(declared, FieldInfo):
+                    declared.attribute = key
+                    infos.append(namespace.pop(key))
+                elif isinstance(declared, View):
+                    namespace[key] = declared.property_of(infos[-1], key)
+                    del notes[key]
+            names = tuple(info.attribute for info in infos)
+            namespace["FIELDS"] = tuple(infos)
+            namespace["__slots__"] = namespace["__match_args__"] = names
+        return super().__new__(mcls, name, bases, namespace)
 
     @property
-    def signed(self) -> bool:
-        """Whether the raw value is in two's complement."""
-        if self.enum is not None:
-            return is_signed(self.enum)
-        return self.type == "int"
+    def __signature__(cls) -> Signature:
+        """The keywords that it is made with, for `inspect.signature`."""
+        from ._dataclass import signature
+
+        return signature(cls)
 
 
-class Message:
+class _DataclassFields:
+    """``__dataclass_fields__``, which the functions of `dataclasses` look at."""
+
+    def __get__(self, message: object, owner: _lazy.Any) -> dict[str, _lazy.Any]:
+        from ._dataclass import dataclass_fields
+
+        return dataclass_fields(owner)
+
+
+class _DataclassParams:
+    """``__dataclass_params__``, as `dataclasses.dataclass` leaves it."""
+
+    def __get__(self, message: object, owner: object) -> _lazy.Any:
+        from ._dataclass import PARAMS
+
+        return PARAMS
+
+
+class Message(metaclass=MessageType):
     """A message: its attributes hold raw values, just as they are on the wire.
 
-    Values are not checked when they are assigned, but by `to_bytes`.
+    It is made with keywords, of raw or of physical values. Values are not checked when
+    they are assigned, but by `to_bytes`.
     """
 
     __slots__ = ()
+    __dataclass_params__ = _DataclassParams()
 
     if TYPE_CHECKING:
         NODE: ClassVar[str]
@@ -89,36 +107,115 @@ class Message:
         """``telecommand``, ``telemetry`` or ``configuration`` (which is both)."""
         LENGTH: ClassVar[int]
         """Bytes of a frame, without the id."""
-    IDS: ClassVar[tuple[int, ...]] = ()
-    """Its ids: one, or the id to set it and the id to get it."""
-    TABLE: ClassVar[_MaybeInt] = None
-    """The manual's table."""
-    ACKNOWLEDGED: ClassVar[bool] = True
-    """Whether the node acknowledges it, where it is a telecommand."""
-    FIELDS: ClassVar[tuple[FieldInfo, ...]] = ()
-    """The fields in the order of the manual."""
-    BYTE_ORDER: ClassVar[Literal["little", "big"]] = "little"
-    BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]] = "lsb0"
+        IDS: ClassVar[tuple[int, ...]]
+        """Its ids: one, or the id to set it and the id to get it."""
+        TABLE: ClassVar[int | None]
+        """The manual's table."""
+        ACKNOWLEDGED: ClassVar[bool]
+        """Whether the node acknowledges it, where it is a telecommand."""
+        FIELDS: ClassVar[tuple[FieldInfo, ...]]
+        """The fields in the order of the manual."""
+        VIEWS: ClassVar[tuple[FieldInfo, ...]]
+        """What reads bits of the fields in another way, and is not set."""
+        BYTE_ORDER: ClassVar[Literal["little", "big"]]
+        BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
+    else:
+        IDS = FIELDS = VIEWS = ()
+        TABLE = None
+        ACKNOWLEDGED = True
+        BYTE_ORDER, BIT_ORDER = "little", "lsb0"
+        __dataclass_fields__ = _DataclassFields()
+
+        def __init__(self, /, **values):
+            """Of raw values, or physical ones, which go before. Raises `RangeError`."""
+            for info in self.FIELDS:
+                setattr(self, info.attribute, values.pop(info.attribute, info.default))
+                if info.physical in values:
+                    setattr(self, info.physical, values.pop(info.physical))
+            for name in values:
+                raise TypeError(f"{type(self).__name__} has no field {name!r}")
+
+    if TYPE_CHECKING:
+
+        @classmethod  # pyright: ignore[reportArgumentType]
+        def from_physical(cls: Callable[P, M], *args: P.args, **values: P.kwargs) -> M:
+            """From physical values, raw ones where there is no scale or text.
+
+            Raises `RangeError`, and `TypeError` for a raw value that has a physical one.
+            """
+            ...
+
+    else:
+
+        @classmethod
+        def from_physical(cls, /, **values):
+            """From physical values, raw ones where there is no scale or text.
+
+            Raises `RangeError`, and `TypeError` for a raw value that has a physical one.
+            """
+            for info in cls.FIELDS:
+                if info.physical and info.attribute in values:
+                    raise TypeError(
+                        f"from_physical takes {info.physical}, not {info.attribute}"
+                    )
+            return cls(**values)
 
     @classmethod
-    def from_bytes(cls: type[_M], data: Buffer) -> _M:  # noqa: PYI019
-        """The message in a frame. Raises `LengthError`."""
-        raise NotImplementedError
+    def from_bytes(cls: type[_lazy.M], data: _lazy.Buffer) -> _lazy.M:
+        """The message in a frame of exactly ``LENGTH`` bytes. Raises `LengthError`."""
+        from ._compiled import compiled
+
+        made: _lazy.M = compiled(cls, "from_bytes")(cls, data)
+        return made
 
     def to_bytes(self) -> bytes:
-        """The frame, with reserved bits 0. Raises `RangeError`."""
-        raise NotImplementedError
+        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
+        from ._compiled import compiled
 
-    def as_dict(self, physical: bool = False) -> dict[str, Any]:
-        """All values by attribute: raw, or physical where a field has such a value."""
+        frame: bytes = compiled(type(self), "to_bytes")(self)
+        return frame
+
+    def as_dict(self, physical: bool = False) -> dict[str, _lazy.Any]:
+        """All values by attribute: raw, or physical where there is such a value; then those of views."""
+        infos = (*self.FIELDS, *self.VIEWS)
         if physical:
-            names = [info.physical or info.attribute for info in self.FIELDS]
+            names = [info.physical or info.attribute for info in infos]
         else:
-            names = [info.attribute for info in self.FIELDS]
+            names = [info.attribute for info in infos]
         return {name: getattr(self, name) for name in names}
 
+    def _own(self) -> dict[str, _lazy.Any]:
+        """What it is made of: views follow from that."""
+        return {info.attribute: getattr(self, info.attribute) for info in self.FIELDS}
+
     @classmethod
-    def decode_many(cls, frames: Buffer, physical: bool = False) -> dict[str, Any]:
+    def from_dict(cls: type[_lazy.M], values: _lazy.Mapping[str, _lazy.Any]) -> _lazy.M:
+        """The reverse of `as_dict`, of raw or physical values; what is not there is as in a new message.
+
+        Bytes may be hexadecimal digits. Raises `RangeError` for a value that does not
+        fit, and `IcdError` for a name that is none.
+        """
+        from ._dicts import from_dict
+
+        return from_dict(cls, values)
+
+    def to_json(self, physical: bool = False) -> str:
+        """`as_dict` as JSON; bytes are hexadecimal digits."""
+        from ._dicts import to_json
+
+        return to_json(self, physical)
+
+    @classmethod
+    def from_json(cls: type[_lazy.M], data: str) -> _lazy.M:
+        """The reverse of `to_json`. Raises like `from_dict`, and `IcdError` for what is no JSON."""
+        from ._dicts import from_json
+
+        return from_json(cls, data)
+
+    @classmethod
+    def decode_many(
+        cls, frames: _lazy.Buffer, physical: bool = False
+    ) -> dict[str, _lazy.Any]:
         """Frames that follow each other, as one numpy array a field.
 
         The names are those of `as_dict`. What stands on whole bytes is a view of the
@@ -130,7 +227,7 @@ class Message:
         return _columns.decode_many(cls, frames, physical)
 
     @classmethod
-    def decode_table(cls, frames: Buffer, physical: bool = True) -> Any:
+    def decode_table(cls, frames: _lazy.Buffer, physical: bool = True) -> _lazy.Any:
         """Frames that follow each other, as a `pyarrow.Table`.
 
         Units, the manual's names and those of enumerations are metadata of its fields:
@@ -141,11 +238,22 @@ class Message:
 
         return _columns.decode_table(cls, frames, physical)
 
+    def __replace__(self: _lazy.M, **changes: _lazy.Any) -> _lazy.M:
+        return type(self)(**{**self._own(), **changes})
+
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return self.as_dict() == other.as_dict()
+        return self._own() == other._own()
 
     def __repr__(self) -> str:
-        values = (f"{name}={value!r}" for name, value in self.as_dict().items())
+        values = (f"{name}={value!r}" for name, value in self._own().items())
         return f"{type(self).__name__}({', '.join(values)})"
+
+
+def view(message: Message, attribute: str, kind: type[_lazy.T]) -> _lazy.T:
+    """The value of a view, of the frame that the message makes. Raises `RangeError`."""
+    from ._codec import seen
+
+    value: _lazy.T = seen(message, attribute, kind)
+    return value

@@ -3,16 +3,9 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
-from functools import cache
-from typing import Any, TypeVar
 
-from ._base import Buffer, FieldInfo, Message
-from ._enumeration import OpenEnum, is_signed
+from . import _lazy
 from ._errors import LengthError, RangeError
-
-_E = TypeVar("_E", bound=OpenEnum)
-new = object.__new__
 
 REFUSED = (
     struct.error,
@@ -30,38 +23,38 @@ def signed(value: int, bits: int) -> int:
     return value - (1 << bits) if value >> (bits - 1) else value
 
 
-@cache
-def bit_table(*parts: tuple[int, int, Any]) -> tuple[Any, ...]:
-    """The values of the fields of a byte, for each of its 256 values.
+def bit_table(parts: tuple[tuple[int, _lazy.FieldInfo], ...]) -> tuple[_lazy.Any, ...]:
+    """The values of the fields of a byte, each from its bit ``shift`` up, for each of its 256 values.
 
-    A part is shift, width and kind: `bool`, `int`, `signed` or an enumeration. One
-    part gives a table of values, several a table of tuples.
+    One field gives a table of values, several a table of tuples.
     """
     columns = []
-    for shift, bits, kind in parts:
-        if kind is signed:
-            values = [signed(value, bits) for value in range(1 << bits)]
-        elif issubclass(kind, OpenEnum) and is_signed(kind):
-            values = [kind(signed(value, bits)) for value in range(1 << bits)]
-        else:
-            values = [kind(value) for value in range(1 << bits)]
-        mask = (1 << bits) - 1
+    for shift, info in parts:
+        mask = (1 << info.bits) - 1
+        values: list[_lazy.Any] = [_value(info, bits) for bits in range(mask + 1)]
         columns.append([values[byte >> shift & mask] for byte in range(256)])
     return tuple(columns[0]) if len(columns) == 1 else tuple(zip(*columns))
 
 
-class Inverse(dict[Any, int]):
+def _value(info: _lazy.FieldInfo, bits: int) -> _lazy.Any:
+    number = signed(bits, info.bits) if info.signed else bits
+    if info.enum is not None:
+        return info.enum(number)
+    return bool(bits) if info.type == "bool" else number
+
+
+class Inverse(dict[object, int]):
     """The byte that the values of a `bit_table` stand for, reserved bits 0.
 
     It is filled when it is first used.
     """
 
-    def __init__(self, table: tuple[Any, ...]) -> None:
+    def __init__(self, table: tuple[_lazy.Any, ...]) -> None:
         super().__init__()
         self._table = table
         self._is_filled = False
 
-    def __missing__(self, values: Any) -> int:
+    def __missing__(self, values: _lazy.Any) -> int:
         if self._is_filled:
             raise KeyError(values)
         self.update({self._table[byte]: byte for byte in range(255, -1, -1)})
@@ -69,20 +62,15 @@ class Inverse(dict[Any, int]):
         return self[values]
 
 
-class Members(dict[int, _E]):
+class Members(dict[int, "_lazy.OpenEnum"]):
     """The members of an enumeration by value."""
 
-    def __init__(self, enum: type[_E]) -> None:
+    def __init__(self, enum: type[_lazy.OpenEnum]) -> None:
         super().__init__((member.value, member) for member in enum)
         self._enum = enum
 
-    def __missing__(self, value: int) -> _E:
+    def __missing__(self, value: int) -> _lazy.OpenEnum:
         return self._enum(value)
-
-
-def unnamed(enum: type[_E], value: int) -> _E:
-    """The member of a value that the manual does not name."""
-    return enum(value)
 
 
 def unsigned_bits(value: int, bits: int) -> int:
@@ -99,7 +87,13 @@ def signed_bits(value: int, bits: int) -> int:
     return value & ((1 << bits) - 1)
 
 
-def sized(value: Buffer, size: int) -> bytes:
+def counted(values: _lazy.Any, count: int) -> None:
+    """Raises `ValueError` unless there are so many values."""
+    if len(values) != count:
+        raise ValueError
+
+
+def sized(value: _lazy.Buffer, size: int) -> bytes:
     """``value``, if it has that many bytes."""
     data = memoryview(value).tobytes()
     if len(data) != size:
@@ -107,7 +101,7 @@ def sized(value: Buffer, size: int) -> bytes:
     return data
 
 
-def text(value: Buffer) -> str:
+def text(value: _lazy.Buffer) -> str:
     """What stands before the first NUL; U+FFFD for each byte that is not ASCII."""
     said = bytes(value).split(b"\0", 1)[0]
     return said.decode("ascii", "replace")
@@ -127,75 +121,60 @@ def text_bytes(value: str, field: str, size: int) -> bytes:
     return value.encode("ascii").ljust(size, b"\0")
 
 
-def raw_value(
-    value: float, field: str, scale: tuple[int, int, int], low: int, high: int
-) -> int:
-    """The raw value whose physical value is nearest; of two, the even one.
-
-    The physical value is ``(raw * p + c) / q``. ``value`` is taken exactly: a float,
-    an integer, or anything else that has ``as_integer_ratio``. Raises `RangeError`.
-    """
-    p, c, q = scale
-    try:
-        over, under = value.as_integer_ratio()
-    except (ArithmeticError, AttributeError, TypeError, ValueError):
-        raise RangeError(field, _limits(scale, low, high), value) from None
-    over, under = over * q - c * under, under * p
-    if under < 0:
-        over, under = -over, -under
-    raw, rest = divmod(over, under)
-    if 2 * rest > under or (2 * rest == under and raw % 2):
-        raw += 1
-    if not low <= raw <= high:
-        raise RangeError(field, _limits(scale, low, high), value)
-    return raw
-
-
-def _limits(scale: tuple[int, int, int], low: int, high: int) -> str:
-    p, c, q = scale
-    least, most = sorted(((low * p + c) / q, (high * p + c) / q))
-    return f"{least!r} to {most!r}"
-
-
-def length_error(message: type[Message], data: Buffer) -> LengthError:
+def length_error(message: type[_lazy.Message], data: _lazy.Buffer) -> LengthError:
     """What to raise for a frame that does not have the length of the message."""
     return LengthError(message.NAME, message.LENGTH, memoryview(data).nbytes)
 
 
-def range_error(message: Message) -> RangeError:
+def range_error(message: _lazy.Message) -> RangeError:
     """What to raise for a message that has a value that does not fit."""
     for info in message.FIELDS:
-        value = getattr(message, info.attribute, None)
-        allowed, fits = _FITS[info.type](info, value)
-        if not fits:
-            return RangeError(info.attribute, allowed, value)
+        value: _lazy.Any = getattr(message, info.attribute, None)
+        if info.elements and not _has_elements(info, value):
+            return RangeError(info.attribute, f"{info.elements} values", value)
+        for one, each in zip(info.parts, value if info.elements else (value,)):
+            allowed, fits = _FITS[info.type](one, each)
+            if not fits:
+                return RangeError(one.attribute, allowed, each)
     return RangeError("a field", "a value of its type", None)
 
 
-def raw_range(info: FieldInfo) -> tuple[int, int]:
-    """Smallest and largest raw value of a field that holds integers."""
-    if info.signed:
-        return -(1 << (info.bits - 1)), (1 << (info.bits - 1)) - 1
-    return 0, (1 << info.bits) - 1
+def _has_elements(info: _lazy.FieldInfo, value: _lazy.Any) -> bool:
+    return hasattr(value, "__getitem__") and len(value) == info.elements
 
 
-def _fits_integer(info: FieldInfo, value: Any) -> tuple[str, bool]:
-    low, high = raw_range(info)
+def seen(message: _lazy.Message, attribute: str, kind: _lazy.Any) -> _lazy.Any:
+    """The value of a view as ``kind`` has it. Raises `RangeError`."""
+    from ._floats import float32, float64
+    from ._layout import pieces
+
+    frame = message.to_bytes()
+    info = next(one for one in message.VIEWS if one.attribute == attribute)
+    value = 0
+    for piece in pieces(info, type(message)):
+        value |= (frame[piece.byte] >> piece.shift & (1 << piece.bits) - 1) << piece.at
+    if kind is float:
+        return float32(value) if info.bits == 32 else float64(value)
+    return kind(signed(value, info.bits) if info.signed else value)
+
+
+def _fits_integer(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
+    low, high = info.raw_range
     return f"integers from {low} to {high}", _is_within(value, low, high)
 
 
-def _fits_bool(info: FieldInfo, value: Any) -> tuple[str, bool]:
+def _fits_bool(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
     return "True or False", _is_within(value, 0, 1)
 
 
-def _is_within(value: Any, low: int, high: int) -> bool:
+def _is_within(value: _lazy.Any, low: int, high: int) -> bool:
     try:
         return bool(low <= value.__index__() <= high)
     except (AttributeError, TypeError):
         return False
 
 
-def _fits_float(info: FieldInfo, value: Any) -> tuple[str, bool]:
+def _fits_float(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
     try:
         struct.pack("<f" if info.bits == 32 else "<d", value)
     except REFUSED:
@@ -203,7 +182,7 @@ def _fits_float(info: FieldInfo, value: Any) -> tuple[str, bool]:
     return "", True
 
 
-def _fits_bytes(info: FieldInfo, value: Any) -> tuple[str, bool]:
+def _fits_bytes(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
     try:
         fits = memoryview(value).nbytes == info.bits // 8
     except TypeError:
@@ -211,7 +190,7 @@ def _fits_bytes(info: FieldInfo, value: Any) -> tuple[str, bool]:
     return f"{info.bits // 8} bytes", fits
 
 
-_FITS: dict[str, Callable[[FieldInfo, Any], tuple[str, bool]]] = {
+_FITS: dict[str, _lazy.Callable[[_lazy.FieldInfo, _lazy.Any], tuple[str, bool]]] = {
     "uint": _fits_integer,
     "int": _fits_integer,
     "enum": _fits_integer,

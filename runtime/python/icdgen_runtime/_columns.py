@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from importlib import import_module
 from typing import Any, NamedTuple
 
-from ._base import Buffer, FieldInfo, Message
-from ._codec import raw_range, text
+from ._base import Message
+from ._codec import text
+from ._dicts import OCTETS
 from ._errors import LengthError
+from ._fields import FieldInfo
+from ._hints import Buffer
+from ._layout import Piece, byte_order, pieces
 
-OCTETS = ("bytes", "text")  # types whose raw values are bytes
 _EXACT = 1 << 53  # integers below this are exact as 64-bit floats
 
 
@@ -22,13 +24,18 @@ def decode_many(
     numpy: Any = import_module("numpy")
     decoder = _Decoder(numpy, message, frames)
     columns = {}
-    for info in message.FIELDS:
-        column = decoder.column(info)
+    for info in (*message.FIELDS, *message.VIEWS):
+        if info.elements:
+            found = [decoder.column(one) for one in info.parts]
+            column = numpy.stack(found, axis=1)
+        else:
+            column = decoder.column(info)
         if physical and info.type == "text":
             texts = [text(row) for row in column]
             columns[info.physical] = numpy.array(texts, dtype=str)
         elif physical and info.physical:
-            columns[info.physical] = _physical(numpy, info, column)
+            values = _physical(numpy, info, column.ravel())
+            columns[info.physical] = values.reshape(column.shape)
         else:
             columns[info.attribute] = column
     return columns
@@ -40,12 +47,15 @@ def decode_table(message: type[Message], frames: Buffer, physical: bool) -> Any:
     pyarrow: Any = import_module("pyarrow")
     columns = decode_many(message, frames, physical)
     fields, arrays = [], []
-    for info, (name, column) in zip(message.FIELDS, columns.items()):
+    for info, (name, column) in zip((*message.FIELDS, *message.VIEWS), columns.items()):
         column = numpy.ascontiguousarray(column)
         if info.type in OCTETS and column.ndim == 2:
             kind = pyarrow.binary(info.bits // 8)
             buffers = [None, pyarrow.py_buffer(column)]
             array = pyarrow.Array.from_buffers(kind, len(column), buffers)
+        elif info.elements:
+            values = pyarrow.array(column.ravel())
+            array = pyarrow.FixedSizeListArray.from_arrays(values, info.elements)
         else:
             array = pyarrow.array(column)
         fields.append(pyarrow.field(name, array.type, metadata=_metadata(info)))
@@ -72,7 +82,7 @@ def _metadata(info: FieldInfo) -> dict[str, str]:
 def _physical(numpy: Any, info: FieldInfo, raw: Any) -> Any:
     """Correctly rounded: all but the division is exact, or Python's integers do it."""
     p, c, q = info.scale
-    low, high = raw_range(info)
+    low, high = info.raw_range
     bounds = [p, c, q, low, high, low * p, high * p, low * p + c, high * p + c]
     if max(map(abs, bounds)) > _EXACT:
         values = ((value * p + c) / q for value in raw.tolist())
@@ -155,18 +165,17 @@ class _Decoder:
             return self.flags[info.attribute]
         if _is_whole(info):
             return self._whole(info)
-        pieces = list(_pieces(info, self.message))
-        if len(pieces) == 1:
-            return self._within(info, *pieces[0])
-        return self._across(info, pieces)
+        runs = pieces(info, self.message)
+        if len(runs) == 1:
+            return self._within(info, runs[0])
+        return self._across(info, runs)
 
     def _whole(self, info: FieldInfo) -> Any:
         start, size = info.at // 8, info.bits // 8
         if info.type in OCTETS:
             return self.rows[:, start : start + size]
         code = "i" if info.signed else "f" if info.type == "float" else "u"
-        is_big = (info.byte_order or self.message.BYTE_ORDER) == "big"
-        order = ">" if is_big else "<"
+        order = ">" if byte_order(info, self.message) == "big" else "<"
         kind = self.numpy.dtype(f"{order}{code}{size}")
         column = self._column(kind, start)
         return column if kind.isnative else column.astype(kind.newbyteorder("="))
@@ -182,8 +191,8 @@ class _Decoder:
     def _byte(self, byte: int) -> Any:
         return self.bytes[byte][: self.count]
 
-    def _within(self, info: FieldInfo, byte: int, shift: int, bits: int, _: int) -> Any:
-        column = self._byte(byte)
+    def _within(self, info: FieldInfo, piece: Piece) -> Any:
+        column, shift, bits = self._byte(piece.byte), piece.shift, piece.bits
         if info.signed:
             column = (column << (8 - shift - bits)).view(self.numpy.int8)
             return column >> (8 - bits)
@@ -191,12 +200,12 @@ class _Decoder:
             return (column >> shift) & ((1 << bits) - 1)
         return column >> shift
 
-    def _across(self, info: FieldInfo, pieces: list[tuple[int, int, int, int]]) -> Any:
+    def _across(self, info: FieldInfo, runs: list[Piece]) -> Any:
         numpy = self.numpy
         total = numpy.zeros(self.count, numpy.uint64)
-        for byte, shift, bits, at in pieces:
-            part = (self._byte(byte) >> shift) & ((1 << bits) - 1)
-            total |= part.astype(numpy.uint64) << numpy.uint64(at)
+        for one in runs:
+            part = (self._byte(one.byte) >> one.shift) & ((1 << one.bits) - 1)
+            total |= part.astype(numpy.uint64) << numpy.uint64(one.at)
         size = next(size for size in (8, 16, 32, 64) if size >= info.bits)
         if info.type == "float":
             return total.astype(f"u{size // 8}").view(f"f{size // 8}")
@@ -226,14 +235,16 @@ def _plan(message: type[Message]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in message.FIELDS:
+    for info in (
+        one for field in (*message.FIELDS, *message.VIEWS) for one in field.parts
+    ):
         if _is_whole(info):
             continue
-        for byte, shift, _, _ in _pieces(info, message):
-            needed.add(byte)
+        for piece in pieces(info, message):
+            needed.add(piece.byte)
             if info.type == "bool":
-                flags.setdefault(byte, []).append(shift)
-                names.setdefault(byte, []).append(info.attribute)
+                flags.setdefault(piece.byte, []).append(piece.shift)
+                names.setdefault(piece.byte, []).append(info.attribute)
     runs = []
     while needed:
         byte = min(needed)
@@ -248,21 +259,3 @@ def _is_whole(info: FieldInfo) -> bool:
     """Whether it is an array element as it stands."""
     is_wide = info.type in OCTETS or info.bits in (8, 16, 32, 64)
     return is_wide and info.at % 8 == 0
-
-
-def _pieces(
-    info: FieldInfo, message: type[Message]
-) -> Iterator[tuple[int, int, int, int]]:
-    """Byte, shift, width and place in the value of each run of bits."""
-    at, end = info.at, info.at + info.bits
-    below = 0
-    is_little = (info.byte_order or message.BYTE_ORDER) == "little"
-    is_lsb0 = (info.bit_order or message.BIT_ORDER) == "lsb0"
-    while at < end:
-        byte, first = divmod(at, 8)
-        bits = min(8 - first, end - at)
-        shift = first if is_lsb0 else 8 - first - bits
-        at += bits
-        weight = below if is_little else info.bits - below - bits
-        below += bits
-        yield byte, shift, bits, weight

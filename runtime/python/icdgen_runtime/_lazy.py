@@ -8,20 +8,46 @@ from importlib import import_module
 from . import _lazy  # noqa: PLW0406
 from ._errors import UnknownIdError
 
-__all__ = ["Any", "Buffer", "Iterator", "Message", "Messages", "attribute"]
+__all__ = [
+    "Any",
+    "Buffer",
+    "Callable",
+    "FieldInfo",
+    "Iterator",
+    "Literal",
+    "M",
+    "Mapping",
+    "Message",
+    "Messages",
+    "OpenEnum",
+    "Optional",
+    "T",
+    "attribute",
+]
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Any
+    from collections.abc import Callable, Iterator, Mapping
+    from typing import Any, Literal, Optional
 
-    from ._base import Buffer, Message
+    from ._base import Message
+    from ._enumeration import OpenEnum
+    from ._fields import FieldInfo
+    from ._hints import Buffer, M, T
 else:
     _NAMED = {
         "Any": "typing",
-        "Buffer": "._base",
+        "Buffer": "._hints",
+        "Callable": "collections.abc",
+        "FieldInfo": "._fields",
         "Iterator": "collections.abc",
+        "Literal": "typing",
+        "M": "._hints",
+        "Mapping": "collections.abc",
         "Message": "._base",
+        "OpenEnum": "._enumeration",
+        "Optional": "typing",
+        "T": "._hints",
     }
 
     def __getattr__(name):

@@ -40,8 +40,9 @@ def _message(message: Message) -> dict[str, Any]:
                 "type": field.type,
                 "bits": field.bits,
                 "scaled": field.scale is not None or field.type == "text",
+                "view": field.view,
             }
-            for field in message.fields
+            for field in (*message.owners, *message.views)
         ],
     }
 

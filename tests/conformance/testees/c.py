@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names
+from icdgen.backends.c.types import type_of
 from icdgen.backends.origin import origin
 from icdgen.describe import EnumDescription, FieldDescription, MessageDescription, NodeDescription, describe
 from icdgen.icd.model import Icd
@@ -29,13 +30,17 @@ class FieldRow(NamedTuple):
     """An entry of a message's table of fields. What a field does not have is empty."""
 
     type: str
+    name: str  # in the names of functions
     member: str
+    element: str  # the index of an element of an array, and a comma
     size: int
     name_of: str
     get: str
     set: str
     get_text: str
     set_text: str
+    view: str  # the function; its type is ``c_type``
+    c_type: str
     special: list[str]
     limits: list[Limit]
 
@@ -108,7 +113,7 @@ class _Rows:
 
     def all(self) -> dict[str, object]:
         node, upper = self.node, self.node.name.upper()
-        used = {field.enum: None for message in node.messages for field in message.fields if field.enum is not None}
+        used = {f.enum: None for message in node.messages for f in message.all_fields if f.enum is not None}
         dispatchers = [
             self.dispatcher("telecommand", [(m, m.telecommand_id_name) for m in node.telecommands]),
             self.dispatcher("telemetry", [(m, m.telemetry_id_name) for m in node.telemetry]),
@@ -135,7 +140,7 @@ class _Rows:
             length=names.constant(message, "length"),
             ids=[names.constant(message, id.name) for id in message.ids],
             misfit=message.is_narrow,
-            fields=[self.field(field) for field in message.fields],
+            fields=[self.field(field) for field in (*message.fields, *message.views)],
         )
 
     def field(self, one: FieldDescription) -> FieldRow:
@@ -143,13 +148,17 @@ class _Rows:
         macros = [(constant.key, names.constant(one.message, constant.name)) for constant in one.constants]
         return FieldRow(
             type="TESTEE_SIGNED" if field.signed else TYPES.get(field.type, "TESTEE_UNSIGNED"),
-            member=one.name,
+            name=one.name,
+            member=one.member,
+            element=f"{field.element.index}u, " if field.element else "",
             size=field.bits // 8 if field.is_bytes else one.storage.bits // 8,
             name_of=f"{self.node.name}_{names.stem(one.enum)}_testee_name" if one.enum is not None else "",
             get=f"{stem}_{one.physical_name}" if one.steps else "",
-            set=f"{stem}_set_{one.physical_name}" if one.steps else "",
+            set=f"{stem}_set_{one.physical_name}" if one.steps and not field.view else "",
             get_text=f"{stem}_{one.physical_name}" if one.is_text else "",
             set_text=f"{stem}_set_{one.physical_name}" if one.is_text else "",
+            view=f"{stem}_{one.name}" if field.view else "",
+            c_type=type_of(one) if field.view else "",
             special=[name for key, name in macros if key == "special"],
             limits=[Limit(key, name) for key, name in macros if key not in ("const", "special")],
         )

@@ -57,6 +57,7 @@ def _plans(icd: Icd) -> dict[str, object]:
         plan: dict = message_plan(message, declaring[message.node])
         for field, row in zip(message.fields, plan["fields"], strict=True):
             row |= {"enum": enum_plan(field.enum)} if field.enum else {}
+        plan["fields"].sort(key=lambda row: "view" in row)  # views come last
         plans.append(plan | {"ids": list(message.ids)})
     return {"messages": plans, "nodes": nodes}
 

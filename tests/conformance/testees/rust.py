@@ -41,7 +41,7 @@ class EnumEntry(NamedTuple):
 class FieldEntry(NamedTuple):
     """What the table of fields says."""
 
-    name: str
+    value: str
     scale: str
     text: str
     special: str
@@ -99,7 +99,7 @@ class NodeEntry:
 
     def _message(self, message: MessageDescription) -> MessageEntry:
         ids = ", ".join(f"Self::{id.name.upper()} as u32" for id in message.ids)
-        return MessageEntry(self._path(message), ids, [_field(field) for field in message.fields])
+        return MessageEntry(self._path(message), ids, [_field(field) for field in (*message.fields, *message.views)])
 
 
 def _field(field: FieldDescription) -> FieldEntry:
@@ -107,14 +107,21 @@ def _field(field: FieldDescription) -> FieldEntry:
     if field.is_text:
         text = f"Some(Text {{ get: Self::{field.physical_name}, set: Self::set_{field.physical_name} }})"
     if field.steps is not None:
-        scale = f"Some(Scale {{ get: Self::{field.physical_name}, set: Self::set_{field.physical_name} }})"
+        get, set = f"Self::{field.physical_name}", f"Self::set_{field.physical_name}"
+        if field.model.element:
+            index = field.model.element.index
+            get, set = f"|m| {get}(m, {index}).unwrap_or_default()", f"|m, value| {set}(m, {index}, value)"
+        set = "|_, _| Ok(())" if field.model.view else set
+        scale = f"Some(Scale {{ get: {get}, set: {set} }})"
     names = [(one.key, f"Self::{one.name.upper()}") for one in field.constants if one.key != "const"]
     if field.model.special:
         special = f"|| vec![{', '.join(f'i128::from({name})' for key, name in names if key == 'special')}]"
     if field.bounds:
         values = ", ".join(f'("{key}", {name} as f64)' for key, name in names if key != "special")
         limits = f"|| vec![{values}]"
-    return FieldEntry(field_name(field), scale, text, special, limits)
+    name = field_name(field)
+    value = f"View(|m| Box::new(m.{name}()))" if field.model.view else f"Member(|m| &mut m.{name})"
+    return FieldEntry(value, scale, text, special, limits)
 
 
 class RustTesteeBackend:

@@ -113,6 +113,26 @@ def fill_gap(icd, rng):
 
 
 @on_field(lambda f: is_plain(f) and f.bits > 1)
+def add_view(icd, rng, node, message, field):
+    if not is_free(message, "Seen"):
+        return None
+    new = replace(
+        field,
+        name="Seen",
+        identifier=None,
+        bits=field.bits - 1,
+        type="int",
+        unit=None,
+        scale=None,
+        formula="",
+        view=True,
+    )
+    new = replace(new, const=None, special=(), limits=None, enum=None, errata=())
+    edited = with_fields(icd, node, message, [*message.fields, new])
+    return done(edited, message.name, "DIF311")
+
+
+@on_field(lambda f: is_plain(f) and f.bits > 1)
 def narrow_field(icd, rng, node, message, field):
     edited = with_field(icd, node, message, field, replace(field, bits=field.bits - 1))
     return done(edited, message.name, "DIF110", may=("DIF307", "DIF308"))

@@ -11,7 +11,7 @@ from icdgen.backends.c import accessors, bits, constants, decoding, encoding, na
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
-from icdgen.backends.c.statement import call, define, head
+from icdgen.backends.c.statement import call, head
 from icdgen.backends.c.text import comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from icdgen.render import Renderer
 
 _SPELLING = (
-    byte_count, call, comment, define, described, head, literal, prose, names.constant, names.enumerator, names.stem,
-    text_comment, words,
+    byte_count, call, comment, described, head, literal, prose, names.constant, names.enumerator, names.stem,
+    sentence, text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}
 """What templates spell names and text with."""
@@ -63,6 +63,7 @@ class CBackend:
                 link = {**_link(node, links[node.name]), **shared}
                 yield folder / "link.h", render("link.h.j2", **link)
                 yield folder / "link.c", render("link.c.j2", **link)
+                yield folder / "client.h", render("client.h.j2", **_client(node, links[node.name]), **shared)
             values = {**_node(node), "id_type": f"uint{description.id_bits}_t"}
             yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", node=node, **values, **shared)
 
@@ -72,7 +73,7 @@ class CBackend:
 
 
 def _message(message: MessageDescription) -> dict[str, object]:
-    folders = sorted({field.enum.node.name for field in message.fields if field.enum is not None})
+    folders = sorted({field.enum.node.name for field in message.all_fields if field.enum is not None})
     enums = ("enums.h" if folder == message.node.name else f"../{folder}/enums.h" for folder in folders)
     about = message.comment
     return {
@@ -86,6 +87,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "excess": bits.excess,
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message),
+        "views": [accessors.view(field) for field in message.views],
         "whole_accessors": accessors.whole_accessors(message),
         "accessors": accessors.accessors(message),
     }
@@ -109,8 +111,24 @@ def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
         "node": node.name,
         "about": comment(["@file", f"{words(node.model.title)}: how its messages travel."]),
         "sizes": links.sizes(link),
-        "requested": [one for one in node.messages if one.model.telemetry_id is not None],
         "tables": links.tables(link),
+    }
+
+
+def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
+    buses = (
+        ("uart", link.facts.framing is not None),
+        ("i2c", link.facts.i2c_address is not None),
+        ("can", link.can is not None),
+    )
+    headers = sorted({*(f"../{name}.h" for name in node.model.includes), *(f"{one.name}.h" for one in node.messages)})
+    return {
+        "node": node.name,
+        "about": comment(["@file", f"{words(node.model.title)}: a client that takes its messages only."]),
+        "includes": ["link.h", *headers],
+        "buses": [bus for bus, is_known in buses if is_known],
+        "telecommands": [(one, one.telecommand_id_name) for one in node.telecommands],
+        "telemetry": [(one, one.telemetry_id_name) for one in node.telemetry],
     }
 
 
@@ -118,7 +136,7 @@ def _node(node: NodeDescription) -> dict[str, object]:
     headers = [f"{name}.h" for name in node.model.includes]
     headers += [f"{node.name}/enums.h"] if node.enums else []
     headers += [f"{node.name}/{message.name}.h" for message in node.messages]
-    headers += [f"{node.name}/link.h"] if node.is_linked else []
+    headers += [f"{node.name}/link.h", f"{node.name}/client.h"] if node.is_linked else []
     return {
         "about": comment(["@file", f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),
         "includes": ["icdgen.h", *headers],

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from icdgen.backends.c import physical
+from icdgen.backends.c import decoding, physical
+from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import call
+from icdgen.backends.c.text import described
+from icdgen.backends.c.types import type_of
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.comments import physical_comment, physical_name, words
 from icdgen.describe.wholes import part_of_unit
@@ -15,7 +18,10 @@ ELEMENT = "element"
 
 
 class Accessor(NamedTuple):
-    """A getter and a setter of a physical value; ``test`` holds for values that the setter refuses by itself."""
+    """A getter and a setter of a physical value; ``test`` holds for values that the setter refuses by itself.
+
+    Of a view there is no setter, and ``assignment`` is empty.
+    """
 
     end: str  # of the names
     type: str
@@ -30,7 +36,25 @@ class Accessor(NamedTuple):
 
 def accessors(message: MessageDescription) -> list[Accessor]:
     """In double precision."""
-    return [_double(field) for field in message.members if field.steps is not None]
+    return [_double(field) for field in message.all_members if field.steps is not None]
+
+
+class View(NamedTuple):
+    """A getter of a raw value that lies on bits of other members."""
+
+    name: str
+    type: str
+    about: str
+    statement: str  # gives ``value`` its value, from ``buffer``
+
+
+_MADE = "Read from the frame that the message makes: 0 if it makes none, as a raw value does not fit its field."
+
+
+def view(field: FieldDescription) -> View:
+    """The getter of a view."""
+    about = field.comment._replace(rest=(*field.comment.rest, _MADE) if field.message.is_narrow else field.comment.rest)
+    return View(field.name, type_of(field), described(about), decoding.view(field))
 
 
 def _double(field: FieldDescription) -> Accessor:
@@ -42,11 +66,16 @@ def _double(field: FieldDescription) -> Accessor:
         type="double",
         about=physical_comment(field.model, field.steps),
         what=physical_name(field.model),
-        expression=scaled.getter.format(raw=_member(field)),
-        assignment=call(f"return {function}", (f"&{_member(field)}", *arguments)),
+        expression=scaled.getter.format(raw=_raw(field)),
+        assignment="" if field.model.view else call(f"return {function}", (f"&{_member(field)}", *arguments)),
         declared=tuple(physical.wide_scale(field.steps)) if field.steps.is_wide else (),
         elements=field.count,
     )
+
+
+def _raw(field: FieldDescription) -> str:
+    """The raw value of a field of ``message``."""
+    return f"{stem(field.message)}_{field.name}(message)" if field.model.view else _member(field)
 
 
 def _member(field: FieldDescription) -> str:
@@ -55,7 +84,7 @@ def _member(field: FieldDescription) -> str:
 
 def whole_accessors(message: MessageDescription) -> list[Accessor]:
     """In whole thousandths or millionths of the unit."""
-    wholes = ((field, physical.scaled(field).whole) for field in message.members if field.steps is not None)
+    wholes = ((field, physical.scaled(field).whole) for field in message.all_members if field.steps is not None)
     return [_whole(field, whole) for field, whole in wholes if whole is not None]
 
 
@@ -73,8 +102,8 @@ def _whole(field: FieldDescription, whole: physical.Whole) -> Accessor:
         type=whole.type,
         about=f"{what}, exact: {whole.low} to {whole.high}.",
         what=what,
-        expression=whole.getter.format(raw=_member(field)),
-        assignment=f"{_member(field)} = {whole.setter};",
+        expression=whole.getter.format(raw=_raw(field)),
+        assignment="" if field.model.view else f"{_member(field)} = {whole.setter};",
         test=" || ".join(f"({test})" for test in tests) if len(tests) > 1 else "".join(tests),
         elements=field.count,
     )

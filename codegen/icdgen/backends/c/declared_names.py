@@ -15,6 +15,7 @@ FILES = "C header files"
 _STATUS = ("LENGTH", "RANGE", "UNKNOWN_ID", "UNSUPPORTED", "CHECKSUM", "BUSY")
 _SUPPORT = ("ICDGEN_SHARED", "icd_status_t", "ICD_OK", *(f"ICD_ERROR_{end}" for end in _STATUS))
 _SIZES = ("LONGEST", "CAN_SLOT_BYTES", "CLIENT_BYTES", "LOG_BYTES", "BLOCK_BYTES", "BLOCK_BITMAP_BYTES")
+_BUSES = ("uart", "i2c", "can")
 
 
 def declared_names(description: Description) -> Iterator[Identifier]:
@@ -30,7 +31,7 @@ def declared_names(description: Description) -> Iterator[Identifier]:
         if node.is_linked:
             yield from _link(node)
         for message in node.messages:
-            yield from _message(message, node.is_linked)
+            yield from _message(message)
 
 
 def _node(node: NodeDescription) -> Iterator[Identifier]:
@@ -56,29 +57,34 @@ def _node(node: NodeDescription) -> Iterator[Identifier]:
 
 def _link(node: NodeDescription) -> Iterator[Identifier]:
     owner, source = f"the link of node `{node.name}`", node.model.source
-    for end in ("h", "c"):
-        yield Identifier(FILES, f"{node.name}/link.{end}", owner, source)
-    yield Identifier(FILE, f"{node.name}_link", owner, source)
-    for end in (*_SIZES, "NODE", "LINK_H", "LINK_C"):
+    for file in ("link.h", "link.c", "client.h"):
+        yield Identifier(FILES, f"{node.name}/{file}", owner, source)
+    for end in ("link", "client_t", *(f"client_{bus}" for bus in _BUSES)):
+        yield Identifier(FILE, f"{node.name}_{end}", owner, source)
+    for verb, messages in (("send", node.telecommands), ("request", node.telemetry), ("receive", node.telemetry)):
+        for one in messages:
+            yield one.identifier(FILE, f"{node.name}_{verb}_{one.name}")
+    for end in (*_SIZES, "NODE", "LINK_H", "LINK_C", "CLIENT_H"):
         yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source)
 
 
-def _message(message: MessageDescription, linked: bool) -> Iterator[Identifier]:
+def _message(message: MessageDescription) -> Iterator[Identifier]:
     stem = names.stem(message)
     yield message.identifier(FILES, f"{message.node.name}/{message.name}.h")
-    telemetry = ("telemetry",) if linked and message.model.telemetry_id is not None else ()
-    for end in ("h", "length", *(id.name for id in message.ids), *telemetry):
+    for end in ("h", "length", *(id.name for id in message.ids)):
         yield message.identifier(FILE, names.constant(message, end))
     for end in ("t", "init", "decode", "encode", *(("misfit",) if message.is_narrow else ())):
         yield message.identifier(FILE, f"{stem}_{end}")
     members = f"members of {stem}_t"
-    for field in message.members:
-        yield field.identifier(members, field.name)
+    for field in message.all_members:
+        is_view = field.model.view
+        yield field.identifier(FILE, f"{stem}_{field.name}") if is_view else field.identifier(members, field.name)
         for one in field.constants:
             yield field.identifier(FILE, names.constant(message, one.name))
         for end in _physical_names(field) if field.has_physical else ():
             yield field.identifier(FILE, f"{stem}_{end}")
-            yield field.identifier(FILE, f"{stem}_set_{end}")
+            if not is_view:
+                yield field.identifier(FILE, f"{stem}_set_{end}")
 
 
 def _physical_names(field: FieldDescription) -> tuple[str, ...]:

@@ -33,21 +33,30 @@ def _group(group: Flags | Row, message: MessageDescription) -> str:
     return call(f"ICDGEN_READ_{group.macro}", (*target, value, f"{len(names)}u", names[0], names[-1]))
 
 
+def view(field: FieldDescription) -> str:
+    """The statement that reads a view."""
+    return _number(field, "value")
+
+
 def _one(field: FieldDescription) -> str:
     one = field.model
     if one.is_bytes:
         return f"(void)memcpy(message->{field.name}, &buffer[{one.at // 8}], {one.bits // 8}u);"
+    return _number(field, f"message->{field.member}")
+
+
+def _number(field: FieldDescription, target: str) -> str:
     read = bits.read(field)
-    line = _assigned(field, read.whole)
+    line = _assigned(field, target, read.whole)
     if len(STEP) + len(line) <= WIDTH or len(read.terms) == 1:
         return line
-    local = f"bits_{one.at}"
+    local = f"bits_{field.model.at}"
     first, *others = read.terms
     joined = [f"uint{read.bits}_t {local} = {first};", *(f"{local} |= {term};" for term in others)]
-    return f"\n{STEP}".join([*joined, _assigned(field, read.value.format(bits=local))])
+    return f"\n{STEP}".join([*joined, _assigned(field, target, read.value.format(bits=local))])
 
 
-def _assigned(field: FieldDescription, value: str) -> str:
+def _assigned(field: FieldDescription, target: str, value: str) -> str:
     if field.model.type == "float":
-        return call(f"icdgen_set_f{field.model.bits}", (f"&message->{field.member}", value))
-    return f"message->{field.member} = {value};"
+        return call(f"icdgen_set_f{field.model.bits}", (f"&{target}", value))
+    return f"{target} = {value};"

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from icdgen.backends.c import names, physical
 from icdgen.backends.c.accessors import whole_name
 from icdgen.backends.c.text import literal, plain
+from icdgen.backends.c.types import type_of
 from icdgen.backends.lines import in_rows
 from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
@@ -38,10 +39,14 @@ class FieldRow(NamedTuple):
 
     field: FieldDescription
     stem: str
+    tables: str  # of the names of its tables: elements of an array have the same
+    has_tables: bool
+    element: str  # the index of an element of an array, and a comma
     size: int  # bytes of the member
     packed: int  # bytes in a vector
     type: str
     fresh: str
+    view: str  # the type of its getter, where it is one
     unfit: list[str]
     whole: Accessors | None
     scaled: Accessors | None
@@ -113,7 +118,7 @@ class _Rows:
         kept = bytes(message.model.length)
         for row in vectors.rows:  # reserved bits are those that no vector keeps
             kept = bytes(a | b for a, b in zip(kept, row.encoded, strict=True))
-        fields = [self.field(field, vectors) for field in message.fields]
+        fields = [self.field(field, vectors) for field in message.all_fields]
         size = message.model.length + sum(field.packed for field in fields)
         doubles = (f"UINT64_C(0x{double})" for row in vectors.rows for double in row.doubles.values())
         return MessageRow(
@@ -140,18 +145,23 @@ class _Rows:
 
     def field(self, one: FieldDescription, vectors: MessageVectors) -> FieldRow:
         field, storage = one.model, one.storage
-        is_bytes = field.is_bytes
+        is_bytes, element = field.is_bytes, field.element
+        stem = f"{names.stem(one.message)}_selftest"
         unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
         return FieldRow(
             field=one,
-            stem=f"{names.stem(one.message)}_selftest_{one.name}",
+            stem=f"{stem}_{one.name}",
+            tables=f"{stem}_{one.name if element is None else f'{one.declared}_0'}",
+            has_tables=element is None or element.index == 0,
+            element="" if element is None else f"{element.index}u, ",
             size=field.bits // 8 if is_bytes else storage.bits // 8,
             packed=(field.bits + 7) // 8,
             type=f"ICDGEN_SELFTEST_{'SIGNED' if field.signed else TYPES.get(field.type, 'UNSIGNED')}",
-            fresh=_unsigned(one.fresh),
+            fresh="0u" if is_bytes else _unsigned(_number(vectors.default[field.name])),
+            view=type_of(one) if field.view else "",
             unfit=list(map(_unsigned, unfit)),
-            whole=_whole(one),
-            scaled=_scaled(one, vectors.settings[field.name]) if field.scale else None,
+            whole=None if field.view else _whole(one),
+            scaled=_scaled(one, vectors.settings.get(field.name)) if field.scale else None,
             text=_texts(one, vectors.settings[field.name]) if one.is_text else None,
         )
 
@@ -175,8 +185,16 @@ def _text(text: str | None) -> str:
     return "NULL" if text is None else literal(text)
 
 
-def _scaled(field: FieldDescription, settings: Settings) -> Accessors:
-    lines = []
+def _number(value: int | bytes) -> int:
+    assert isinstance(value, int)
+    return value
+
+
+def _scaled(field: FieldDescription, settings: Settings | None) -> Accessors:
+    """Setting doubles; of a view, which has no ``settings``, there is the getter alone."""
+    lines: list[str] = []
+    if settings is None:
+        return _accessors(field, field.physical_name, "double", lines)
     for bits, raw in [*settings, *((bits, None) for bits in NEVER)]:
         assert not isinstance(raw, bytes)
         lines.append(f"{{UINT64_C(0x{bits}), {_unsigned(raw or 0)}, {'true' if raw is None else 'false'}}},")

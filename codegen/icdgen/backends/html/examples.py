@@ -45,7 +45,7 @@ def frames(message: Message, node: Node) -> list[tuple[str, str]]:
 def _encoded(message: Message, node: Node, raw: dict[str, int | bytes]) -> bytes:
     """What the codec makes of raw values that fit, sooner."""
     frame = bytearray(message.length)
-    for field in message.fields:
+    for field in message.owners:
         value = raw[field.name]
         if isinstance(value, bytes):
             frame[field.at // 8 : field.at // 8 + len(value)] = value

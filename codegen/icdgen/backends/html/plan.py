@@ -34,6 +34,8 @@ def _field(field: Field, node: Node) -> dict[str, object]:
     plan: dict[str, object] = {"name": field.name, "type": field.type, "bits": field.bits}
     if field.signed:
         plan["signed"] = True
+    if field.view:
+        plan["view"] = True
     if field.is_bytes:
         plan["type"] = "bytes"
         if field.type == "text":

@@ -77,11 +77,10 @@ def _functions() -> dict[str, object]:
     """What templates spell names and text with."""
     from icdgen.backends.python import fields, nodes, text
     from icdgen.describe.comments import physical_comment, text_comment
-    from icdgen.describe.numbers import byte_count
 
     found = (
-        byte_count, fields.annotation, fields.info, fields.physical, fields.set_physical, fields.set_text, fields.text,
-        names.class_name, physical_comment, nodes.mapping, text.docstring, text.documented, text.literal, text.paragraph,
+        fields.annotation, fields.declaration, fields.exact, fields.physical, fields.scaled, fields.view_info, fields.whole,
+        fields.whole_comment, names.class_name, physical_comment, nodes.mapping, text.docstring, text.documented, text.literal,
         text.prose, text_comment,
     )  # fmt: skip
     return {function.__name__: function for function in found}

@@ -1,89 +1,127 @@
-"""Fields: annotations, what they are at first, what is told of them, properties of physical values."""
+"""Fields: annotations, and the calls that declare them."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 
-from icdgen.backends.lines import bracketed, exploded
+from icdgen.backends.lines import STEP, exploded
 from icdgen.backends.python.names import class_name
-from icdgen.backends.python.text import WIDTH, literal
-from icdgen.describe import FieldDescription
+from icdgen.backends.python.text import literal
+from icdgen.describe import FieldDescription, wholes
+from icdgen.describe.comments import words
+from icdgen.describe.wholes import Whole
 
+_WIDTH = 120  # columns of a declaration
 _KEYWORDS = {"min": "minimum", "max": "maximum"}
 
 
 def annotation(field: FieldDescription) -> str:
     """The type of the attribute."""
+    return f"tuple[{_annotation(field)}, ...]" if field.count else _annotation(field)
+
+
+def _annotation(field: FieldDescription) -> str:
     if field.is_text:
         return "bytes"
     return class_name(field.enum) if field.enum else "int" if field.model.type == "uint" else field.model.type
 
 
-def default(field: FieldDescription, constants: dict[str, str]) -> str:
-    """What a field is at first; constants of the module are kept in ``constants``: the call that makes it, and its name."""
+def default(field: FieldDescription) -> str:
+    """The raw value in a new message."""
+    return f"({_default(field)},) * {field.count}" if field.count else _default(field)
+
+
+def _default(field: FieldDescription) -> str:
     kind, value = field.model.type, field.fresh
     if field.model.is_bytes:
-        return _constant(constants, f"bytes({field.model.bits // 8})")
+        return f"bytes({field.model.bits // 8})"
     if field.enum is None:
         return str(bool(value)) if kind == "bool" else "0.0" if kind == "float" else str(value)
     name, member = class_name(field.enum), field.enum.member(value)
-    return f"{name}.{member.name.upper()}" if member else _constant(constants, f"_codec.unnamed({name}, {value})")
+    return f"{name}.{member.name.upper()}" if member else f"{name}({value})"
 
 
-def _constant(constants: dict[str, str], call: str) -> str:
-    return constants.setdefault(call, f"_DEFAULT_{len(constants)}")
-
-
-def info(field: FieldDescription) -> str:
-    """``_base.FieldInfo(...)``"""
-    one = field.model
-    items = [f'"{field.name}"', literal(one.name), str(one.at), str(one.bits), f'"{one.type}"']
+def _told(field: FieldDescription) -> list[str]:
+    """What is told of a field by keywords."""
+    one, items = field.model, []
+    if field.count:
+        items.append(f"elements={field.count}")
     if one.unit:
         items.append(f"unit={literal(one.unit.symbol)}")
-    if field.is_text:
-        items.append(f'physical="{field.physical_name}"')
-    if field.steps is not None:
-        items += [f'physical="{field.physical_name}"', f"scale={field.steps.terms}"]
-    if field.enum is not None:
-        items.append(f"enum={class_name(field.enum)}")
     if one.const is not None:
         items.append(f"const={one.const}")
     if one.special:
         pairs = [f"({special.value}, {literal(special.meaning)})" for special in one.special]
-        items.append(exploded("special=(", pairs, ")", " " * 12))
+        items.append(exploded("special=(", pairs, ")", " " * 8))
     items += (f'{key}="{value}"' for key in ("byte_order", "bit_order") if (value := getattr(one, key)))
     items += (f"{_KEYWORDS.get(bound.key, bound.key)}={_number(bound.value)}" for bound in field.bounds)
-    return bracketed("_base.FieldInfo(", items, ")", WIDTH, " " * 8)
+    return items
+
+
+def declaration(field: FieldDescription) -> str:
+    """``control_mode: ConModeSelect = _base.field(...)``: its place, its first value, and what is told of it."""
+    one = field.model
+    items = [literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', f"default={default(field)}", *_told(field)]
+    return _statement(field.name, annotation(field), "field", items)
+
+
+def view_info(field: FieldDescription) -> str:
+    """``_base.FieldInfo(...)`` of a view."""
+    one = field.model
+    items = [f'"{field.name}"', literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', *_told(field)]
+    if field.steps is not None:
+        items += [f'physical="{field.physical_name}"', f"scale={field.steps.terms}"]
+    if field.enum is not None:
+        items.append(f"enum={class_name(field.enum)}")
+    return f"_base.FieldInfo({', '.join(items)})"
+
+
+def physical(field: FieldDescription) -> str:
+    """The physical value of a view."""
+    assert field.steps is not None
+    p, c, q = field.steps.terms
+    return f"(self.{field.name} * {p} {'-' if c < 0 else '+'} {abs(c)}) / {q}"
+
+
+def scaled(field: FieldDescription) -> str:
+    """``estimated_roll_angle_deg: float = _base.scaled(...)``: the steps of the physical value, and the first one."""
+    assert field.steps is not None
+    first = repr(field.steps.double(field.fresh))
+    first, note = (f"({first},) * {field.count}", "tuple[float, ...]") if field.count else (first, "float")
+    items = [*map(str, field.steps.terms), f"default={first}"]
+    return _statement(field.physical_name, note, "scaled", items)
+
+
+def whole(field: FieldDescription) -> Whole | None:
+    """The same in whole thousandths or millionths of the unit, where these are exact."""
+    return None if field.steps is None else wholes.whole(field.steps)
+
+
+def whole_name(field: FieldDescription, found: Whole) -> str:
+    """``estimated_roll_angle_mdeg``"""
+    return f"{field.declared}_{wholes.part_of_unit(field.model, found.per)[0]}"
+
+
+def exact(field: FieldDescription, found: Whole) -> str:
+    """``estimated_roll_angle_mdeg: int = _base.whole(...)``"""
+    note = "tuple[int, ...]" if field.count else "int"
+    return _statement(whole_name(field, found), note, "whole", [str(found.factor), str(found.offset)])
+
+
+def whole_comment(field: FieldDescription, found: Whole) -> str:
+    """What it is, and its range."""
+    unit = words(wholes.part_of_unit(field.model, found.per)[1])
+    return f"{words(field.model.name)} in {unit}, exact: {found.low} to {found.high}."
+
+
+def _statement(name: str, note: str, call: str, items: list[str]) -> str:
+    """``name: note = _base.call(items)`` on a line; what is too long for that goes on lines of its own."""
+    head, inner = f"{name}: {note} = _base.{call}(", ", ".join(items)
+    if "\n" in inner or len(inner) + 8 > _WIDTH:
+        return exploded(head, items, ")", STEP)
+    line = f"{head}{inner})"
+    return line if len(line) + len(STEP) <= _WIDTH else f"{head}\n{STEP * 2}{inner}\n{STEP})"
 
 
 def _number(exact: Fraction) -> str:
     return str(exact.numerator) if exact.denominator == 1 else repr(exact.numerator / exact.denominator)
-
-
-def physical(field: FieldDescription) -> str:
-    """The physical value of a field with a scale."""
-    assert field.steps is not None
-    p, c, q = field.steps.terms
-    value = f"self.{field.name}" if p == 1 else f"self.{field.name} * {p}"
-    if c:
-        value = f"{value} {'+' if c > 0 else '-'} {abs(c)}"
-    return f"float({value})" if q == 1 else f"({value}) / {q}" if c else f"{value} / {q}"
-
-
-def text(field: FieldDescription) -> str:
-    """The text of a field of characters."""
-    return f"_codec.text(self.{field.name})"
-
-
-def set_text(field: FieldDescription) -> str:
-    """The statement that sets it."""
-    arguments = ["value", f'"{field.name}"', str(field.size)]
-    return bracketed(f"self.{field.name} = _codec.text_bytes(", arguments, ")", WIDTH, " " * 8)
-
-
-def set_physical(field: FieldDescription) -> str:
-    """The statement that sets it."""
-    assert field.steps is not None
-    ends = str(field.model.raw_min), str(field.model.raw_max)
-    arguments = ["value", f'"{field.name}"', str(field.steps.terms), *ends]
-    return bracketed(f"self.{field.name} = _codec.raw_value(", arguments, ")", WIDTH, " " * 8)

@@ -2,35 +2,14 @@
 
 from __future__ import annotations
 
-from icdgen.backends.lines import bracketed
 from icdgen.backends.python import names
-from icdgen.backends.python.fields import default
-from icdgen.backends.python.packing import Packer
-from icdgen.backends.python.text import WIDTH
 from icdgen.describe import EnumDescription, MessageDescription
-
-STEP = "    "
 
 
 def values(message: MessageDescription) -> dict[str, object]:
-    """How bytes become attributes and back, what attributes are at first, and what is imported for it."""
-    packing = Packer(message).packing()
-    constants: dict[str, str] = {}
-    defaults = {field.name: default(field, constants) for field in message.fields}
-    head = "def from_bytes(", ["cls", "data: _base.Buffer"], f") -> {names.class_name(message)}:"
-    return {
-        "imports": _imports(message, packing.floats),
-        "tables": [*packing.tables, *(f"{name} = {call}" for call, name in constants.items())],
-        "defaults": defaults,
-        "from_bytes": bracketed(*head, WIDTH, STEP),
-        "packing": packing,
-    }
-
-
-def _imports(message: MessageDescription, floats: bool) -> list[str]:
-    enums = {field.enum for field in message.fields if field.enum is not None}
-    lines = [_import(enum, message) for enum in enums]
-    return [f"from ... import _base, _codec{', _floats' if floats else ''}", *sorted(lines)]
+    """What is imported for it: its enumerations."""
+    enums = {field.enum for field in message.all_fields if field.enum is not None}
+    return {"imports": sorted(_import(enum, message) for enum in enums)}
 
 
 def _import(enum: EnumDescription, message: MessageDescription) -> str:

@@ -13,9 +13,10 @@ RESERVED = frozenset(keyword.kwlist)
 # What generated classes declare or refer to besides the names of the fields.
 IN_MESSAGE = {
     **dict.fromkeys(
-        ("as_dict", "decode_many", "decode_table", "from_bytes", "from_physical", "to_bytes"), "the method `{}`"
+        ("as_dict", "decode_many", "decode_table", "from_bytes", "from_dict", "from_json"), "the method `{}`"
     ),
-    **dict.fromkeys(("bool", "bytes", "classmethod", "float", "int", "property"), "Python's `{}`"),
+    **dict.fromkeys(("from_physical", "to_bytes", "to_json"), "the method `{}`"),
+    **dict.fromkeys(("bool", "bytes", "float", "int", "str", "tuple"), "Python's `{}`"),
     **dict.fromkeys(("self", "cls"), "the parameter `{}`"),
 }
 IN_PACKAGE = dict.fromkeys(("getattr", "globals", "import_module", "sorted"), "the function `{}`")

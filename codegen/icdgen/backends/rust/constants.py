@@ -10,7 +10,7 @@ from icdgen.describe.constants import Constant
 
 def of_fields(message: MessageDescription) -> list[tuple[Constant, str, str]]:
     """The constants of a message's fields, their types and values."""
-    return [(one, *_value(field, one)) for field in message.members for one in field.constants]
+    return [(one, *_value(field, one)) for field in message.all_members for one in field.constants]
 
 
 def _value(field: FieldDescription, one: Constant) -> tuple[str, str]:

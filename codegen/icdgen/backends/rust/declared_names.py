@@ -63,17 +63,20 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     fields, methods, associated = f"fields of {where}", f"methods of {where}", f"constants of {where}"
     yield from _ours(methods, _METHODS)
     yield from _ours(associated, _CONSTANTS)
-    for field in message.members:
-        yield field.identifier(fields, names.field_name(field))
+    for field in message.all_members:
+        is_view = field.model.view
+        yield field.identifier(methods if is_view else fields, names.field_name(field))
         if field.has_physical:
             yield field.identifier(methods, field.physical_name)
-            yield field.identifier(methods, f"set_{field.physical_name}")
+            if not is_view:
+                yield field.identifier(methods, f"set_{field.physical_name}")
         if field.steps is not None:
             yield field.identifier(methods, single_name(field))
         known = whole_of(field)
         if known is not None:
             name = whole_name(field, known[0])
             yield field.identifier(methods, name)
-            yield field.identifier(methods, f"set_{name}")
+            if not is_view:
+                yield field.identifier(methods, f"set_{name}")
         for constant in field.constants:
             yield field.identifier(associated, constant.name.upper())

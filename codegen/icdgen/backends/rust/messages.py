@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from icdgen.backends.rust import bits, constants
 from icdgen.backends.rust.names import field_name
+from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
 from icdgen.describe import FieldDescription, MessageDescription
 
@@ -14,11 +15,12 @@ def values(message: MessageDescription) -> dict[str, object]:
     """What is read, written, derived and imported."""
     fields, tables = message.members, bits.flag_tables(message)
     readings = [bits.reading(field, tables) for field in fields]
+    views = [(field, bits.reading(field, set(), depth=2)) for field in message.views]
     writings = [line for field in fields for line in bits.writing(field)]
     has_default = all(field.fresh == 0 and not _is_long(field) for field in fields)
     derived = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
     narrow = [field for field in fields if field.is_narrow]
-    scales = [field for field in fields if field.steps is not None or field.is_narrow]
+    scales = [field for field in message.all_members if has_constant(field)]
     has_text = any(field.is_text for field in fields)
     has_elements = any(field.count and field.steps is not None for field in fields)
     is_usual = any(field.steps is None or not field.steps.is_wide for field in scales)
@@ -31,12 +33,12 @@ def values(message: MessageDescription) -> dict[str, object]:
         "put_array": any("put_array(" in line for line in writings),
         "put_element": has_elements,
         "put_words": any("put_words(" in line for line in writings),
-        "take": any("take!(" in reading for reading in readings),
+        "take": any("take!(" in reading for reading in (*readings, *(reading for _, reading in views))),
         "text": has_text,
         "text_array": has_text,
         "words": any("words(" in reading for reading in readings),
         "Big": message.has_wide_steps,
-        "Coded": any(field.enum for field in fields),
+        "Coded": any(field.enum for field in message.all_fields),
         "Error": True,
         "Scale": is_usual,
         "Wide": message.has_wide_steps,
@@ -46,13 +48,14 @@ def values(message: MessageDescription) -> dict[str, object]:
         "constants": constants.of_fields(message),
         "tables": sorted(tables),
         "literal": _literal(fields, readings),
+        "views": views,
         "writings": writings,
         "fits": [line for field in narrow for line in bits.fitting(field)],
         "scales": scales,
         "default": None if has_default else _literal(fields, [_fresh(field) for field in fields]),
         "derives": ", ".join(derived + ([] if message.has_floats else ["Eq", "Hash"])),
         "imports": f"{{{', '.join(names)}}}" if len(names) > 1 else names[0],
-        "uses_enums": any(field.enum is not None and field.enum.node is message.node for field in fields),
+        "uses_enums": any(field.enum is not None and field.enum.node is message.node for field in message.all_fields),
     }
 
 

@@ -13,9 +13,17 @@ def big_parts(value: int) -> list[str]:
     return [mask(part, 64) if part > 9 else str(part) for part in wide_parts(value, 64)]
 
 
+def has_constant(field: FieldDescription) -> bool:
+    """Whether code needs the constant of its scale: to set it, to see whether it fits, or to compute its physical value."""
+    if not field.model.view:
+        return field.steps is not None or field.is_narrow
+    start = f"{field.declared.upper()}."
+    return field.steps is not None and (physical(field).startswith(start) or single(field).startswith(start))
+
+
 def raw_value(field: FieldDescription) -> str:
-    """The raw value; of an array, what stands in ``raw``."""
-    return "raw" if field.count else f"self.{field_name(field)}"
+    """The raw value: the member, or what the method of a view gives; of an array, what stands in ``raw``."""
+    return "raw" if field.count else f"self.{field_name(field)}{'()' if field.model.view else ''}"
 
 
 def physical(field: FieldDescription) -> str:

@@ -10,6 +10,7 @@ from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind, orders
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.where import Places
 from icdgen.diff.wording import bits, read_as, some, span, type_of
+from icdgen.icd.model import Field
 from icdgen.icd.rules.wording import count, listing, quote
 from icdgen.icd.wire_ids import size
 
@@ -60,7 +61,7 @@ def _cause(move: Move) -> str:
     if move.lost:
         said.append(f"{some([p.old.name for p in move.lost])} taken out at bit {move.lost[0].old.at:,}")
     for one in move.resized:
-        said.append(f"{quote(one.new.name)} has {count(one.new.bits, 'bit')}, had {one.old.bits}")
+        said.append(f"{quote(one.new.name)} has {count(one.new.width, 'bit')}, had {one.old.width}")
     if move.reserved:
         said.append(f"{bits(abs(move.by))} without a field {'inserted' if move.by > 0 else 'taken out'}")
     return listing(said)
@@ -72,6 +73,19 @@ def width_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     if old.bits != new.bits:
         text = f"{quote(new.name)} has {count(new.bits, 'bit')}, had {old.bits}"
         yield Found(text, ("bits",), f"{old.bits} bits", f"{new.bits} bits")
+
+
+@rule("DIF118", "field")
+def count_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old, pair.new
+    if old.count != new.count:
+        was, now = (count(one.count, "element") if one.count else "one value" for one in (old, new))
+        text = f"{quote(new.name)} is {_an_array(new)}, was {_an_array(old)}"
+        yield Found(text, ("count", "bits"), was, now)
+
+
+def _an_array(field: Field) -> str:
+    return f"an array of {count(field.count, 'element')}" if field.count else "one value"
 
 
 @rule("DIF111", "field")
@@ -95,7 +109,7 @@ def order_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
     fields, messages = [], set()
     for message in pair.messages:
         for one in message.kept:
-            if one.old.at == one.new.at and one.old.bits == one.new.bits and not one.same_bits:
+            if one.old.at == one.new.at and one.old.width == one.new.width and not one.same_bits:
                 fields.append(one.new.name)
                 messages.add(message.new.name)
     for key in ("byte_order", "bit_order"):
@@ -109,7 +123,7 @@ def order_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
 @rule("DIF117", "field")
 def own_order_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     old, new, nodes = pair.old, pair.new, (pair.owner.old_node, pair.owner.new_node)
-    if pair.same_bits or (old.at, old.bits) != (new.at, new.bits):
+    if pair.same_bits or (old.at, old.bits, old.count) != (new.at, new.bits, new.count):
         return
     for key in ("byte_order", "bit_order"):
         own = getattr(old, key), getattr(new, key)
@@ -134,14 +148,14 @@ def id_width_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
 
 @rule("DIF113", "field", when="gone")
 def field_removed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    if not ctx.is_said_of_the_message(pair):
+    if not pair.old.view and not ctx.is_said_of_the_message(pair):
         text = f"{quote(pair.old.name)} is gone: {span(pair.old)} no longer carry it"
         yield Found(text, ("at",), f"{span(pair.old)}, {type_of(pair.old)}", "")
 
 
 @rule("DIF114", "field", when="come", severity="note", addition=True)
 def field_added(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    if not ctx.is_said_of_the_message(pair):
+    if not pair.new.view and not ctx.is_said_of_the_message(pair):
         where = "bits that were reserved" if free_before(pair) else "bits that carried something else"
         text = f"{quote(pair.new.name)} is new, in {where}: {span(pair.new)}"
         yield Found(text, ("at",), "", f"{span(pair.new)}, {type_of(pair.new)}")

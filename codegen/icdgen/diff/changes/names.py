@@ -94,14 +94,14 @@ def names_gone(pair: Pair, ctx: Context) -> Iterator[Found]:
 @rule("DIF307", "field")
 def retyped(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    if (old.type, old.bits) == (new.type, new.bits) and ctx.match.same_enum(old.enum, new.enum):
+    if (old.type, old.bits, old.count) == (new.type, new.bits, new.count) and ctx.match.same_enum(old.enum, new.enum):
         return
     changed = ctx.generated.retyped(pair)
     if changed:
         said = tuple(f"{TITLES.get(language, language)}: `{a}` -> `{b}`" for language, a, b in changed)
         words = listing([TITLES.get(language, language) for language, _, _ in changed])
         text = f"{quote(new.name)} has another type in {words}"
-        yield Found(text, ("type", "bits", "enum"), changed[0][1], changed[0][2], said)
+        yield Found(text, ("type", "bits", "enum", "count"), changed[0][1], changed[0][2], said)
 
 
 @rule("DIF308", "field")
@@ -153,3 +153,11 @@ def names_come(pair: Pair, ctx: Context) -> Iterator[Found]:
     come: Renamed = [(None, name) for name in names]
     text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} has generated names now"
     yield Found(text, ("name", "identifier"), "", pair.new.name, lines(come))
+
+
+@rule("DIF312", "field")
+def became_a_view(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    was, now = ("a view" if one.view else "a field with bits of its own" for one in (pair.old, pair.new))
+    if was != now:
+        details = ("What is encoded follows from the fields that have the bits.",) if pair.new.view else ()
+        yield Found(f"{quote(pair.new.name)} is {now}, was {was}", ("view", "at"), was, now, details)

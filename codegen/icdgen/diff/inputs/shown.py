@@ -160,7 +160,7 @@ class _Reader:
         return self.row(
             model.Message,
             item,
-            fields=tuple(self.field(field) for field in item["fields"]),
+            fields=tuple(element for field in item["fields"] for element in self.field(field).elements),
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
             contains=tuple(model.Part(part["message"], part["offset"]) for part in item.get("contains", ())),
@@ -179,6 +179,7 @@ class _Reader:
             scale=_scale(item),
             special=tuple(model.Special(**_as_it_is(model.Special, one)) for one in item.get("special", ())),
             limits=model.Limits(**limits) if "limits" in item else None,
+            view=item.get("view", False),
         )
 
 

@@ -96,7 +96,7 @@ def draw(pair: MessagePair, changes: list[Change]) -> Drawing | None:
 def _kind(one: FieldPair, changes: list[Change]) -> str:
     if not one.both:
         return "gone" if one.after is None else "come"
-    if kind(one.old) != kind(one.new) or one.old.bits != one.new.bits:
+    if kind(one.old) != kind(one.new) or one.old.width != one.new.width:
         return "wire"
     if not one.same_bits:
         return "moved"
@@ -114,7 +114,7 @@ def _frame(rows: list[Row], size: int, y: int) -> None:
 def _boxes(rows: list[Row], one: Field, y: int, kind: str, key: str) -> dict[int, Box]:
     """A box for each row that the field reaches into."""
     found = {}
-    end = one.at + one.bits
+    end = one.at + one.width
     for number in range(one.at // BITS, min(-(-end // BITS), len(rows))):
         start = max(one.at, number * BITS)
         width = (min(end, (number + 1) * BITS) - start) * CELL

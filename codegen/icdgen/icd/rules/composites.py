@@ -51,10 +51,10 @@ def part_matches(ctx: Context) -> Iterator[Fault]:
         frame = next((m for m in ctx.messages_of(node) if m.name == part.message), None)
         if frame is None or frame is message or part.at + frame.length * 8 > message.length * 8:
             continue  # a finding already
-        wanted = {part.at + f.at: f for f in frame.fields}
+        wanted = {part.at + f.at: f for f in frame.owners}
         start, end = part.at, part.at + frame.length * 8
         told = set()
-        for field in message.fields:
+        for field in message.owners:
             if field.at + field.bits <= start or field.at >= end:
                 continue
             twin = wanted.pop(field.at, None)

@@ -20,13 +20,14 @@ WIDTHS = {
     "float": (frozenset({32, 64}), "32 or 64 bits"),
 }
 Overlap = tuple[Fault, tuple[int, int]]  # and the two fields as they were read
+_OVERLAPPING = "correct `at` or `bits`; if it reads the same bits in another way: `view: true`"
 _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 
 @rule("ICD020")
 def past_the_end(ctx: Context) -> Iterator[Fault]:
     for field, message, _ in ctx.fields:
-        end, room = field.at + field.bits * (field.count or 1), message.length * 8
+        end, room = field.at + field.width, message.length * 8
         if end > room:
             source = field.source
             key = "at" if field.at >= room else "count" if field.count else "bits"
@@ -52,11 +53,11 @@ def overlap(ctx: Context) -> Iterator[Fault]:
 
 def _overlaps(ctx: Context) -> Iterator[Overlap]:
     for message, node in ctx.messages:
-        if any(field.bit_order not in ("", node.bit_order) for field in message.fields):
+        fields = message.owners
+        if any(field.bit_order not in ("", node.bit_order) for field in fields):
             yield from _overlaps_among(message, node)
             continue
         reached, widest = -1, -1
-        fields = message.fields
         for index in sorted(range(len(fields)), key=lambda i: fields[i].at):
             field = fields[index]
             if field.at < reached:
@@ -68,18 +69,22 @@ def _overlaps(ctx: Context) -> Iterator[Overlap]:
 def _overlaps_among(message: Message, node: Node) -> Iterator[Overlap]:
     """`_overlaps` where fields count bits in different ways."""
     seen: list[tuple[Field, int]] = []
-    for field in message.fields:
+    for field in message.owners:
         if field.at + field.bits > message.length * 8:
             continue  # a finding already
         mask = _mask(field, node)
         clash = next(((one, shared) for one, other in seen if (shared := mask & other)), None)
         if clash is not None:
             first, shared = clash
-            low = (shared & -shared).bit_length() - 1
-            size = shared.bit_count()
-            bits = f"{count(size, 'bit')} of byte {low // 8}" if shared >> low // 8 * 8 < 256 else count(size, "bit")
-            yield _overlap(first, field, bits)
+            yield _overlap(first, field, _bits_of(shared))
         seen.append((field, mask))
+
+
+def _bits_of(mask: int) -> str:
+    """``2 bits of byte 1``"""
+    low = (mask & -mask).bit_length() - 1
+    size = count(mask.bit_count(), "bit")
+    return f"{size} of byte {low // 8}" if mask >> low // 8 * 8 < 256 else size
 
 
 def _mask(field: Field, node: Node) -> int:
@@ -94,7 +99,7 @@ def _overlap(first: Field, second: Field, bits: str = "") -> Overlap:
     start, end = max(first.at, second.at), min(first.at + first.bits, second.at + second.bits)
     bits = bits or (f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}")
     other = f"{quote(first.name)} ({line_of(first.source.place, place)})"
-    fault = Fault(second.source, place, f"{quote(second.name)} overlaps {other} in {bits}", "correct `at` or `bits`")
+    fault = Fault(second.source, place, f"{quote(second.name)} overlaps {other} in {bits}", _OVERLAPPING)
     return fault, (id(first.source), id(second.source))
 
 
@@ -132,6 +137,39 @@ def order_of_nothing(ctx: Context) -> Iterator[Fault]:
                 what = f"{_ORDERLY[field.type]} stand as they come" if field.is_bytes else "it is one bit"
                 message = f"{quote(field.name)} is `{field.type}`: {what}, so there is no `{key}`"
                 yield Fault(field.source, field.source.at(key), message, f"remove `{key}`")
+
+
+@rule("ICD028")
+def array_of_numbers(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.having["count"]:
+        if field.is_bytes:
+            what = "an array of them is one field of bytes" if field.type == "bytes" else "write a field for each text"
+            message = f"{quote(field.name)} is `{field.type}`, and the elements of an array are numbers"
+            yield Fault(field.source, field.source.at("count"), message, what)
+
+
+@rule("ICD029")
+def view_of_fields(ctx: Context) -> Iterator[Fault]:
+    for field, message, node in ctx.having["view"]:
+        if not field.view or "bitfields" in field.source or field.at + field.bits > message.length * 8:
+            continue  # no view, or a finding already
+        source, name = field.source, quote(field.name)
+        if field.count:
+            help = "write a view for each element that is asked for"
+            yield Fault(source, source.at("view"), f"{name} is an array: a view reads one number", help)
+            continue
+        if field.is_bytes:
+            yield Fault(source, source.at("view"), f"{name} is `{field.type}`: a view reads a number", "remove `view`")
+            continue
+        if field.const is not None:
+            help = "remove it: the fields that have the bits may have one"
+            yield Fault(source, source.at("const"), f"{name} is a view, which is never set, so it has no `const`", help)
+        free = _mask(field, node)
+        for owner in message.owners:
+            free &= ~_mask(owner, node)
+        if free:
+            help = "describe what has them as a field, or correct `at` or `bits`"
+            yield Fault(source, source.at("at"), f"{name} is a view of {_bits_of(free)} that no field has", help)
 
 
 def covered_bytes(message: Message) -> int:

@@ -84,8 +84,11 @@ def _named_fields(ctx: Context, node: Node) -> Iterator[_Named]:
 def named_fields_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for owner, key, message in _named_fields(ctx, node):
-            known = {field.name for field in message.fields}
-            if owner[key] not in known:
+            known = {field.name for field in message.owners}
+            if any(field.name == owner[key] for field in message.views):
+                text = f"{quote(owner[key])} of {quote(message.name)} is a view, and links read what has bits"
+                yield Fault(owner, owner.at(key), text, "name the field that has the bits")
+            elif owner[key] not in known:
                 text = f"{quote(message.name)} has no field {quote(owner[key])}"
                 yield Fault(owner, owner.at(key), text, _verbatim(owner[key], known))
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple, Optional
 
-from .._base import Buffer, Message
+from .._base import Message
 from .._errors import IcdError, LengthError, UnknownIdError
+from .._hints import Buffer
 from .can import CanEvent, CanJoiner, CanMessage, CanPacket, can_split
 from .errors import BusyError, need
 from .events import (

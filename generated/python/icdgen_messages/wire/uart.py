@@ -7,8 +7,8 @@ import re
 from functools import cache
 from typing import Literal, NamedTuple, Optional
 
-from .._base import Buffer
 from .._errors import LengthError
+from .._hints import Buffer
 from .errors import need
 from .link import Framing, Link
 

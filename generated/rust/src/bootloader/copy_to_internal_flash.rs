@@ -3,7 +3,7 @@
 //! Copy Program to Internal Flash, a message of node `bootloader`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Copy Program to Internal Flash: telecommand 103, 2 bytes. Table 67.
 ///
@@ -18,7 +18,8 @@ use crate::support::{Coded, Error};
 pub struct CopyToInternalFlash {
     /// Source Program Index: bits 0 to 7.
     ///
-    /// Note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense.
+    /// Note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense. The source
+    /// may be the internal program itself or the bootloader. The result is not described.
     pub source_program_index: Coded<enums::ProgramsList>,
     /// Bootloader overwrite flag: bits 8 to 15, raw 0 to 255.
     ///
@@ -26,7 +27,9 @@ pub struct CopyToInternalFlash {
     ///
     /// 90 (0x5A): overwrite the boot segment.
     ///
-    /// Note BOOT-012 (likely): Bootloader overwrite flag is a magic number.
+    /// Note BOOT-012 (likely): Bootloader overwrite flag is a magic number. A field of 8 bits is
+    /// called a flag and acts at one value. Which value to send otherwise is not said; anything
+    /// else is assumed to leave the boot segment alone.
     pub overwrite: u8,
 }
 
@@ -77,12 +80,11 @@ impl CopyToInternalFlash {
     }
 }
 
-impl crate::wire::Telecommand for CopyToInternalFlash {
-    const NODE: &'static str = "bootloader";
-    const TELECOMMAND_ID: u8 = 103;
+message!(CopyToInternalFlash {
+    source_program_index: ("Source Program Index", 0, 8),
+    overwrite: ("Bootloader overwrite flag", 8, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for CopyToInternalFlash {
+    const TELECOMMAND_ID: u32 = 103;
 }

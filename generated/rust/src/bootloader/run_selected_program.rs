@@ -2,7 +2,7 @@
 
 //! Run Selected Program, a message of node `bootloader`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Run Selected Program: telecommand 101, 0 bytes. Table 64.
 ///
@@ -10,7 +10,9 @@ use crate::support::Error;
 ///
 /// The node restarts instead of acknowledging it.
 ///
-/// Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere.
+/// Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere. Its name
+/// refers to a selection, the text to the internal flash program. What it does to the boot status,
+/// and whether it is acknowledged before the program starts, is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -55,12 +57,9 @@ impl RunSelectedProgram {
     }
 }
 
-impl crate::wire::Telecommand for RunSelectedProgram {
-    const NODE: &'static str = "bootloader";
-    const TELECOMMAND_ID: u8 = 101;
+message!(RunSelectedProgram {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for RunSelectedProgram {
+    const TELECOMMAND_ID: u32 = 101;
 }

@@ -3,7 +3,7 @@
 //! Set Boot Index, a message of node `bootloader`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Set Boot Index: telecommand 100, 1 byte. Table 62.
 ///
@@ -15,7 +15,9 @@ use crate::support::{Coded, Error};
 pub struct SetBootIndex {
     /// Program Index: bits 0 to 7.
     ///
-    /// Note BOOT-007 (certain): Set Boot Index selects among one.
+    /// Note BOOT-007 (certain): Set Boot Index selects among one. The telecommand is to choose a
+    /// program, but its enumeration has one member and the text forbids others. Its use is a side
+    /// effect that the table does not mention: it sets the boot status back.
     pub program_index: Coded<enums::BootSetProgramsList>,
 }
 
@@ -62,12 +64,10 @@ impl SetBootIndex {
     }
 }
 
-impl crate::wire::Telecommand for SetBootIndex {
-    const NODE: &'static str = "bootloader";
-    const TELECOMMAND_ID: u8 = 100;
+message!(SetBootIndex {
+    program_index: ("Program Index", 0, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetBootIndex {
+    const TELECOMMAND_ID: u32 = 100;
 }

@@ -3,13 +3,14 @@
 //! Boot And Running Program Status, a message of node `common`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error, Scale};
+use crate::support::{message, put, take, Coded, Error, Scale};
 
 /// Boot And Running Program Status: telemetry 129, 6 bytes. Table 28.
 ///
 /// Causes of the last reset and reboot, and the running program.
 ///
-/// Note COM-062 (certain): Capitals of the boot status frame differ in the text.
+/// Note COM-062 (certain): Capitals of the boot status frame differ in the text. Boot And Running
+/// Program Status is Boot and Running Program Status in the text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,19 +20,23 @@ pub struct BootAndRunningProgramStatus {
     ///
     /// From a hardware register of the MCU.
     ///
-    /// Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
+    /// Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap. Both are described as the
+    /// reason of the last reset. That the first comes from a hardware register and the second from
+    /// the software can be inferred only; which one holds when they disagree is not said.
     pub cause_of_mcu_reset: Coded<enums::ResetCause>,
     /// Boot Cause: bits 4 to 7.
     ///
     /// Why the CubeComputer last rebooted.
     ///
-    /// Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
+    /// Note COM-059 (open): see Cause of MCU Reset.
     pub boot_cause: Coded<enums::BootCause>,
     /// Boot Counter: bits 8 to 23, raw 0 to 65535.
     ///
     /// How often the CubeComputer has booted.
     ///
-    /// Note COM-058 (certain): Reset Counter and Boot Counter are the same field.
+    /// Note COM-058 (certain): Reset Counter and Boot Counter are the same field. The text calls
+    /// the counter Reset Counter and, a few paragraphs later, Boot Counter; the table has Boot
+    /// Counter only. The text counts starts of the bootloader, the table boots of the CubeComputer.
     pub boot_counter: u16,
     /// Boot Program Index: bits 24 to 31.
     ///
@@ -39,11 +44,13 @@ pub struct BootAndRunningProgramStatus {
     pub boot_program_index: Coded<enums::BootProgramsList>,
     /// Firmware version (Major): bits 32 to 39, raw 0 to 255.
     ///
-    /// Note COM-061 (open): Firmware version stands in two frames.
+    /// Note COM-061 (open): Firmware version stands in two frames. Both frames hold major and minor
+    /// version in bytes. Whether frame 129 gives that of the running program or of the one to be
+    /// booted is not said.
     pub firmware_version_major: u8,
     /// Firmware version (Minor): bits 40 to 47, raw 0 to 255.
     ///
-    /// Note COM-061 (open): Firmware version stands in two frames.
+    /// Note COM-061 (open): see Firmware version (Major).
     pub firmware_version_minor: u8,
 }
 
@@ -102,30 +109,19 @@ impl BootAndRunningProgramStatus {
     }
 }
 
-const CAUSE_OF_MCU_RESET: Scale = Scale {
-    field: "Cause of MCU Reset",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CAUSE_OF_MCU_RESET: Scale = Scale::new("Cause of MCU Reset", (0, 15), (1, 0, 1));
 
-const BOOT_CAUSE: Scale = Scale {
-    field: "Boot Cause",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const BOOT_CAUSE: Scale = Scale::new("Boot Cause", (0, 15), (1, 0, 1));
 
-impl crate::wire::Telemetry for BootAndRunningProgramStatus {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 129;
+message!(BootAndRunningProgramStatus {
+    cause_of_mcu_reset: ("Cause of MCU Reset", 0, 4),
+    boot_cause: ("Boot Cause", 4, 4),
+    boot_counter: ("Boot Counter", 8, 16),
+    boot_program_index: ("Boot Program Index", 24, 8),
+    firmware_version_major: ("Firmware version (Major)", 32, 8),
+    firmware_version_minor: ("Firmware version (Minor)", 40, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for BootAndRunningProgramStatus {
+    const TELEMETRY_ID: u32 = 129;
 }

@@ -3,7 +3,7 @@
 //! Boot Index and Status, a message of node `common`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Boot Index and Status: telemetry 130, 2 bytes. Table 32.
 ///
@@ -15,7 +15,9 @@ use crate::support::{Coded, Error};
 pub struct BootIndexAndStatus {
     /// Program Index: bits 0 to 7.
     ///
-    /// Note COM-069 (open): Program Index of the boot status can be the bootloader.
+    /// Note COM-069 (open): Program Index of the boot status can be the bootloader. The frame shows
+    /// which program is selected to boot, with an enumeration that has the bootloader; only the
+    /// internal program can be selected.
     pub program_index: Coded<enums::BootProgramsList>,
     /// Boot Status: bits 8 to 15.
     pub boot_status: Coded<enums::BootStatus>,
@@ -66,12 +68,11 @@ impl BootIndexAndStatus {
     }
 }
 
-impl crate::wire::Telemetry for BootIndexAndStatus {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 130;
+message!(BootIndexAndStatus {
+    program_index: ("Program Index", 0, 8),
+    boot_status: ("Boot Status", 8, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for BootIndexAndStatus {
+    const TELEMETRY_ID: u32 = 130;
 }

@@ -2,7 +2,7 @@
 
 //! Current Unix Time, a message of node `common`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Current Unix Time: configuration, set by telecommand 2, got by telemetry 140, 6 bytes. Table 50.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -14,11 +14,14 @@ pub struct CurrentUnixTime {
     ///
     /// Since 1970-01-01 00:00.
     ///
-    /// Note COM-111 (open): Unix time: time zone and leap seconds are not given.
+    /// Note COM-111 (open): Unix time: time zone and leap seconds are not given. The epoch is
+    /// stated without UTC, and the offset against GPS time is not mentioned although GPS time is a
+    /// telemetry frame of its own.
     pub current_unix_time: u32,
     /// Milliseconds: bits 32 to 47, raw 0 to 65535, in ms.
     ///
-    /// Note COM-110 (open): Milliseconds: range is not given.
+    /// Note COM-110 (open): Milliseconds: range is not given. The field has 16 bits; values above
+    /// 999 are not excluded.
     pub milliseconds: u16,
 }
 
@@ -69,22 +72,15 @@ impl CurrentUnixTime {
     }
 }
 
-impl crate::wire::Telecommand for CurrentUnixTime {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 2;
+message!(CurrentUnixTime {
+    current_unix_time: ("Current Unix Time", 0, 32).unit("s"),
+    milliseconds: ("Milliseconds", 32, 16).unit("ms"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for CurrentUnixTime {
+    const TELECOMMAND_ID: u32 = 2;
 }
 
-impl crate::wire::Telemetry for CurrentUnixTime {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 140;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for CurrentUnixTime {
+    const TELEMETRY_ID: u32 = 140;
 }

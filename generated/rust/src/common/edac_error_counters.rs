@@ -2,7 +2,7 @@
 
 //! EDAC Error Counters, a message of node `common`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// EDAC Error Counters: telemetry 143, 6 bytes. Table 36.
 ///
@@ -20,13 +20,15 @@ pub struct EdacErrorCounters {
     ///
     /// Counted per byte.
     ///
-    /// Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been.
+    /// Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been. The frame is
+    /// said to count errors that were detected and corrected. It has counters for double and
+    /// multiple upsets in a byte, which such a code detects at best.
     pub double_sram_upsets: u16,
     /// Multiple SRAM upsets: bits 32 to 47, raw 0 to 65535.
     ///
     /// Counted per byte.
     ///
-    /// Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been.
+    /// Note COM-077 (likely): see Double SRAM upsets.
     pub multiple_sram_upsets: u16,
 }
 
@@ -77,12 +79,12 @@ impl EdacErrorCounters {
     }
 }
 
-impl crate::wire::Telemetry for EdacErrorCounters {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 143;
+message!(EdacErrorCounters {
+    single_sram_upsets: ("Single SRAM upsets", 0, 16),
+    double_sram_upsets: ("Double SRAM upsets", 16, 16),
+    multiple_sram_upsets: ("Multiple SRAM upsets", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for EdacErrorCounters {
+    const TELEMETRY_ID: u32 = 143;
 }

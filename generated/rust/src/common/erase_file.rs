@@ -3,7 +3,7 @@
 //! Erase File, a message of node `common`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Erase File: telecommand 108, 3 bytes. Table 15.
 ///
@@ -12,7 +12,9 @@ use crate::support::{Coded, Error};
 ///
 /// Dangerous: The file is lost; all files are with Erase All.
 ///
-/// Note COM-034 (open): Erase File: what the other fields mean with Erase All.
+/// Note COM-034 (open): Erase File: what the other fields mean with Erase All. With the flag set
+/// all files go; whether type and counter must still be valid, or limit the erasing to one type, is
+/// not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -22,7 +24,8 @@ pub struct EraseFile {
     pub file_type: Coded<enums::FileType>,
     /// File Counter: bits 8 to 15, raw 0 to 255.
     ///
-    /// Note COM-035 (open): File counter of 8 bits.
+    /// Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with
+    /// the next one is not said.
     pub file_counter: u8,
     /// Erase All: bit 16.
     ///
@@ -77,12 +80,12 @@ impl EraseFile {
     }
 }
 
-impl crate::wire::Telecommand for EraseFile {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 108;
+message!(EraseFile {
+    file_type: ("File Type", 0, 8),
+    file_counter: ("File Counter", 8, 8),
+    erase_all: ("Erase All", 16, 1),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for EraseFile {
+    const TELECOMMAND_ID: u32 = 108;
 }

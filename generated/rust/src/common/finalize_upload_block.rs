@@ -3,15 +3,19 @@
 //! Finalize Upload Block, a message of node `common`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error};
+use crate::support::{message, put, take, Coded, Error};
 
 /// Finalize Upload Block: telecommand 116, 7 bytes. Table 22.
 ///
 /// Commits the received block to its destination.
 ///
-/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only. The
+/// messages of the upload are in the list common to both programs, the procedure belongs to the
+/// bootloader. Whether the ACP answers them, refuses them, or uploads somewhere is not said.
 ///
-/// Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
+/// Note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text ends with
+/// the checksum test before the block is committed. The telecommand that commits it and the frame
+/// that reports it are never named; both stood in a figure at best.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -23,11 +27,12 @@ pub struct FinalizeUploadBlock {
     ///
     /// Where in the file the block belongs.
     ///
-    /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    /// Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant
+    /// throughout, but of the tables of messages only that of the program information says so.
     pub offset: u32,
     /// Block Length: bits 40 to 55, raw 0 to 65535, in byte.
     ///
-    /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    /// Erratum COM-039 (likely): see Offset.
     pub block_length: u16,
 }
 
@@ -78,12 +83,12 @@ impl FinalizeUploadBlock {
     }
 }
 
-impl crate::wire::Telecommand for FinalizeUploadBlock {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 116;
+message!(FinalizeUploadBlock {
+    destination: ("Destination", 0, 8),
+    offset: ("Offset", 8, 32).unit("byte"),
+    block_length: ("Block Length", 40, 16).unit("byte"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for FinalizeUploadBlock {
+    const TELECOMMAND_ID: u32 = 116;
 }

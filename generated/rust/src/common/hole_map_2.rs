@@ -2,19 +2,25 @@
 
 //! Hole Map 2, a message of node `common`.
 
-use crate::support::{array, put_array, Error};
+use crate::support::{array, message, put_array, Error};
 
 /// Hole Map 2: configuration, set by telecommand 121, got by telemetry 248, 16 bytes. Table 53.
 ///
 /// Packets 128 to 255 of a file block.
 ///
-/// Note COM-115 (certain): Hole maps are named for the upload and serve the download too.
+/// Note COM-115 (certain): Hole maps are named for the upload and serve the download too. All eight
+/// messages are described as file upload hole map. For a download the OBC sets them, for an upload
+/// it reads them. Whether both use one buffer is not said.
 ///
-/// Note COM-116 (open): Hole map: who clears it before a download.
+/// Note COM-116 (open): Hole map: who clears it before a download. Only Reset Upload Block is said
+/// to reset the map. Before a download it may hold what the last transfer left; the first burst
+/// ignores it, the second does not.
 ///
-/// Note COM-117 (likely): Hole map: bits beyond the last packet.
+/// Note COM-117 (likely): Hole map: bits beyond the last packet. The code treats every 0 among 1024
+/// bits as a packet missed, also those that a shorter block does not have.
 ///
-/// Note COM-124 (certain): The hole map is read with eight frames, one table is referred to.
+/// Note COM-124 (certain): The hole map is read with eight frames, one table is referred to. Frames
+/// 247 to 254 are said to be described by Table 52, which describes the first of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -72,22 +78,14 @@ impl HoleMap2 {
     }
 }
 
-impl crate::wire::Telecommand for HoleMap2 {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 121;
+message!(HoleMap2 {
+    hole_map: ("Hole Map", 0, 128),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for HoleMap2 {
+    const TELECOMMAND_ID: u32 = 121;
 }
 
-impl crate::wire::Telemetry for HoleMap2 {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 248;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for HoleMap2 {
+    const TELEMETRY_ID: u32 = 248;
 }

@@ -2,13 +2,16 @@
 
 //! Identification, a message of node `common`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Identification: telemetry 128, 8 bytes. Table 27.
 ///
 /// Tells which program is running. Requesting it from the bootloader keeps it from booting on.
 ///
-/// Note COM-054 (likely): The identification request stops the boot that it is to check.
+/// Note COM-054 (likely): The identification request stops the boot that it is to check. A request
+/// that reaches the bootloader keeps it from booting: asked within the first 5 s, or after a reset
+/// that nobody planned, it prevents the start. Section 7.1 does not say how the boot is resumed;
+/// Run Selected Program would do it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,7 +23,9 @@ pub struct Identification {
     pub node_type: u8,
     /// Interface version: bits 8 to 15, raw 0 to 255.
     ///
-    /// Erratum COM-055 (certain): Interface version should be 1.
+    /// Erratum COM-055 (certain): Interface version should be 1. The identification frame is said
+    /// to carry 1. The programs that it identifies carry 7 and 3, so the constant would refuse
+    /// every real answer.
     pub interface_version: u8,
     /// Firmware version (Major): bits 16 to 23, raw 0 to 255.
     pub firmware_version_major: u8,
@@ -30,15 +35,18 @@ pub struct Identification {
     ///
     /// Since the processor started.
     ///
-    /// Erratum COM-057 (certain): Runtime has its unit in words only.
+    /// Erratum COM-057 (certain): Runtime has its unit in words only. Seconds stand in name and
+    /// description, not as a unit of measure.
     ///
-    /// Note COM-056 (open): Runtime ends after 18 hours.
+    /// Note COM-056 (open): Runtime ends after 18 hours. Seconds since start-up have 16 bits and
+    /// reach 65535 s, 18 h 12 min. What follows is not said.
     pub runtime_seconds: u16,
     /// Runtime (milliseconds): bits 48 to 63, raw 0 to 65535, in ms.
     ///
     /// Beyond the whole seconds.
     ///
     /// Erratum COM-127 (certain): Milliseconds of the runtime have their unit in words only.
+    /// Milliseconds stand in name and description, not as a unit of measure.
     pub runtime_milliseconds: u16,
 }
 
@@ -95,12 +103,15 @@ impl Identification {
     }
 }
 
-impl crate::wire::Telemetry for Identification {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 128;
+message!(Identification {
+    node_type: ("Node type", 0, 8),
+    interface_version: ("Interface version", 8, 8),
+    firmware_version_major: ("Firmware version (Major)", 16, 8),
+    firmware_version_minor: ("Firmware version (Minor)", 24, 8),
+    runtime_seconds: ("Runtime (seconds)", 32, 16).unit("s"),
+    runtime_milliseconds: ("Runtime (milliseconds)", 48, 16).unit("ms"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Identification {
+    const TELEMETRY_ID: u32 = 128;
 }

@@ -2,17 +2,23 @@
 
 //! Initialize Upload Complete, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Initialize Upload Complete: telemetry 244, 1 byte. Table 44.
 ///
 /// Polled after Initiate File Upload.
 ///
-/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only. The
+/// messages of the upload are in the list common to both programs, the procedure belongs to the
+/// bootloader. Whether the ACP answers them, refuses them, or uploads somewhere is not said.
 ///
 /// Note COM-104 (certain): Upload is initiated, initialized and finalized under changing names.
+/// Initiate File Upload is followed by Initialize Upload Complete; Finalize Upload Block is
+/// described as finalizing the uploaded file block, and its frame Upload Block Complete as
+/// finalizing complete.
 ///
-/// Note COM-105 (open): Initialisation of an upload can fail silently.
+/// Note COM-105 (open): Initialisation of an upload can fail silently. The frame has a busy flag
+/// only; a failed erase of the flash shows nowhere until the checksum of a block is wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -22,7 +28,8 @@ pub struct InitializeUploadComplete {
     ///
     /// Still preparing, for instance erasing flash.
     ///
-    /// Note COM-103 (certain): Frames named complete report busy.
+    /// Note COM-103 (certain): Frames named complete report busy. Initialize Upload Complete and
+    /// Upload Block Complete hold a flag that is set while the operation is not complete.
     pub busy: bool,
 }
 
@@ -69,12 +76,10 @@ impl InitializeUploadComplete {
     }
 }
 
-impl crate::wire::Telemetry for InitializeUploadComplete {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 244;
+message!(InitializeUploadComplete {
+    busy: ("Busy", 0, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for InitializeUploadComplete {
+    const TELEMETRY_ID: u32 = 244;
 }

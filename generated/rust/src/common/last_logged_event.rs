@@ -2,13 +2,15 @@
 
 //! Last Logged Event, a message of node `common`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Last Logged Event: telemetry 141, 6 bytes. Table 34.
 ///
 /// The event at the log pointer, which Reset Log Pointer and Advance Log Pointer move.
 ///
-/// Note COM-073 (certain): Last Logged Event: wrong telecommands, and a bracket left open.
+/// Note COM-073 (certain): Last Logged Event: wrong telecommands, and a bracket left open. The
+/// pointer is said to be adjusted with telecommands 3 and 4. Reset Log Pointer is 4 and Advance Log
+/// Pointer 5; 3 sets the cache.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -16,15 +18,17 @@ use crate::support::{put, take, Error};
 pub struct LastLoggedEvent {
     /// Time of Event: bits 0 to 31, raw 0 to 4294967295.
     ///
-    /// Note COM-074 (open): Time of Event has no description.
+    /// Note COM-074 (open): Time of Event has no description. Neither unit nor epoch is given; Unix
+    /// time in seconds is a guess from the width.
     pub time_of_event: u32,
     /// Event ID: bits 32 to 39, raw 0 to 255.
     ///
-    /// Note COM-075 (open): Events are not listed.
+    /// Note COM-075 (open): Events are not listed. Event ID and parameter are numbers without a
+    /// key.
     pub event_id: u8,
     /// Event Parameter: bits 40 to 47, raw 0 to 255.
     ///
-    /// Note COM-075 (open): Events are not listed.
+    /// Note COM-075 (open): see Event ID.
     pub event_parameter: u8,
 }
 
@@ -75,12 +79,12 @@ impl LastLoggedEvent {
     }
 }
 
-impl crate::wire::Telemetry for LastLoggedEvent {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 141;
+message!(LastLoggedEvent {
+    time_of_event: ("Time of Event", 0, 32),
+    event_id: ("Event ID", 32, 8),
+    event_parameter: ("Event Parameter", 40, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for LastLoggedEvent {
+    const TELEMETRY_ID: u32 = 141;
 }

@@ -2,7 +2,7 @@
 
 //! Reset, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Reset: telecommand 1, 1 byte. Table 10.
 ///
@@ -11,7 +11,9 @@ use crate::support::Error;
 /// Dangerous: The program that runs is stopped, and what it has not saved is lost. The node
 /// restarts instead of acknowledging it.
 ///
-/// Note COM-028 (open): The Reset telecommand: acknowledged or not.
+/// Note COM-028 (open): The Reset telecommand: acknowledged or not. Every telecommand is
+/// acknowledged, but this one restarts the program that would do it. Whether the reply comes first
+/// is not said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -23,7 +25,10 @@ pub struct Reset {
     ///
     /// Always 90 (0x5A).
     ///
-    /// Note COM-029 (certain): One field, several spellings.
+    /// Note COM-029 (certain): One field, several spellings. The same things are written Magic
+    /// number and Magic Number, BlockLength and Block Length, File bytes and File Bytes, File
+    /// Counter, Counter and File Ctr, and Checksum with and without CRC16. Names are held as
+    /// printed.
     pub magic_number: u8,
 }
 
@@ -80,12 +85,10 @@ impl Default for Reset {
     }
 }
 
-impl crate::wire::Telecommand for Reset {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 1;
+message!(Reset {
+    magic_number: ("Magic number", 0, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for Reset {
+    const TELECOMMAND_ID: u32 = 1;
 }

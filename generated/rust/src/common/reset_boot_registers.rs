@@ -2,14 +2,15 @@
 
 //! Reset Boot Registers, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Reset Boot Registers: telecommand 6, 0 bytes. Table 13.
 ///
 /// Resets the boot counter, boot state and boot cause.
 ///
 /// Note COM-032 (likely): Reset Boot Registers: a Boot State that no frame has, and no values to
-/// reset to.
+/// reset to. The command is said to reset Boot Counter, Boot State and Boot Cause. There is no Boot
+/// State; Boot Status is probably meant. To which value status and cause are reset is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -54,12 +55,9 @@ impl ResetBootRegisters {
     }
 }
 
-impl crate::wire::Telecommand for ResetBootRegisters {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 6;
+message!(ResetBootRegisters {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for ResetBootRegisters {
+    const TELECOMMAND_ID: u32 = 6;
 }

@@ -2,15 +2,18 @@
 
 //! Reset Log Pointer, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Reset Log Pointer: telecommand 4, 0 bytes. Table 11.
 ///
 /// Resets the pointer at which Last Logged Event reads the event buffer.
 ///
-/// Note COM-030 (certain): Log pointer telecommands speak of a frame that is named otherwise.
+/// Note COM-030 (certain): Log pointer telecommands speak of a frame that is named otherwise. They
+/// move the pointer of LastLogEvent; the frame is called Last Logged Event.
 ///
-/// Note COM-031 (open): Log pointer: where it starts and which way it advances.
+/// Note COM-031 (open): Log pointer: where it starts and which way it advances. After a reset the
+/// pointer may stand at the oldest or at the newest event, and advancing may go either way. What is
+/// read past the end is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -55,12 +58,9 @@ impl ResetLogPointer {
     }
 }
 
-impl crate::wire::Telecommand for ResetLogPointer {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 4;
+message!(ResetLogPointer {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for ResetLogPointer {
+    const TELECOMMAND_ID: u32 = 4;
 }

@@ -2,13 +2,14 @@
 
 //! SD card format/erase progress, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// SD card format/erase progress: telemetry 234, 1 byte. Table 38.
 ///
 /// Whether the SD card is still being formatted or erased.
 ///
-/// Note COM-085 (open): Erase File: progress and failure.
+/// Note COM-085 (open): Erase File: progress and failure. Only Erase All can be followed. A single
+/// file, or an erase or format that fails, leaves no trace in any frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,7 +21,8 @@ pub struct SdCardFormatEraseProgress {
     ///
     /// All files are being erased.
     ///
-    /// Note COM-086 (certain): Erase All Busy: two verbs for one.
+    /// Note COM-086 (certain): Erase All Busy: two verbs for one. The description reads formatting
+    /// erasing, left over from the row above. Erasing is meant.
     pub erase_all_busy: bool,
 }
 
@@ -69,12 +71,11 @@ impl SdCardFormatEraseProgress {
     }
 }
 
-impl crate::wire::Telemetry for SdCardFormatEraseProgress {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 234;
+message!(SdCardFormatEraseProgress {
+    format_busy: ("Format Busy", 0, 1),
+    erase_all_busy: ("Erase All Busy", 1, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SdCardFormatEraseProgress {
+    const TELEMETRY_ID: u32 = 234;
 }

@@ -2,11 +2,13 @@
 
 //! SRAM Latchup counters, a message of node `common`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// SRAM Latchup counters: telemetry 142, 6 bytes. Table 35.
 ///
-/// Erratum COM-076 (open): SRAM Latchup counters: 6 bytes announced, 4 described.
+/// Erratum COM-076 (open): SRAM Latchup counters: 6 bytes announced, 4 described. Two counters of
+/// 16 bits fill four of the six bytes. A third field is missing, or the frame is filled up to the
+/// size of the loggable ones. The last two bytes are held as reserved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -63,12 +65,11 @@ impl SramLatchupCounters {
     }
 }
 
-impl crate::wire::Telemetry for SramLatchupCounters {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 142;
+message!(SramLatchupCounters {
+    sram1_latchups: ("SRAM1 latchups", 0, 16),
+    sram2_latchups: ("SRAM2 latchups", 16, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SramLatchupCounters {
+    const TELEMETRY_ID: u32 = 142;
 }

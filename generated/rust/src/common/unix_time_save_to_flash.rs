@@ -2,14 +2,15 @@
 
 //! Unix Time Save to Flash, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Unix Time Save to Flash: configuration, set by telecommand 9, got by telemetry 145, 2 bytes.
 /// Table 51.
 ///
 /// When the Unix time is kept in flash, so that it survives a power cycle.
 ///
-/// Note COM-112 (certain): Unix Time Save to Flash is described in two spellings.
+/// Note COM-112 (certain): Unix Time Save to Flash is described in two spellings. The list has Unix
+/// time, the table unixtime.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,7 +20,9 @@ pub struct UnixTimeSaveToFlash {
     ///
     /// Saves once.
     ///
-    /// Note COM-113 (open): Save Now is an action among settings.
+    /// Note COM-113 (open): Save Now is an action among settings. The message is a setting that can
+    /// be read back. What the action bit reads as, and whether a set with it changes the other
+    /// bits, is not said.
     pub save_now: bool,
     /// Save On Update: bit 1.
     ///
@@ -31,7 +34,8 @@ pub struct UnixTimeSaveToFlash {
     pub save_periodic: bool,
     /// Period: bits 8 to 15, raw 0 to 255, in s.
     ///
-    /// Note COM-114 (open): Saving period: meaning of 0.
+    /// Note COM-114 (open): Saving period: meaning of 0. The period has 8 bits of seconds, 255 s at
+    /// most. What 0 does is not said.
     pub period: u8,
 }
 
@@ -86,22 +90,17 @@ impl UnixTimeSaveToFlash {
     }
 }
 
-impl crate::wire::Telecommand for UnixTimeSaveToFlash {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 9;
+message!(UnixTimeSaveToFlash {
+    save_now: ("Save Now", 0, 1),
+    save_on_update: ("Save On Update", 1, 1),
+    save_periodic: ("Save Periodic", 2, 1),
+    period: ("Period", 8, 8).unit("s"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for UnixTimeSaveToFlash {
+    const TELECOMMAND_ID: u32 = 9;
 }
 
-impl crate::wire::Telemetry for UnixTimeSaveToFlash {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 145;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for UnixTimeSaveToFlash {
+    const TELEMETRY_ID: u32 = 145;
 }

@@ -3,14 +3,15 @@
 //! ADCS Power Control, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error, Scale};
+use crate::support::{message, Coded, Error, Scale};
 
 /// ADCS Power Control: configuration, set by telecommand 11, got by telemetry 197, 3 bytes. Table
 /// 184\.
 ///
 /// Switches components on and off.
 ///
-/// Note ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
+/// They are written 0 and ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,13 +21,14 @@ pub struct AdcsPowerControl {
     ///
     /// Electronics of the signal PIC.
     ///
-    /// Note ACP-136 (certain): Power control calls the controllers PIC.
+    /// Note ACP-136 (certain): Power control calls the controllers PIC. Elsewhere the same two are
+    /// MCUs or microcontrollers.
     pub cubecontrol_signal_power_selection: Coded<enums::PowerSelect>,
     /// CubeControl Motor Power Selection: bits 2 to 3.
     ///
     /// Electronics of the motor PIC.
     ///
-    /// Note ACP-136 (certain): Power control calls the controllers PIC.
+    /// Note ACP-136 (certain): see CubeControl Signal Power Selection.
     pub cubecontrol_motor_power_selection: Coded<enums::PowerSelect>,
     /// CubeSense1 Power Selection: bits 4 to 5.
     pub cubesense1_power_selection: Coded<enums::PowerSelect>,
@@ -34,35 +36,40 @@ pub struct AdcsPowerControl {
     pub cubesense2_power_selection: Coded<enums::PowerSelect>,
     /// CubeStarPower Power Selection: bits 8 to 9.
     ///
-    /// Note ACP-134 (certain): Power is doubled in four names.
+    /// Note ACP-134 (certain): Power is doubled in four names. CubeStarPower Power Selection and
+    /// three like it say power twice; the other units have it once. Identifiers are built without
+    /// the first.
     pub cubestar_power_selection: Coded<enums::PowerSelect>,
     /// CubeWheel1Power Power Selection: bits 10 to 11.
     ///
-    /// Note ACP-134 (certain): Power is doubled in four names.
+    /// Note ACP-134 (certain): see CubeStarPower Power Selection.
     pub cubewheel1_power_selection: Coded<enums::PowerSelect>,
     /// CubeWheel2Power Power Selection: bits 12 to 13.
     ///
-    /// Note ACP-134 (certain): Power is doubled in four names.
+    /// Note ACP-134 (certain): see CubeStarPower Power Selection.
     pub cubewheel2_power_selection: Coded<enums::PowerSelect>,
     /// CubeWheel3Power Power Selection: bits 14 to 15.
     ///
-    /// Note ACP-134 (certain): Power is doubled in four names.
+    /// Note ACP-134 (certain): see CubeStarPower Power Selection.
     pub cubewheel3_power_selection: Coded<enums::PowerSelect>,
     /// Motor Power: bits 16 to 17.
     ///
     /// Motor electronics.
     ///
-    /// Note ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is reported
+    /// as Motor Driver Enabled, GPS Power switches the antenna amplifier and is reported as GPS LNA
+    /// Power Enabled. GPS Receiver Enabled has no switch.
     ///
-    /// Note ACP-135 (certain): Motor Power and GPS Power are not called selections.
+    /// Note ACP-135 (certain): Motor Power and GPS Power are not called selections. Two of ten
+    /// fields with the same enumeration lack the word.
     pub motor_power: Coded<enums::PowerSelect>,
     /// GPS Power: bits 18 to 19.
     ///
     /// LNA of the GPS.
     ///
-    /// Note ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): see Motor Power.
     ///
-    /// Note ACP-135 (certain): Motor Power and GPS Power are not called selections.
+    /// Note ACP-135 (certain): see Motor Power.
     pub gps_power: Coded<enums::PowerSelect>,
 }
 
@@ -139,112 +146,51 @@ impl AdcsPowerControl {
     }
 }
 
-const CUBECONTROL_SIGNAL_POWER_SELECTION: Scale = Scale {
-    field: "CubeControl Signal Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBECONTROL_SIGNAL_POWER_SELECTION: Scale =
+    Scale::new("CubeControl Signal Power Selection", (0, 3), (1, 0, 1));
 
-const CUBECONTROL_MOTOR_POWER_SELECTION: Scale = Scale {
-    field: "CubeControl Motor Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBECONTROL_MOTOR_POWER_SELECTION: Scale =
+    Scale::new("CubeControl Motor Power Selection", (0, 3), (1, 0, 1));
 
-const CUBESENSE1_POWER_SELECTION: Scale = Scale {
-    field: "CubeSense1 Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESENSE1_POWER_SELECTION: Scale =
+    Scale::new("CubeSense1 Power Selection", (0, 3), (1, 0, 1));
 
-const CUBESENSE2_POWER_SELECTION: Scale = Scale {
-    field: "CubeSense2 Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESENSE2_POWER_SELECTION: Scale =
+    Scale::new("CubeSense2 Power Selection", (0, 3), (1, 0, 1));
 
-const CUBESTAR_POWER_SELECTION: Scale = Scale {
-    field: "CubeStarPower Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESTAR_POWER_SELECTION: Scale =
+    Scale::new("CubeStarPower Power Selection", (0, 3), (1, 0, 1));
 
-const CUBEWHEEL1_POWER_SELECTION: Scale = Scale {
-    field: "CubeWheel1Power Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBEWHEEL1_POWER_SELECTION: Scale =
+    Scale::new("CubeWheel1Power Power Selection", (0, 3), (1, 0, 1));
 
-const CUBEWHEEL2_POWER_SELECTION: Scale = Scale {
-    field: "CubeWheel2Power Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBEWHEEL2_POWER_SELECTION: Scale =
+    Scale::new("CubeWheel2Power Power Selection", (0, 3), (1, 0, 1));
 
-const CUBEWHEEL3_POWER_SELECTION: Scale = Scale {
-    field: "CubeWheel3Power Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBEWHEEL3_POWER_SELECTION: Scale =
+    Scale::new("CubeWheel3Power Power Selection", (0, 3), (1, 0, 1));
 
-const MOTOR_POWER: Scale = Scale {
-    field: "Motor Power",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const MOTOR_POWER: Scale = Scale::new("Motor Power", (0, 3), (1, 0, 1));
 
-const GPS_POWER: Scale = Scale {
-    field: "GPS Power",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const GPS_POWER: Scale = Scale::new("GPS Power", (0, 3), (1, 0, 1));
 
-impl crate::wire::Telecommand for AdcsPowerControl {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 11;
+message!(AdcsPowerControl {
+    cubecontrol_signal_power_selection: ("CubeControl Signal Power Selection", 0, 2),
+    cubecontrol_motor_power_selection: ("CubeControl Motor Power Selection", 2, 2),
+    cubesense1_power_selection: ("CubeSense1 Power Selection", 4, 2),
+    cubesense2_power_selection: ("CubeSense2 Power Selection", 6, 2),
+    cubestar_power_selection: ("CubeStarPower Power Selection", 8, 2),
+    cubewheel1_power_selection: ("CubeWheel1Power Power Selection", 10, 2),
+    cubewheel2_power_selection: ("CubeWheel2Power Power Selection", 12, 2),
+    cubewheel3_power_selection: ("CubeWheel3Power Power Selection", 14, 2),
+    motor_power: ("Motor Power", 16, 2),
+    gps_power: ("GPS Power", 18, 2),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for AdcsPowerControl {
+    const TELECOMMAND_ID: u32 = 11;
 }
 
-impl crate::wire::Telemetry for AdcsPowerControl {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 197;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for AdcsPowerControl {
+    const TELEMETRY_ID: u32 = 197;
 }

@@ -3,11 +3,12 @@
 //! ASGP4 Run Mode, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// ASGP4 Run Mode: telecommand 31, 1 byte. Table 86.
 ///
-/// Note ACP-046 (certain): Telecommand 31 has the id of the escape byte.
+/// Note ACP-046 (certain): Telecommand 31 has the id of the escape byte. On UART its id is doubled
+/// like data. That follows from the decoding table; the text does not mention the case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -15,7 +16,8 @@ use crate::support::{Coded, Error};
 pub struct Asgp4RunMode {
     /// ASGP4 Mode: bits 0 to 7.
     ///
-    /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode
+    /// with four values; the description has an enabled state.
     pub asgp4_mode: Coded<enums::Asgp4ModeSelect>,
 }
 
@@ -62,12 +64,10 @@ impl Asgp4RunMode {
     }
 }
 
-impl crate::wire::Telecommand for Asgp4RunMode {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 31;
+message!(Asgp4RunMode {
+    asgp4_mode: ("ASGP4 Mode", 0, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for Asgp4RunMode {
+    const TELECOMMAND_ID: u32 = 31;
 }

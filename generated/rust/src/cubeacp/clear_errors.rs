@@ -2,13 +2,14 @@
 
 //! Clear Errors, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Clear Errors: telecommand 12, 1 byte. Table 76.
 ///
 /// Clears the latched error flags that are selected.
 ///
-/// Note ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
+/// They are written 0 and ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -16,13 +17,15 @@ use crate::support::Error;
 pub struct ClearErrors {
     /// ADCS Error Flags: bit 0.
     ///
-    /// Note ACP-021 (open): Clear Errors: which flags.
+    /// Note ACP-021 (open): Clear Errors: which flags. The two bits clear ADCS and HK errors. HK is
+    /// not explained, and no frame says to which of the two its flags belong; those of frame 144
+    /// are cleared by this telecommand by the text, by neither bit by the table.
     pub adcs_error_flags: bool,
     /// HK Error Flags: bit 1.
     ///
     /// Housekeeping errors.
     ///
-    /// Note ACP-021 (open): Clear Errors: which flags.
+    /// Note ACP-021 (open): see ADCS Error Flags.
     pub hk_error_flags: bool,
 }
 
@@ -71,12 +74,11 @@ impl ClearErrors {
     }
 }
 
-impl crate::wire::Telecommand for ClearErrors {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 12;
+message!(ClearErrors {
+    adcs_error_flags: ("ADCS Error Flags", 0, 1),
+    hk_error_flags: ("HK Error Flags", 1, 1),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for ClearErrors {
+    const TELECOMMAND_ID: u32 = 12;
 }

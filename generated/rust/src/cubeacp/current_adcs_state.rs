@@ -3,7 +3,7 @@
 //! Current ADCS State, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{flags, Coded, Error, Scale};
+use crate::support::{flags, message, Coded, Error, Scale};
 
 /// Current ADCS State: telemetry 132, 6 bytes. Table 98.
 ///
@@ -11,13 +11,18 @@ use crate::support::{flags, Coded, Error, Scale};
 ///
 /// Bit 27 of the log mask.
 ///
-/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
+/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A
+/// telecommand or request sent to the wrong program is taken for another one.
 ///
-/// Note ACP-057 (certain): ACP stands for two things.
+/// Note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS Control
+/// Program, the state frames have Attitude Control Processor.
 ///
-/// Note ACP-059 (certain): Current ADCS State and ADCS State.
+/// Note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called Current ADCS
+/// State, and frame 190, which holds it and much more, ADCS State with the description current ADCS
+/// state.
 ///
-/// Note ACP-064 (open): Which flags are latched.
+/// Note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but the state
+/// frames do not tell latched flags from present states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -31,7 +36,8 @@ pub struct CurrentAdcsState {
     pub adcs_run_mode: Coded<enums::AdcsRunMode>,
     /// ASGP4 Mode: bits 10 to 11.
     ///
-    /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode
+    /// with four values; the description has an enabled state.
     pub asgp4_mode: Coded<enums::Asgp4ModeSelect>,
     /// CubeControl Signal Enabled: bit 12.
     pub cubecontrol_signal_enabled: bool,
@@ -49,21 +55,24 @@ pub struct CurrentAdcsState {
     pub cubewheel3_enabled: bool,
     /// CubeStar Enabled: bit 19.
     ///
-    /// Note ACP-063 (certain): Star tracker has four spellings.
+    /// Note ACP-063 (certain): Star tracker has four spellings. StarTracker Match Error stands
+    /// beside Star Tracker Overcurrent Detected; elsewhere CubeStar and star tracking.
     pub cubestar_enabled: bool,
     /// GPS Receiver Enabled: bit 20.
     ///
-    /// Note ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is reported
+    /// as Motor Driver Enabled, GPS Power switches the antenna amplifier and is reported as GPS LNA
+    /// Power Enabled. GPS Receiver Enabled has no switch.
     pub gps_receiver_enabled: bool,
     /// GPS LNA Power Enabled: bit 21.
     ///
     /// Amplifier of the GPS antenna.
     ///
-    /// Note ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): see GPS Receiver Enabled.
     pub gps_lna_power_enabled: bool,
     /// Motor Driver Enabled: bit 22.
     ///
-    /// Note ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): see GPS Receiver Enabled.
     pub motor_driver_enabled: bool,
     /// Sun is Above Local Horizon: bit 23.
     ///
@@ -89,7 +98,8 @@ pub struct CurrentAdcsState {
     ///
     /// About a measured field of 65 uT. Whether above or below is not printed.
     ///
-    /// Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
+    /// Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is set when
+    /// the field has a size 65 uT. Above is likely, since the field of the earth hardly reaches it.
     pub magnetometer_range_error: bool,
     /// Cam1 SRAM Overcurrent Detected: bit 33.
     pub cam1_sram_overcurrent_detected: bool,
@@ -107,7 +117,9 @@ pub struct CurrentAdcsState {
     ///
     /// A detected sun angle was beyond +/-90 deg.
     ///
-    /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag each is
+    /// for the sun and the nadir sensor; the cameras are numbered, and which of them is which is a
+    /// setting. With two sun sensors one flag serves both.
     pub sun_sensor_range_error: bool,
     /// Cam2 SRAM Overcurrent Detected: bit 38.
     pub cam2_sram_overcurrent_detected: bool,
@@ -125,7 +137,7 @@ pub struct CurrentAdcsState {
     ///
     /// A detected nadir angle was beyond +/-60 deg.
     ///
-    /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    /// Note ACP-061 (open): see Sun Sensor Range Error.
     pub nadir_sensor_range_error: bool,
     /// Rate Sensor Range Error: bit 43.
     ///
@@ -143,11 +155,11 @@ pub struct CurrentAdcsState {
     ///
     /// Too few stars were matched.
     ///
-    /// Note ACP-063 (certain): Star tracker has four spellings.
+    /// Note ACP-063 (certain): see CubeStar Enabled.
     pub star_tracker_match_error: bool,
     /// Star Tracker Overcurrent Detected: bit 47.
     ///
-    /// Note ACP-063 (certain): Star tracker has four spellings.
+    /// Note ACP-063 (certain): see CubeStar Enabled.
     pub star_tracker_overcurrent_detected: bool,
 }
 
@@ -281,48 +293,57 @@ impl CurrentAdcsState {
     }
 }
 
-const ATTITUDE_ESTIMATION_MODE: Scale = Scale {
-    field: "Attitude Estimation Mode",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const ATTITUDE_ESTIMATION_MODE: Scale = Scale::new("Attitude Estimation Mode", (0, 15), (1, 0, 1));
 
-const CONTROL_MODE: Scale = Scale {
-    field: "Control Mode",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CONTROL_MODE: Scale = Scale::new("Control Mode", (0, 15), (1, 0, 1));
 
-const ADCS_RUN_MODE: Scale = Scale {
-    field: "ADCS Run Mode",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const ADCS_RUN_MODE: Scale = Scale::new("ADCS Run Mode", (0, 3), (1, 0, 1));
 
-const ASGP4_MODE: Scale = Scale {
-    field: "ASGP4 Mode",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const ASGP4_MODE: Scale = Scale::new("ASGP4 Mode", (0, 3), (1, 0, 1));
 
-impl crate::wire::Telemetry for CurrentAdcsState {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 132;
+message!(CurrentAdcsState {
+    attitude_estimation_mode: ("Attitude Estimation Mode", 0, 4),
+    control_mode: ("Control Mode", 4, 4),
+    adcs_run_mode: ("ADCS Run Mode", 8, 2),
+    asgp4_mode: ("ASGP4 Mode", 10, 2),
+    cubecontrol_signal_enabled: ("CubeControl Signal Enabled", 12, 1),
+    cubecontrol_motor_enabled: ("CubeControl Motor Enabled", 13, 1),
+    cubesense1_enabled: ("CubeSense1 Enabled", 14, 1),
+    cubesense2_enabled: ("CubeSense2 Enabled", 15, 1),
+    cubewheel1_enabled: ("CubeWheel1 Enabled", 16, 1),
+    cubewheel2_enabled: ("CubeWheel2 Enabled", 17, 1),
+    cubewheel3_enabled: ("CubeWheel3 Enabled", 18, 1),
+    cubestar_enabled: ("CubeStar Enabled", 19, 1),
+    gps_receiver_enabled: ("GPS Receiver Enabled", 20, 1),
+    gps_lna_power_enabled: ("GPS LNA Power Enabled", 21, 1),
+    motor_driver_enabled: ("Motor Driver Enabled", 22, 1),
+    sun_is_above_local_horizon: ("Sun is Above Local Horizon", 23, 1),
+    cubesense1_communications_error: ("CubeSense1 Communications Error", 24, 1),
+    cubesense2_communications_error: ("CubeSense2 Communications Error", 25, 1),
+    cubecontrol_signal_communications_error: ("CubeControl Signal Communications Error", 26, 1),
+    cubecontrol_motor_communications_error: ("CubeControl Motor Communications Error", 27, 1),
+    cubewheel1_communications_error: ("CubeWheel1 Communications Error", 28, 1),
+    cubewheel2_communications_error: ("CubeWheel2 Communications Error", 29, 1),
+    cubewheel3_communications_error: ("CubeWheel3 Communications Error", 30, 1),
+    cubestar_communications_error: ("CubeStar Communications Error", 31, 1),
+    magnetometer_range_error: ("Magnetometer Range Error", 32, 1),
+    cam1_sram_overcurrent_detected: ("Cam1 SRAM Overcurrent Detected", 33, 1),
+    cam1_3v3_overcurrent_detected: ("Cam1 3V3 Overcurrent Detected", 34, 1),
+    cam1_sensor_busy_error: ("Cam1 Sensor Busy Error", 35, 1),
+    cam1_sensor_detection_error: ("Cam1 Sensor Detection Error", 36, 1),
+    sun_sensor_range_error: ("Sun Sensor Range Error", 37, 1),
+    cam2_sram_overcurrent_detected: ("Cam2 SRAM Overcurrent Detected", 38, 1),
+    cam2_3v3_overcurrent_detected: ("Cam2 3V3 Overcurrent Detected", 39, 1),
+    cam2_sensor_busy_error: ("Cam2 Sensor Busy Error", 40, 1),
+    cam2_sensor_detection_error: ("Cam2 Sensor Detection Error", 41, 1),
+    nadir_sensor_range_error: ("Nadir Sensor Range Error", 42, 1),
+    rate_sensor_range_error: ("Rate Sensor Range Error", 43, 1),
+    wheel_speed_range_error: ("Wheel Speed Range Error", 44, 1),
+    coarse_sun_sensor_error: ("Coarse Sun Sensor Error", 45, 1),
+    star_tracker_match_error: ("StarTracker Match Error", 46, 1),
+    star_tracker_overcurrent_detected: ("Star Tracker Overcurrent Detected", 47, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for CurrentAdcsState {
+    const TELEMETRY_ID: u32 = 132;
 }

@@ -3,7 +3,7 @@
 //! Current ADCS State 2, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{flags, Coded, Error, Scale};
+use crate::support::{flags, message, Coded, Error, Scale};
 
 /// Current ADCS State 2: telemetry 224, 6 bytes. Table 169.
 ///
@@ -11,11 +11,14 @@ use crate::support::{flags, Coded, Error, Scale};
 ///
 /// Bit 61 of the log mask.
 ///
-/// Erratum ACP-120 (open): Current ADCS State 2: 6 bytes announced, 18 bits described.
+/// Erratum ACP-120 (open): Current ADCS State 2: 6 bytes announced, 18 bits described. More than
+/// half of the frame is not explained. It is held as reserved, here and where frame 190 repeats it.
 ///
-/// Note ACP-057 (certain): ACP stands for two things.
+/// Note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS Control
+/// Program, the state frames have Attitude Control Processor.
 ///
-/// Note ACP-064 (open): Which flags are latched.
+/// Note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but the state
+/// frames do not tell latched flags from present states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -25,14 +28,16 @@ pub struct CurrentAdcsState2 {
     ///
     /// A parameter is out of bounds, or the SGP4 propagator could not start from them.
     ///
-    /// Note ACP-104 (open): Orbit parameter flag has two reasons.
+    /// Note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds, or a
+    /// propagator that failed to start, are told as two sentences for one bit.
     pub orbit_parameters_are_invalid: bool,
     /// Configuration is Invalid: bit 1.
     ///
     /// Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at least one
     /// CSS.
     ///
-    /// Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
+    /// Note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames differ by
+    /// a letter in the description, and principle stands for principal twice in each.
     pub configuration_is_invalid: bool,
     /// Control Mode Change is not allowed: bit 2.
     ///
@@ -155,21 +160,29 @@ impl CurrentAdcsState2 {
     }
 }
 
-const CURRENT_MAGNETOMETER_SAMPLING_MODE: Scale = Scale {
-    field: "Current Magnetometer Sampling Mode",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CURRENT_MAGNETOMETER_SAMPLING_MODE: Scale =
+    Scale::new("Current Magnetometer Sampling Mode", (0, 3), (1, 0, 1));
 
-impl crate::wire::Telemetry for CurrentAdcsState2 {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 224;
+message!(CurrentAdcsState2 {
+    orbit_parameters_are_invalid: ("Orbit Parameters are Invalid", 0, 1),
+    configuration_is_invalid: ("Configuration is Invalid", 1, 1),
+    control_mode_change_is_not_allowed: ("Control Mode Change is not allowed", 2, 1),
+    estimator_change_is_not_allowed: ("Estimator Change is not allowed", 3, 1),
+    current_magnetometer_sampling_mode: ("Current Magnetometer Sampling Mode", 4, 2),
+    magnetic_field_size_mismatch: ("Modelled and measured magnetic field differs in size", 6, 1),
+    node_recovery_error: ("Node Recovery Error", 7, 1),
+    cubesense1_runtime_error: ("CubeSense1 Runtime Error", 8, 1),
+    cubesense2_runtime_error: ("CubeSense2 Runtime Error", 9, 1),
+    cubecontrol_signal_runtime_error: ("CubeControl Signal Runtime Error", 10, 1),
+    cubecontrol_motor_runtime_error: ("CubeControl Motor Runtime Error", 11, 1),
+    cubewheel1_runtime_error: ("CubeWheel1 Runtime Error", 12, 1),
+    cubewheel2_runtime_error: ("CubeWheel2 Runtime Error", 13, 1),
+    cubewheel3_runtime_error: ("CubeWheel3 Runtime Error", 14, 1),
+    cubestar_runtime_error: ("CubeStar Runtime Error", 15, 1),
+    magnetometer_error: ("Magnetometer Error", 16, 1),
+    rate_sensor_failure: ("Rate Sensor Failure", 17, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for CurrentAdcsState2 {
+    const TELEMETRY_ID: u32 = 224;
 }

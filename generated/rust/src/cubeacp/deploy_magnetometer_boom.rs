@@ -2,13 +2,14 @@
 
 //! Deploy Magnetometer Boom, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Deploy Magnetometer Boom: telecommand 7, 1 byte. Table 73.
 ///
 /// Dangerous: The boom stays deployed.
 ///
-/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
+/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A
+/// telecommand or request sent to the wrong program is taken for another one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,7 +19,9 @@ pub struct DeployMagnetometerBoom {
     ///
     /// Of the deployment actuation.
     ///
-    /// Note ACP-016 (open): Deployment timeout: range and default.
+    /// Note ACP-016 (open): Deployment timeout: range and default. The field has 8 bits of seconds;
+    /// whether 0 means none, for ever or a default is not said. The telecommand has no magic
+    /// number, unlike a reset.
     pub timeout: u8,
 }
 
@@ -65,12 +68,10 @@ impl DeployMagnetometerBoom {
     }
 }
 
-impl crate::wire::Telecommand for DeployMagnetometerBoom {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 7;
+message!(DeployMagnetometerBoom {
+    timeout: ("Timeout", 0, 8).unit("s"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for DeployMagnetometerBoom {
+    const TELECOMMAND_ID: u32 = 7;
 }

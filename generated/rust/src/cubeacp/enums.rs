@@ -2,7 +2,7 @@
 
 //! Enumerations. Every one keeps values that have no name.
 
-use crate::support::Enumeration;
+use crate::support::enumeration;
 
 /// AdcsRunMode: an enumeration. Table 75.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -14,7 +14,8 @@ pub enum AdcsRunMode {
     ///
     /// The loop does not run.
     ///
-    /// Note ACP-019 (certain): Disabled is Off.
+    /// Note ACP-019 (certain): Disabled is Off. The text says what happens when the ADCS is
+    /// disabled; no member has that name.
     #[default]
     Off,
     /// Enabled (1).
@@ -27,7 +28,10 @@ pub enum AdcsRunMode {
     Triggered,
     /// Simulation (3).
     ///
-    /// Note ACP-032 (open): Simulated data are accepted while triggered, not while simulating.
+    /// Note ACP-032 (open): Simulated data are accepted while triggered, not while simulating. The
+    /// telecommand with simulated measurements is valid only in mode Triggered, and there is a mode
+    /// Simulation that no other text mentions. The sentence was probably taken over from the
+    /// telecommand before it.
     Simulation,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -61,14 +65,6 @@ impl AdcsRunMode {
     }
 }
 
-impl Enumeration for AdcsRunMode {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for AdcsRunMode {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -82,16 +78,13 @@ impl From<u8> for AdcsRunMode {
     }
 }
 
-impl From<AdcsRunMode> for u8 {
-    #[inline]
-    fn from(value: AdcsRunMode) -> Self {
-        value.raw()
-    }
-}
+enumeration!(AdcsRunMode: u8);
 
 /// ConModeSelect: an enumeration. Table 78.
 ///
-/// Note ACP-024 (open): Control modes that are named and not listed.
+/// Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control
+/// mode has a reference vector, and GEO tracking, inertial and two sun pointing modes are special
+/// selections. The list of control modes has none of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -99,74 +92,83 @@ impl From<AdcsRunMode> for u8 {
 pub enum ConModeSelect {
     /// No control (0).
     ///
-    /// Note ACP-023 (certain): Control mode None does not exist.
+    /// Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the
+    /// mode falls back, when the control mode is None. The member with value 0 is called No
+    /// control.
     #[default]
     NoControl,
     /// Detumbling control (1).
     DetumblingControl,
     /// Y-Thomson spin (2).
     ///
-    /// Note ACP-028 (certain): Y-Thomson is a spin or a mode.
+    /// Note ACP-028 (certain): Y-Thomson is a spin or a mode. The mode is called Y-Thomson spin in
+    /// the list, Y-Thomson mode and steady-state Y-Thomson elsewhere; and Y-momentum mode is one of
+    /// the two Y-Wheel modes.
     YThomsonSpin,
     /// Y-Wheel momentum stabilized - Initial Pitch Acquisition (3).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): Wheel control modes are written in five ways. Y-Wheel, XYZ-Wheel,
+    /// Rwheel, R-wheels and wheel stand side by side, capital and small; elsewhere RWheel and RW.
     YWheelInitialPitchAcquisition,
     /// Y-Wheel momentum stabilized - Steady State (4).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     YWheelSteadyState,
     /// XYZ-Wheel control (5).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     XyzWheelControl,
     /// Rwheel sun tracking control (6).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     RwheelSunTrackingControl,
     /// Rwheel target tracking control (7).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     RwheelTargetTrackingControl,
     /// Very Fast-spin Detumbling control (8).
     ///
     /// At 10 Hz, within CubeControl.
     ///
-    /// Note ACP-026 (certain): Control modes 8 and 9 have other names in their descriptions.
+    /// Note ACP-026 (certain): Control modes 8 and 9 have other names in their descriptions. Very
+    /// Fast-spin Detumbling is described as 10 Hz detumbling within CubeControl, Fast-spin as fast.
+    /// The loop itself runs at 1 Hz.
     VeryFastSpinDetumblingControl,
     /// Fast-spin Detumbling control (9).
     ///
-    /// Note ACP-026 (certain): Control modes 8 and 9 have other names in their descriptions.
+    /// Note ACP-026 (certain): see Very Fast-spin Detumbling control.
     FastSpinDetumblingControl,
     /// User Specific Control Mode 1 (10).
     ///
     /// User-defined or custom.
     ///
-    /// Note ACP-025 (open): Control modes: specific, defined, custom and coded.
+    /// Note ACP-025 (open): Control modes: specific, defined, custom and coded. Two modes are User
+    /// Specific and described as user defined or custom, a third is User Coded. Which of them use
+    /// the user coded settings is open.
     UserSpecificControlMode1,
     /// User Specific Control Mode 2 (11).
     ///
     /// User-defined or custom.
     ///
-    /// Note ACP-025 (open): Control modes: specific, defined, custom and coded.
+    /// Note ACP-025 (open): see User Specific Control Mode 1.
     UserSpecificControlMode2,
     /// Stop R-wheels (12).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     StopRWheels,
     /// User Coded Control Mode (13).
     ///
-    /// Note ACP-025 (open): Control modes: specific, defined, custom and coded.
+    /// Note ACP-025 (open): see User Specific Control Mode 1.
     UserCodedControlMode,
     /// Sun-tracking yaw- or roll-only wheel control mode (14).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     SunTrackingYawOrRollOnly,
     /// Target-tracking yaw-only wheel control Mode (15).
     ///
     /// Turns the selected facet towards a ground target.
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     TargetTrackingYawOnly,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -226,14 +228,6 @@ impl ConModeSelect {
     }
 }
 
-impl Enumeration for ConModeSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for ConModeSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -259,12 +253,7 @@ impl From<u8> for ConModeSelect {
     }
 }
 
-impl From<ConModeSelect> for u8 {
-    #[inline]
-    fn from(value: ConModeSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(ConModeSelect: u8);
 
 /// EstimModeSelect: an enumeration. Table 80.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -277,11 +266,13 @@ pub enum EstimModeSelect {
     NoAttitudeEstimation,
     /// MEMS rate sensing (1).
     ///
-    /// Note ACP-029 (certain): Estimation modes have other names in settings.
+    /// Note ACP-029 (certain): Estimation modes have other names in settings. MEMS rate estimation
+    /// mode and RKF appear in the description of a flag; the list has MEMS rate sensing and
+    /// Magnetometer rate filter.
     MemsRateSensing,
     /// Magnetometer rate filter (2).
     ///
-    /// Note ACP-029 (certain): Estimation modes have other names in settings.
+    /// Note ACP-029 (certain): see MEMS rate sensing.
     MagnetometerRateFilter,
     /// Magnetometer rate filter with pitch estimation (3).
     MagnetometerRateFilterWithPitch,
@@ -335,14 +326,6 @@ impl EstimModeSelect {
     }
 }
 
-impl Enumeration for EstimModeSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for EstimModeSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -360,16 +343,13 @@ impl From<u8> for EstimModeSelect {
     }
 }
 
-impl From<EstimModeSelect> for u8 {
-    #[inline]
-    fn from(value: EstimModeSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(EstimModeSelect: u8);
 
 /// GpsSolutionStatus: an enumeration. Table 85.
 ///
-/// Note ACP-045 (open): One GPS status for different receivers.
+/// Note ACP-045 (open): One GPS status for different receivers. The enumeration is used whatever
+/// receiver is fitted; three types are listed, among them none. Whether the values are those of the
+/// receiver or of the control program is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -448,14 +428,6 @@ impl GpsSolutionStatus {
     }
 }
 
-impl Enumeration for GpsSolutionStatus {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for GpsSolutionStatus {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -477,16 +449,12 @@ impl From<u8> for GpsSolutionStatus {
     }
 }
 
-impl From<GpsSolutionStatus> for u8 {
-    #[inline]
-    fn from(value: GpsSolutionStatus) -> Self {
-        value.raw()
-    }
-}
+enumeration!(GpsSolutionStatus: u8);
 
 /// Asgp4ModeSelect: an enumeration. Table 87.
 ///
-/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
+/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
+/// module are spelt in four ways.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -539,14 +507,6 @@ impl Asgp4ModeSelect {
     }
 }
 
-impl Enumeration for Asgp4ModeSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for Asgp4ModeSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -560,20 +520,18 @@ impl From<u8> for Asgp4ModeSelect {
     }
 }
 
-impl From<Asgp4ModeSelect> for u8 {
-    #[inline]
-    fn from(value: Asgp4ModeSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(Asgp4ModeSelect: u8);
 
 /// MagModeVal: an enumeration. Table 90.
 ///
 /// MTM is the magnetometer, Signal and Motor are the microcontrollers that sample it.
 ///
-/// Note ACP-050 (open): MagModeVal: one combination is missing, and None is not explained.
+/// Note ACP-050 (open): MagModeVal: one combination is missing, and None is not explained. The
+/// redundant magnetometer cannot be sampled through the motor controller, the main one can. What
+/// None does to estimation and control is not said.
 ///
-/// Note ACP-051 (certain): Magnetometers have four names for two.
+/// Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for
+/// one; redundant, secondary and 2nd for the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -588,7 +546,7 @@ pub enum MagModeVal {
     MainMtmSampledThroughMotor,
     /// None (3).
     ///
-    /// Note ACP-050 (open): MagModeVal: one combination is missing, and None is not explained.
+    /// Note ACP-050 (open): see MagModeVal.
     None,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -622,14 +580,6 @@ impl MagModeVal {
     }
 }
 
-impl Enumeration for MagModeVal {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for MagModeVal {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -643,16 +593,13 @@ impl From<u8> for MagModeVal {
     }
 }
 
-impl From<MagModeVal> for u8 {
-    #[inline]
-    fn from(value: MagModeVal) -> Self {
-        value.raw()
-    }
-}
+enumeration!(MagModeVal: u8);
 
 /// CamSelect: an enumeration. Table 95.
 ///
-/// Note ACP-056 (likely): Cameras: Cam, CubeSense, and star.
+/// Note ACP-056 (likely): Cameras: Cam, CubeSense, and star. Cam1 and Cam2 appear beside CubeSense1
+/// and CubeSense2, once as Cam 1; the third camera is Star, CubeStar or star tracker. That CamN is
+/// the camera of CubeSenseN is only likely.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -695,14 +642,6 @@ impl CamSelect {
     }
 }
 
-impl Enumeration for CamSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for CamSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -715,12 +654,7 @@ impl From<u8> for CamSelect {
     }
 }
 
-impl From<CamSelect> for u8 {
-    #[inline]
-    fn from(value: CamSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(CamSelect: u8);
 
 /// ImSize: an enumeration. Table 96.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -783,14 +717,6 @@ impl ImSize {
     }
 }
 
-impl Enumeration for ImSize {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for ImSize {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -805,12 +731,7 @@ impl From<u8> for ImSize {
     }
 }
 
-impl From<ImSize> for u8 {
-    #[inline]
-    fn from(value: ImSize) -> Self {
-        value.raw()
-    }
-}
+enumeration!(ImSize: u8);
 
 /// JpgConvertResult: an enumeration. Table 100.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -859,14 +780,6 @@ impl JpgConvertResult {
     }
 }
 
-impl Enumeration for JpgConvertResult {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for JpgConvertResult {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -880,12 +793,7 @@ impl From<u8> for JpgConvertResult {
     }
 }
 
-impl From<JpgConvertResult> for u8 {
-    #[inline]
-    fn from(value: JpgConvertResult) -> Self {
-        value.raw()
-    }
-}
+enumeration!(JpgConvertResult: u8);
 
 /// CaptureResult: an enumeration. Table 123.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -946,14 +854,6 @@ impl CaptureResult {
     }
 }
 
-impl Enumeration for CaptureResult {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for CaptureResult {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -969,12 +869,7 @@ impl From<u8> for CaptureResult {
     }
 }
 
-impl From<CaptureResult> for u8 {
-    #[inline]
-    fn from(value: CaptureResult) -> Self {
-        value.raw()
-    }
-}
+enumeration!(CaptureResult: u8);
 
 /// DetectResult: an enumeration. Table 124.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1049,14 +944,6 @@ impl DetectResult {
     }
 }
 
-impl Enumeration for DetectResult {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for DetectResult {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1074,16 +961,12 @@ impl From<u8> for DetectResult {
     }
 }
 
-impl From<DetectResult> for u8 {
-    #[inline]
-    fn from(value: DetectResult) -> Self {
-        value.raw()
-    }
-}
+enumeration!(DetectResult: u8);
 
 /// StarIDModeVal: an enumeration. Table 147.
 ///
-/// Note ACP-097 (open): StarIDModeVal is not described.
+/// Note ACP-097 (open): StarIDModeVal is not described. The members of the identification mode have
+/// no descriptions; Lost Mode may be the lost-in-space search or a lost track.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1122,14 +1005,6 @@ impl StarIdModeVal {
     }
 }
 
-impl Enumeration for StarIdModeVal {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for StarIdModeVal {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1141,12 +1016,7 @@ impl From<u8> for StarIdModeVal {
     }
 }
 
-impl From<StarIdModeVal> for u8 {
-    #[inline]
-    fn from(value: StarIdModeVal) -> Self {
-        value.raw()
-    }
-}
+enumeration!(StarIdModeVal: u8);
 
 /// ExecutionWaypoints: an enumeration. Table 168.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1179,7 +1049,9 @@ pub enum ExecutionWaypoints {
     Logging,
     /// Log File Compression (10).
     ///
-    /// Note ACP-119 (open): Loop waypoints: logs are compressed.
+    /// Note ACP-119 (open): Loop waypoints: logs are compressed. The loop has a step that
+    /// compresses the log file, while the log format is described without compression and its size
+    /// by a plain formula.
     LogFileCompression,
     /// Saving Log to SD Card (11).
     SavingLogToSdCard,
@@ -1235,14 +1107,6 @@ impl ExecutionWaypoints {
     }
 }
 
-impl Enumeration for ExecutionWaypoints {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for ExecutionWaypoints {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1265,16 +1129,12 @@ impl From<u8> for ExecutionWaypoints {
     }
 }
 
-impl From<ExecutionWaypoints> for u8 {
-    #[inline]
-    fn from(value: ExecutionWaypoints) -> Self {
-        value.raw()
-    }
-}
+enumeration!(ExecutionWaypoints: u8);
 
 /// AsgpError: an enumeration. Table 171.
 ///
-/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
+/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
+/// module are spelt in four ways.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1284,7 +1144,8 @@ pub enum AsgpError {
     ///
     /// No error.
     ///
-    /// Note ACP-123 (certain): AsgpError: no error is called Off.
+    /// Note ACP-123 (certain): AsgpError: no error is called Off. The member for no error has the
+    /// name of the inactive mode.
     #[default]
     Off,
     /// Unix Time (1).
@@ -1329,14 +1190,6 @@ impl AsgpError {
     }
 }
 
-impl Enumeration for AsgpError {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for AsgpError {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1350,12 +1203,7 @@ impl From<u8> for AsgpError {
     }
 }
 
-impl From<AsgpError> for u8 {
-    #[inline]
-    fn from(value: AsgpError) -> Self {
-        value.raw()
-    }
-}
+enumeration!(AsgpError: u8);
 
 /// ImSaveStatus: an enumeration. Table 177.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1410,14 +1258,6 @@ impl ImSaveStatus {
     }
 }
 
-impl Enumeration for ImSaveStatus {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for ImSaveStatus {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1432,12 +1272,7 @@ impl From<u8> for ImSaveStatus {
     }
 }
 
-impl From<ImSaveStatus> for u8 {
-    #[inline]
-    fn from(value: ImSaveStatus) -> Self {
-        value.raw()
-    }
-}
+enumeration!(ImSaveStatus: u8);
 
 /// AxisSelect: an enumeration. Table 180.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1460,7 +1295,9 @@ pub enum AxisSelect {
     NegativeZ,
     /// Not Used (6).
     ///
-    /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
+    /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration serves
+    /// actuators, sensors and facets. A facet that points to the sun or to a target as Not Used is
+    /// allowed by its table and not explained.
     NotUsed,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -1500,14 +1337,6 @@ impl AxisSelect {
     }
 }
 
-impl Enumeration for AxisSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for AxisSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1524,12 +1353,7 @@ impl From<u8> for AxisSelect {
     }
 }
 
-impl From<AxisSelect> for u8 {
-    #[inline]
-    fn from(value: AxisSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(AxisSelect: u8);
 
 /// PowerSelect: an enumeration. Table 185.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1544,7 +1368,8 @@ pub enum PowerSelect {
     On,
     /// Power state kept the same (2).
     ///
-    /// Note ACP-137 (open): Power state kept the same, when read.
+    /// Note ACP-137 (open): Power state kept the same, when read. The value is a request not to
+    /// change. What a unit left alone reads as, and what the unassigned value 3 does, is not said.
     PowerStateKeptTheSame,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -1576,14 +1401,6 @@ impl PowerSelect {
     }
 }
 
-impl Enumeration for PowerSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for PowerSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1596,16 +1413,12 @@ impl From<u8> for PowerSelect {
     }
 }
 
-impl From<PowerSelect> for u8 {
-    #[inline]
-    fn from(value: PowerSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(PowerSelect: u8);
 
 /// AsgpFilter: an enumeration. Table 193.
 ///
-/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
+/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
+/// module are spelt in four ways.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1646,14 +1459,6 @@ impl AsgpFilter {
     }
 }
 
-impl Enumeration for AsgpFilter {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for AsgpFilter {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1665,12 +1470,7 @@ impl From<u8> for AsgpFilter {
     }
 }
 
-impl From<AsgpFilter> for u8 {
-    #[inline]
-    fn from(value: AsgpFilter) -> Self {
-        value.raw()
-    }
-}
+enumeration!(AsgpFilter: u8);
 
 /// AcpProgramType: an enumeration. Table 202.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1711,14 +1511,6 @@ impl AcpProgramType {
     }
 }
 
-impl Enumeration for AcpProgramType {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for AcpProgramType {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1730,16 +1522,13 @@ impl From<u8> for AcpProgramType {
     }
 }
 
-impl From<AcpProgramType> for u8 {
-    #[inline]
-    fn from(value: AcpProgramType) -> Self {
-        value.raw()
-    }
-}
+enumeration!(AcpProgramType: u8);
 
 /// SpecialConSelect: an enumeration. Table 203.
 ///
-/// Note ACP-024 (open): Control modes that are named and not listed.
+/// Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control
+/// mode has a reference vector, and GEO tracking, inertial and two sun pointing modes are special
+/// selections. The list of control modes has none of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1750,17 +1539,21 @@ pub enum SpecialConSelect {
     None,
     /// Z-axis Sun pointing (1).
     ///
-    /// Note ACP-177 (open): Sun-pointing facet and special control selection.
+    /// Note ACP-177 (open): Sun-pointing facet and special control selection. Facets can be chosen
+    /// by a setting, and sun pointing with Z or Y by the system configuration. Which one counts is
+    /// not said.
     ZAxisSunPointing,
     /// GEO Tracking (2).
     ///
-    /// Note ACP-176 (open): Satellite position: range against GEO tracking.
+    /// Note ACP-176 (open): Satellite position: range against GEO tracking. Neither position frame
+    /// can hold a geostationary orbit, while a GEO tracking control exists. It may mean a target on
+    /// the ground.
     GeoTracking,
     /// Inertial pointing (3).
     InertialPointing,
     /// Y-axis Sun pointing (4).
     ///
-    /// Note ACP-177 (open): Sun-pointing facet and special control selection.
+    /// Note ACP-177 (open): see Z-axis Sun pointing.
     YAxisSunPointing,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -1796,14 +1589,6 @@ impl SpecialConSelect {
     }
 }
 
-impl Enumeration for SpecialConSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for SpecialConSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1818,12 +1603,7 @@ impl From<u8> for SpecialConSelect {
     }
 }
 
-impl From<SpecialConSelect> for u8 {
-    #[inline]
-    fn from(value: SpecialConSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(SpecialConSelect: u8);
 
 /// CsCamType: an enumeration. Table 204.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1864,14 +1644,6 @@ impl CsCamType {
     }
 }
 
-impl Enumeration for CsCamType {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for CsCamType {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1883,12 +1655,7 @@ impl From<u8> for CsCamType {
     }
 }
 
-impl From<CsCamType> for u8 {
-    #[inline]
-    fn from(value: CsCamType) -> Self {
-        value.raw()
-    }
-}
+enumeration!(CsCamType: u8);
 
 /// GpsSelect: an enumeration. Table 205.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1933,14 +1700,6 @@ impl GpsSelect {
     }
 }
 
-impl Enumeration for GpsSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for GpsSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1953,12 +1712,7 @@ impl From<u8> for GpsSelect {
     }
 }
 
-impl From<GpsSelect> for u8 {
-    #[inline]
-    fn from(value: GpsSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(GpsSelect: u8);
 
 /// GpioPort: an enumeration. Table 206.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -2015,14 +1769,6 @@ impl GpioPort {
     }
 }
 
-impl Enumeration for GpioPort {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for GpioPort {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -2038,12 +1784,7 @@ impl From<u8> for GpioPort {
     }
 }
 
-impl From<GpioPort> for u8 {
-    #[inline]
-    fn from(value: GpioPort) -> Self {
-        value.raw()
-    }
-}
+enumeration!(GpioPort: u8);
 
 /// GpioPortPin: an enumeration. Table 207.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -2140,14 +1881,6 @@ impl GpioPortPin {
     }
 }
 
-impl Enumeration for GpioPortPin {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for GpioPortPin {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -2173,12 +1906,7 @@ impl From<u8> for GpioPortPin {
     }
 }
 
-impl From<GpioPortPin> for u8 {
-    #[inline]
-    fn from(value: GpioPortPin) -> Self {
-        value.raw()
-    }
-}
+enumeration!(GpioPortPin: u8);
 
 /// SdLogSelect: an enumeration. Table 211.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -2193,7 +1921,8 @@ pub enum SdLogSelect {
     PrimarySdCard,
     /// Secondary SD Card (1).
     ///
-    /// Note ACP-187 (open): A secondary SD card.
+    /// Note ACP-187 (open): A secondary SD card. Logs can go to a second card. Download, erase,
+    /// format and the error flags know one card and do not say which.
     SecondarySdCard,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -2223,14 +1952,6 @@ impl SdLogSelect {
     }
 }
 
-impl Enumeration for SdLogSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for SdLogSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -2242,9 +1963,4 @@ impl From<u8> for SdLogSelect {
     }
 }
 
-impl From<SdLogSelect> for u8 {
-    #[inline]
-    fn from(value: SdLogSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(SdLogSelect: u8);

@@ -3,16 +3,19 @@
 //! Estimation Parameters, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{flags, put, take, Coded, Error, Scale};
+use crate::support::{flags, message, put, take, Coded, Error, Scale};
 
 /// Estimation Parameters: configuration, set by telecommand 27, got by telemetry 223, 31 bytes.
 /// Table 200.
 ///
 /// Noise covariances, and which sensors the estimator uses.
 ///
-/// Note ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
+/// They are written 0 and ignored.
 ///
-/// Note ACP-167 (certain): Estimation Parameters: more than its description.
+/// Note ACP-167 (certain): Estimation Parameters: more than its description. Noise covariance and
+/// sensor mask are promised; magnetometer modes, recovery and sampling periods are in the message
+/// as well.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,31 +23,32 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 pub struct EstimationParameters {
     /// Magnetometer Rate Filter System Noise: bits 0 to 31, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit. The message calls them
+    /// covariances, the fields noise. Units are missing.
     pub magnetometer_rate_filter_system_noise: f32,
     /// EKF System Noise: bits 32 to 63, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     pub ekf_system_noise: f32,
     /// CSS Measurement Noise: bits 64 to 95, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     pub css_measurement_noise: f32,
     /// Sun Sensor Measurement Noise: bits 96 to 127, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     pub sun_sensor_measurement_noise: f32,
     /// Nadir Sensor Measurement Noise: bits 128 to 159, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     pub nadir_sensor_measurement_noise: f32,
     /// Magnetometer Measurement Noise: bits 160 to 191, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     pub magnetometer_measurement_noise: f32,
     /// Star Tracker Measurement Noise: bits 192 to 223, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     pub star_tracker_measurement_noise: f32,
     /// Use Sun Sensor: bit 224.
     ///
@@ -74,13 +78,17 @@ pub struct EstimationParameters {
     ///
     /// The magnetometer that estimation and control use.
     ///
-    /// Note ACP-049 (open): Magnetometer mode can be set in two places.
+    /// Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a
+    /// configuration message set the same mode. Which wins after a restart, and whether the
+    /// telecommand changes what the configuration returns, is not said.
     pub magnetometer_mode: Coded<enums::MagModeVal>,
     /// Magnetometer Selection for RAW MTM TLM: bits 232 to 233.
     ///
     /// Magnetometer and sampling path for the second raw magnetometer frame.
     ///
-    /// Note ACP-118 (likely): Secondary magnetometer: fixed or selected.
+    /// Note ACP-118 (likely): Secondary magnetometer: fixed or selected. The frame is named for the
+    /// secondary magnetometer, with the field names of the primary one. A setting selects which
+    /// magnetometer, sampled how, it shows.
     pub raw_magnetometer_selection: Coded<enums::MagModeVal>,
     /// Automatic Estimation Transition due to Rate Sensor Errors: bit 234.
     ///
@@ -91,14 +99,16 @@ pub struct EstimationParameters {
     /// Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
     /// camera.
     ///
-    /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit. Two periods of
+    /// four bits share a byte that has the unit s. The value of the byte is no time; each half is,
+    /// up to 15 s, and is held as a field of its own.
     pub cam1_period: u8,
     /// Cam2 period: bits 244 to 247, raw 0 to 15, in s.
     ///
     /// Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
     /// camera.
     ///
-    /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    /// Erratum ACP-169 (certain): see Cam1 period.
     pub cam2_period: u8,
 }
 
@@ -186,58 +196,40 @@ impl EstimationParameters {
     }
 }
 
-const MAGNETOMETER_MODE: Scale = Scale {
-    field: "Magnetometer Mode",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const MAGNETOMETER_MODE: Scale = Scale::new("Magnetometer Mode", (0, 3), (1, 0, 1));
 
-const RAW_MAGNETOMETER_SELECTION: Scale = Scale {
-    field: "Magnetometer Selection for RAW MTM TLM",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const RAW_MAGNETOMETER_SELECTION: Scale =
+    Scale::new("Magnetometer Selection for RAW MTM TLM", (0, 3), (1, 0, 1));
 
-const CAM1_PERIOD: Scale = Scale {
-    field: "Cam1 period",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CAM1_PERIOD: Scale = Scale::new("Cam1 period", (0, 15), (1, 0, 1));
 
-const CAM2_PERIOD: Scale = Scale {
-    field: "Cam2 period",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CAM2_PERIOD: Scale = Scale::new("Cam2 period", (0, 15), (1, 0, 1));
 
-impl crate::wire::Telecommand for EstimationParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 27;
+message!(EstimationParameters {
+    magnetometer_rate_filter_system_noise: ("Magnetometer Rate Filter System Noise", 0, 32),
+    ekf_system_noise: ("EKF System Noise", 32, 32),
+    css_measurement_noise: ("CSS Measurement Noise", 64, 32),
+    sun_sensor_measurement_noise: ("Sun Sensor Measurement Noise", 96, 32),
+    nadir_sensor_measurement_noise: ("Nadir Sensor Measurement Noise", 128, 32),
+    magnetometer_measurement_noise: ("Magnetometer Measurement Noise", 160, 32),
+    star_tracker_measurement_noise: ("Star Tracker Measurement Noise", 192, 32),
+    use_sun_sensor: ("Use Sun Sensor", 224, 1),
+    use_nadir_sensor: ("Use Nadir Sensor", 225, 1),
+    use_css: ("Use CSS", 226, 1),
+    use_star_tracker: ("Use Star Tracker", 227, 1),
+    nadir_sensor_terminator_test: ("Nadir sensor terminator test", 228, 1),
+    automatic_magnetometer_recovery: ("Automatic Magnetometer Recovery", 229, 1),
+    magnetometer_mode: ("Magnetometer Mode", 230, 2),
+    raw_magnetometer_selection: ("Magnetometer Selection for RAW MTM TLM", 232, 2),
+    estimation_transition_on_rate_sensor_error: ("Automatic Estimation Transition due to Rate Sensor Errors", 234, 1),
+    cam1_period: ("Cam1 period", 240, 4).unit("s"),
+    cam2_period: ("Cam2 period", 244, 4).unit("s"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for EstimationParameters {
+    const TELECOMMAND_ID: u32 = 27;
 }
 
-impl crate::wire::Telemetry for EstimationParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 223;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for EstimationParameters {
+    const TELEMETRY_ID: u32 = 223;
 }

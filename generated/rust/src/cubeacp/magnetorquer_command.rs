@@ -2,7 +2,7 @@
 
 //! Magnetorquer Command, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Magnetorquer Command: telemetry 157, 6 bytes. Table 113.
 ///
@@ -17,24 +17,27 @@ pub struct MagnetorquerCommand {
     /// On-time.
     ///
     /// Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
+    /// The telecommand takes thousandths of a duty cycle, the frames give an on-time in units of 10
+    /// ms. The conversion depends on the loop period and on a resolution that is a setting.
     ///
-    /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    /// Note ACP-071 (likely): 10ms units is a factor, not a unit. The unit holds the scale that a
+    /// formula should. It is kept as a unit of counts; nothing is converted.
     pub x_magnetorquer_command: i16,
     /// Y Magnetorquer Command: bits 16 to 31, raw -32768 to 32767, in 10ms units.
     ///
     /// On-time.
     ///
-    /// Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
+    /// Note ACP-070 (open): see X Magnetorquer Command.
     ///
-    /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    /// Note ACP-071 (likely): see X Magnetorquer Command.
     pub y_magnetorquer_command: i16,
     /// Z Magnetorquer Command: bits 32 to 47, raw -32768 to 32767, in 10ms units.
     ///
     /// On-time.
     ///
-    /// Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
+    /// Note ACP-070 (open): see X Magnetorquer Command.
     ///
-    /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    /// Note ACP-071 (likely): see X Magnetorquer Command.
     pub z_magnetorquer_command: i16,
 }
 
@@ -85,12 +88,12 @@ impl MagnetorquerCommand {
     }
 }
 
-impl crate::wire::Telemetry for MagnetorquerCommand {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 157;
+message!(MagnetorquerCommand {
+    x_magnetorquer_command: ("X Magnetorquer Command", 0, 16).unit("10ms units"),
+    y_magnetorquer_command: ("Y Magnetorquer Command", 16, 16).unit("10ms units"),
+    z_magnetorquer_command: ("Z Magnetorquer Command", 32, 16).unit("10ms units"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for MagnetorquerCommand {
+    const TELEMETRY_ID: u32 = 157;
 }

@@ -2,7 +2,7 @@
 
 //! Raw CSS 1 to 6, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Raw CSS 1 to 6: telemetry 168, 6 bytes. Table 126.
 ///
@@ -16,37 +16,39 @@ pub struct RawCss1To6 {
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of the sun
+    /// angle, without full scale, offset or what a sensor in the dark reads. The relative scale and
+    /// the threshold of the configuration refer to them.
     pub css1: u8,
     /// CSS2: bits 8 to 15, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS1.
     pub css2: u8,
     /// CSS3: bits 16 to 23, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS1.
     pub css3: u8,
     /// CSS4: bits 24 to 31, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS1.
     pub css4: u8,
     /// CSS5: bits 32 to 39, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS1.
     pub css5: u8,
     /// CSS6: bits 40 to 47, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS1.
     pub css6: u8,
 }
 
@@ -103,12 +105,15 @@ impl RawCss1To6 {
     }
 }
 
-impl crate::wire::Telemetry for RawCss1To6 {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 168;
+message!(RawCss1To6 {
+    css1: ("CSS1", 0, 8),
+    css2: ("CSS2", 8, 8),
+    css3: ("CSS3", 16, 8),
+    css4: ("CSS4", 24, 8),
+    css5: ("CSS5", 32, 8),
+    css6: ("CSS6", 40, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawCss1To6 {
+    const TELEMETRY_ID: u32 = 168;
 }

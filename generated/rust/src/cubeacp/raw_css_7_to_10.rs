@@ -2,13 +2,15 @@
 
 //! Raw CSS 7 to 10, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Raw CSS 7 to 10: telemetry 169, 6 bytes. Table 127.
 ///
 /// Bit 50 of the log mask.
 ///
-/// Erratum ACP-081 (likely): Raw CSS 7 to 10: 6 bytes announced, 4 described.
+/// Erratum ACP-081 (likely): Raw CSS 7 to 10: 6 bytes announced, 4 described. Four sensors fill
+/// four of six bytes. The last two are held as reserved; the frame is probably filled up to the
+/// size of the loggable ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,25 +20,27 @@ pub struct RawCss7To10 {
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of the sun
+    /// angle, without full scale, offset or what a sensor in the dark reads. The relative scale and
+    /// the threshold of the configuration refer to them.
     pub css7: u8,
     /// CSS8: bits 8 to 15, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS7.
     pub css8: u8,
     /// CSS9: bits 16 to 23, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS7.
     pub css9: u8,
     /// CSS10: bits 24 to 31, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS7.
     pub css10: u8,
 }
 
@@ -89,12 +93,13 @@ impl RawCss7To10 {
     }
 }
 
-impl crate::wire::Telemetry for RawCss7To10 {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 169;
+message!(RawCss7To10 {
+    css7: ("CSS7", 0, 8),
+    css8: ("CSS8", 8, 8),
+    css9: ("CSS9", 16, 8),
+    css10: ("CSS10", 24, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawCss7To10 {
+    const TELEMETRY_ID: u32 = 169;
 }

@@ -3,7 +3,7 @@
 //! Raw GPS Measurements, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error, Scale};
+use crate::support::{message, put, take, Coded, Error, Scale};
 
 /// Raw GPS Measurements: telemetry 210, 36 bytes. Table 158.
 ///
@@ -16,7 +16,8 @@ use crate::support::{put, take, Coded, Error, Scale};
 pub struct RawGpsMeasurements {
     /// Gps Solution Status: bits 0 to 7.
     ///
-    /// Note ACP-042 (certain): GPS is spelt Gps in one field.
+    /// Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands among
+    /// fields with GPS, and the sun sensors are Css in the same telecommand.
     pub gps_solution_status: Coded<enums::GpsSolutionStatus>,
     /// Number of tracked GPS satellites: bits 8 to 15, raw 0 to 255.
     pub number_of_tracked_gps_satellites: u8,
@@ -24,7 +25,8 @@ pub struct RawGpsMeasurements {
     pub number_of_gps_satellites_used_in_solution: u8,
     /// Counter for XYZ Lof from GPS: bits 24 to 31, raw 0 to 255.
     ///
-    /// Erratum ACP-087 (certain): GPS counter: Lof is Log.
+    /// Erratum ACP-087 (certain): GPS counter: Lof is Log. A letter is wrong in name and
+    /// description. The identifier is held without the slip.
     pub counter_for_xyz_log_from_gps: u8,
     /// Counter for RANGE log from GPS: bits 32 to 39, raw 0 to 255.
     pub counter_for_range_log_from_gps: u8,
@@ -32,37 +34,45 @@ pub struct RawGpsMeasurements {
     ///
     /// Explained on page 656 of the OEMV615 reference manual.
     ///
-    /// Note ACP-088 (open): GPS response: explained in another manual.
+    /// Note ACP-088 (open): GPS response: explained in another manual. The meaning is on page 656
+    /// of a reference manual of the receiver, which is not among the documents named at the front.
+    /// Other receivers have other manuals.
     pub response_message_for_gps_log_setup: u8,
     /// GPS Reference Week: bits 48 to 63, raw 0 to 65535.
     ///
-    /// Note ACP-089 (open): GPS week: with or without roll-overs.
+    /// Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full
+    /// week, ten of which a receiver sends. A number of roll-overs is a setting, so it is open
+    /// which of the two this is.
     pub gps_reference_week: u16,
     /// GPS Time Milliseconds: bits 64 to 95, raw 0 to 4294967295, in ms.
     pub gps_time_milliseconds: u32,
     /// ECEF Position X: bits 96 to 127, raw -2147483648 to 2147483647, in m.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16
+    /// bits in the state frames and 32 bits in the GPS frames and the simulated data, with the same
+    /// name, description and unit.
     pub ecef_position_x: i32,
     /// ECEF Velocity X: bits 128 to 143, raw -32768 to 32767, in m/s.
     ///
-    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity from the
+    /// receiver has a step of 1 m/s, that of the propagator 0.25 m/s. A factor may have been lost;
+    /// none is made up.
     pub ecef_velocity_x: i16,
     /// ECEF Position Y: bits 144 to 175, raw -2147483648 to 2147483647, in m.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): see ECEF Position X.
     pub ecef_position_y: i32,
     /// ECEF Velocity Y: bits 176 to 191, raw -32768 to 32767, in m/s.
     ///
-    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): see ECEF Velocity X.
     pub ecef_velocity_y: i16,
     /// ECEF Position Z: bits 192 to 223, raw -2147483648 to 2147483647, in m.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): see ECEF Position X.
     pub ecef_position_z: i32,
     /// ECEF Velocity Z: bits 224 to 239, raw -32768 to 32767, in m/s.
     ///
-    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): see ECEF Velocity X.
     pub ecef_velocity_z: i16,
     /// X-pos Standard Deviation: bits 240 to 247, raw 0 to 255; physical `raw*0.1`, 0 to 25.5 m.
     pub x_pos_standard_deviation: u8,
@@ -72,15 +82,17 @@ pub struct RawGpsMeasurements {
     pub z_pos_standard_deviation: u8,
     /// X-vel Standard Deviation: bits 264 to 271, raw 0 to 255, in m/s.
     ///
-    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second. Deviations of the
+    /// position have a factor of 0.1, those of the velocity none. A whole 1 m/s is coarse for a GPS
+    /// velocity, and the limit that is compared with it is set in hundredths.
     pub x_vel_standard_deviation: u8,
     /// Y-vel Standard Deviation: bits 272 to 279, raw 0 to 255, in m/s.
     ///
-    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): see X-vel Standard Deviation.
     pub y_vel_standard_deviation: u8,
     /// Z-vel Standard Deviation: bits 280 to 287, raw 0 to 255, in m/s.
     ///
-    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): see X-vel Standard Deviation.
     pub z_vel_standard_deviation: u8,
 }
 
@@ -170,13 +182,29 @@ impl RawGpsMeasurements {
         f64::from(self.x_pos_standard_deviation) / 10.0
     }
 
-    /// Sets X-pos Standard Deviation in m, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets X-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_x_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.x_pos_standard_deviation = X_POS_STANDARD_DEVIATION.raw(value)?;
+        Ok(())
+    }
+
+    /// X-pos Standard Deviation in m, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_pos_standard_deviation_m_f32(&self) -> f32 {
+        f32::from(self.x_pos_standard_deviation) / 10.0
+    }
+
+    /// X-pos Standard Deviation in mm, exact: 0 to 25500.
+    #[must_use]
+    pub fn x_pos_standard_deviation_mm(&self) -> i32 {
+        i32::from(self.x_pos_standard_deviation) * 100
+    }
+
+    /// Sets X-pos Standard Deviation in mm, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_x_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
+        self.x_pos_standard_deviation = X_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -186,13 +214,29 @@ impl RawGpsMeasurements {
         f64::from(self.y_pos_standard_deviation) / 10.0
     }
 
-    /// Sets Y-pos Standard Deviation in m, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Y-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_y_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.y_pos_standard_deviation = Y_POS_STANDARD_DEVIATION.raw(value)?;
+        Ok(())
+    }
+
+    /// Y-pos Standard Deviation in m, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_pos_standard_deviation_m_f32(&self) -> f32 {
+        f32::from(self.y_pos_standard_deviation) / 10.0
+    }
+
+    /// Y-pos Standard Deviation in mm, exact: 0 to 25500.
+    #[must_use]
+    pub fn y_pos_standard_deviation_mm(&self) -> i32 {
+        i32::from(self.y_pos_standard_deviation) * 100
+    }
+
+    /// Sets Y-pos Standard Deviation in mm, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_y_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
+        self.y_pos_standard_deviation = Y_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -202,50 +246,68 @@ impl RawGpsMeasurements {
         f64::from(self.z_pos_standard_deviation) / 10.0
     }
 
-    /// Sets Z-pos Standard Deviation in m, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Z-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_z_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.z_pos_standard_deviation = Z_POS_STANDARD_DEVIATION.raw(value)?;
         Ok(())
     }
+
+    /// Z-pos Standard Deviation in m, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_pos_standard_deviation_m_f32(&self) -> f32 {
+        f32::from(self.z_pos_standard_deviation) / 10.0
+    }
+
+    /// Z-pos Standard Deviation in mm, exact: 0 to 25500.
+    #[must_use]
+    pub fn z_pos_standard_deviation_mm(&self) -> i32 {
+        i32::from(self.z_pos_standard_deviation) * 100
+    }
+
+    /// Sets Z-pos Standard Deviation in mm, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_z_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
+        self.z_pos_standard_deviation = Z_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const X_POS_STANDARD_DEVIATION: Scale = Scale {
-    field: "X-pos Standard Deviation",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const X_POS_STANDARD_DEVIATION: Scale =
+    Scale::new("X-pos Standard Deviation", (0, 255), (1, 0, 10));
 
-const Y_POS_STANDARD_DEVIATION: Scale = Scale {
-    field: "Y-pos Standard Deviation",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const Y_POS_STANDARD_DEVIATION: Scale =
+    Scale::new("Y-pos Standard Deviation", (0, 255), (1, 0, 10));
 
-const Z_POS_STANDARD_DEVIATION: Scale = Scale {
-    field: "Z-pos Standard Deviation",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const Z_POS_STANDARD_DEVIATION: Scale =
+    Scale::new("Z-pos Standard Deviation", (0, 255), (1, 0, 10));
 
-impl crate::wire::Telemetry for RawGpsMeasurements {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 210;
+message!(RawGpsMeasurements {
+    gps_solution_status: ("Gps Solution Status", 0, 8),
+    number_of_tracked_gps_satellites: ("Number of tracked GPS satellites", 8, 8),
+    number_of_gps_satellites_used_in_solution: ("Number of GPS satellites used in solution", 16, 8),
+    counter_for_xyz_log_from_gps: ("Counter for XYZ Lof from GPS", 24, 8),
+    counter_for_range_log_from_gps: ("Counter for RANGE log from GPS", 32, 8),
+    response_message_for_gps_log_setup: ("Response Message for GPS log setup", 40, 8),
+    gps_reference_week: ("GPS Reference Week", 48, 16),
+    gps_time_milliseconds: ("GPS Time Milliseconds", 64, 32).unit("ms"),
+    ecef_position_x: ("ECEF Position X", 96, 32).unit("m"),
+    ecef_velocity_x: ("ECEF Velocity X", 128, 16).unit("m/s"),
+    ecef_position_y: ("ECEF Position Y", 144, 32).unit("m"),
+    ecef_velocity_y: ("ECEF Velocity Y", 176, 16).unit("m/s"),
+    ecef_position_z: ("ECEF Position Z", 192, 32).unit("m"),
+    ecef_velocity_z: ("ECEF Velocity Z", 224, 16).unit("m/s"),
+    x_pos_standard_deviation: ("X-pos Standard Deviation", 240, 8)
+        .unit("m").scale(&X_POS_STANDARD_DEVIATION),
+    y_pos_standard_deviation: ("Y-pos Standard Deviation", 248, 8)
+        .unit("m").scale(&Y_POS_STANDARD_DEVIATION),
+    z_pos_standard_deviation: ("Z-pos Standard Deviation", 256, 8)
+        .unit("m").scale(&Z_POS_STANDARD_DEVIATION),
+    x_vel_standard_deviation: ("X-vel Standard Deviation", 264, 8).unit("m/s"),
+    y_vel_standard_deviation: ("Y-vel Standard Deviation", 272, 8).unit("m/s"),
+    z_vel_standard_deviation: ("Z-vel Standard Deviation", 280, 8).unit("m/s"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawGpsMeasurements {
+    const TELEMETRY_ID: u32 = 210;
 }

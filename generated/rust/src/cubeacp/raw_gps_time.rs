@@ -2,7 +2,7 @@
 
 //! Raw GPS Time, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Raw GPS Time: telemetry 177, 6 bytes. Table 135.
 ///
@@ -14,7 +14,9 @@ use crate::support::{put, take, Error};
 pub struct RawGpsTime {
     /// GPS Reference Week: bits 0 to 15, raw 0 to 65535.
     ///
-    /// Note ACP-089 (open): GPS week: with or without roll-overs.
+    /// Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full
+    /// week, ten of which a receiver sends. A number of roll-overs is a setting, so it is open
+    /// which of the two this is.
     pub gps_reference_week: u16,
     /// GPS Time Milliseconds: bits 16 to 47, raw 0 to 4294967295, in ms.
     pub gps_time_milliseconds: u32,
@@ -65,12 +67,11 @@ impl RawGpsTime {
     }
 }
 
-impl crate::wire::Telemetry for RawGpsTime {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 177;
+message!(RawGpsTime {
+    gps_reference_week: ("GPS Reference Week", 0, 16),
+    gps_time_milliseconds: ("GPS Time Milliseconds", 16, 32).unit("ms"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawGpsTime {
+    const TELEMETRY_ID: u32 = 177;
 }

@@ -2,7 +2,7 @@
 
 //! Raw Rate Sensor, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Raw Rate Sensor: telemetry 216, 6 bytes. Table 164.
 ///
@@ -17,18 +17,19 @@ pub struct RawRateSensor {
     /// Sampled A/D value.
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Neither resolution nor unit of the sampled values is given.
     pub rate_x: i16,
     /// RateY: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): see RateX.
     pub rate_y: i16,
     /// RateZ: bits 32 to 47, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): see RateX.
     pub rate_z: i16,
 }
 
@@ -79,12 +80,12 @@ impl RawRateSensor {
     }
 }
 
-impl crate::wire::Telemetry for RawRateSensor {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 216;
+message!(RawRateSensor {
+    rate_x: ("RateX", 0, 16),
+    rate_y: ("RateY", 16, 16),
+    rate_z: ("RateZ", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawRateSensor {
+    const TELEMETRY_ID: u32 = 216;
 }

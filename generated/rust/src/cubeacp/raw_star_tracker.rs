@@ -3,7 +3,7 @@
 //! Raw Star Tracker, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{flags, put, take, Coded, Error, Scale};
+use crate::support::{flags, message, put, take, Coded, Error, Scale};
 
 /// Raw Star Tracker: telemetry 211, 54 bytes. Table 159.
 ///
@@ -19,24 +19,22 @@ pub struct RawStarTracker {
     /// Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// value. What is counted stands in place of a unit; noise repeats the name. They are kept as
+    /// units of counts.
     pub number_of_stars_detected: u8,
     /// Star image noise: bits 8 to 15, raw 0 to 255, in noise.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub star_image_noise: u8,
     /// Invalid Stars: bits 16 to 23, raw 0 to 255, in Invalid stars.
     ///
     /// How many of the detected stars are invalid.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub invalid_stars: u8,
     /// Number of stars identified: bits 24 to 31, raw 0 to 255, in stars.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub number_of_stars_identified: u8,
     /// Identification mode: bits 32 to 39.
     pub identification_mode: Coded<enums::StarIdModeVal>,
@@ -44,8 +42,7 @@ pub struct RawStarTracker {
     ///
     /// Mean of the centre line of the image.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub image_dark_value: u8,
     /// Image Capture Success: bit 48.
     pub image_capture_success: bool,
@@ -55,7 +52,8 @@ pub struct RawStarTracker {
     pub identification_success: bool,
     /// AttitudeSuccess: bit 51.
     ///
-    /// Note ACP-115 (certain): AttitudeSuccess is written in one piece.
+    /// Note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags before it
+    /// have blanks, as its description has.
     pub attitude_success: bool,
     /// Processing Time Error: bit 52.
     pub processing_time_error: bool,
@@ -67,37 +65,40 @@ pub struct RawStarTracker {
     pub comms_error: bool,
     /// Sample Period: bits 56 to 71, raw 0 to 65535.
     ///
-    /// Note ACP-113 (open): Sample period of the star tracker has no unit.
+    /// Note ACP-113 (open): Sample period of the star tracker has no unit. Other times of the star
+    /// tracker are in ms.
     pub sample_period: u16,
     /// Star 1 confidence: bits 72 to 79, raw 0 to 255, in %.
     ///
-    /// Erratum ACP-114 (certain): percentage is %.
+    /// Erratum ACP-114 (certain): percentage is %. The unit is spelt out in two frames and a sign
+    /// elsewhere.
     pub star_1_confidence: u8,
     /// Star 2 confidence: bits 80 to 87, raw 0 to 255, in %.
     ///
-    /// Erratum ACP-114 (certain): percentage is %.
+    /// Erratum ACP-114 (certain): see Star 1 confidence.
     pub star_2_confidence: u8,
     /// Star 3 confidence: bits 88 to 95, raw 0 to 255, in %.
     ///
-    /// Erratum ACP-114 (certain): percentage is %.
+    /// Erratum ACP-114 (certain): see Star 1 confidence.
     pub star_3_confidence: u8,
     /// Magnitude Star 1: bits 96 to 111, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Note ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16 bits
+    /// without a factor can be neither fractional nor negative.
     pub magnitude_star_1: u16,
     /// Magnitude Star 2: bits 112 to 127, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Note ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): see Magnitude Star 1.
     pub magnitude_star_2: u16,
     /// Magnitude Star 3: bits 128 to 143, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Note ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): see Magnitude Star 1.
     pub magnitude_star_3: u16,
     /// Catalogue Star 1: bits 144 to 159, raw 0 to 65535.
     ///
@@ -134,39 +135,42 @@ pub struct RawStarTracker {
     ///
     /// Estimated by CubeStar, about its own X axis.
     ///
-    /// Note ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given without a
+    /// unit. The other rates are in deg/s; rad/s would fit the range as well.
     pub x_axis_rate: i16,
     /// y-Axis rate: bits 352 to 367, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
     /// Estimated by CubeStar, about its own Y axis.
     ///
-    /// Note ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): see x-Axis rate.
     pub y_axis_rate: i16,
     /// z-Axis rate: bits 368 to 383, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
     /// Estimated by CubeStar, about its own Z axis.
     ///
-    /// Note ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): see x-Axis rate.
     pub z_axis_rate: i16,
     /// Q0: bits 384 to 399, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q1.
     ///
-    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names and
+    /// descriptions count differently. Q1 to Q3 agree with the other quaternions; if Q0 were the
+    /// scalar, the third vector component would be missing.
     pub q0: i16,
     /// Q1: bits 400 to 415, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q2.
     ///
-    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): see Q0.
     pub q1: i16,
     /// Q2: bits 416 to 431, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q3.
     ///
-    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): see Q0.
     pub q2: i16,
 }
 
@@ -296,12 +300,28 @@ impl RawStarTracker {
     }
 
     /// Sets x-Axis rate, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_x_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.x_axis_rate = X_AXIS_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// x-Axis rate, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_axis_rate_physical_f32(&self) -> f32 {
+        f32::from(self.x_axis_rate) / 10_000.0
+    }
+
+    /// x-Axis rate in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn x_axis_rate_micro(&self) -> i32 {
+        i32::from(self.x_axis_rate) * 100
+    }
+
+    /// Sets x-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_x_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.x_axis_rate = X_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -312,12 +332,28 @@ impl RawStarTracker {
     }
 
     /// Sets y-Axis rate, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_y_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.y_axis_rate = Y_AXIS_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// y-Axis rate, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_axis_rate_physical_f32(&self) -> f32 {
+        f32::from(self.y_axis_rate) / 10_000.0
+    }
+
+    /// y-Axis rate in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn y_axis_rate_micro(&self) -> i32 {
+        i32::from(self.y_axis_rate) * 100
+    }
+
+    /// Sets y-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_y_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.y_axis_rate = Y_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -328,12 +364,28 @@ impl RawStarTracker {
     }
 
     /// Sets z-Axis rate, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_z_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.z_axis_rate = Z_AXIS_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// z-Axis rate, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_axis_rate_physical_f32(&self) -> f32 {
+        f32::from(self.z_axis_rate) / 10_000.0
+    }
+
+    /// z-Axis rate in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn z_axis_rate_micro(&self) -> i32 {
+        i32::from(self.z_axis_rate) * 100
+    }
+
+    /// Sets z-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_z_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.z_axis_rate = Z_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -343,13 +395,29 @@ impl RawStarTracker {
         f64::from(self.q0) / 10_000.0
     }
 
-    /// Sets Q0, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Q0, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_q0_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q0 = Q0.raw(value)?;
+        Ok(())
+    }
+
+    /// Q0, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn q0_physical_f32(&self) -> f32 {
+        f32::from(self.q0) / 10_000.0
+    }
+
+    /// Q0 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn q0_micro(&self) -> i32 {
+        i32::from(self.q0) * 100
+    }
+
+    /// Sets Q0 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_q0_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.q0 = Q0.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -359,13 +427,29 @@ impl RawStarTracker {
         f64::from(self.q1) / 10_000.0
     }
 
-    /// Sets Q1, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Q1, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_q1_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q1 = Q1.raw(value)?;
+        Ok(())
+    }
+
+    /// Q1, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn q1_physical_f32(&self) -> f32 {
+        f32::from(self.q1) / 10_000.0
+    }
+
+    /// Q1 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn q1_micro(&self) -> i32 {
+        i32::from(self.q1) * 100
+    }
+
+    /// Sets Q1 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_q1_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.q1 = Q1.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -375,77 +459,87 @@ impl RawStarTracker {
         f64::from(self.q2) / 10_000.0
     }
 
-    /// Sets Q2, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Q2, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_q2_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q2 = Q2.raw(value)?;
         Ok(())
     }
+
+    /// Q2, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn q2_physical_f32(&self) -> f32 {
+        f32::from(self.q2) / 10_000.0
+    }
+
+    /// Q2 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn q2_micro(&self) -> i32 {
+        i32::from(self.q2) * 100
+    }
+
+    /// Sets Q2 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_q2_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.q2 = Q2.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const X_AXIS_RATE: Scale = Scale {
-    field: "x-Axis rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const X_AXIS_RATE: Scale = Scale::new("x-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
 
-const Y_AXIS_RATE: Scale = Scale {
-    field: "y-Axis rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Y_AXIS_RATE: Scale = Scale::new("y-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
 
-const Z_AXIS_RATE: Scale = Scale {
-    field: "z-Axis rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Z_AXIS_RATE: Scale = Scale::new("z-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
 
-const Q0: Scale = Scale {
-    field: "Q0",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Q0: Scale = Scale::new("Q0", (-32_768, 32_767), (1, 0, 10_000));
 
-const Q1: Scale = Scale {
-    field: "Q1",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Q1: Scale = Scale::new("Q1", (-32_768, 32_767), (1, 0, 10_000));
 
-const Q2: Scale = Scale {
-    field: "Q2",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Q2: Scale = Scale::new("Q2", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for RawStarTracker {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 211;
+message!(RawStarTracker {
+    number_of_stars_detected: ("Number of stars detected", 0, 8).unit("stars"),
+    star_image_noise: ("Star image noise", 8, 8).unit("noise"),
+    invalid_stars: ("Invalid Stars", 16, 8).unit("Invalid stars"),
+    number_of_stars_identified: ("Number of stars identified", 24, 8).unit("stars"),
+    identification_mode: ("Identification mode", 32, 8),
+    image_dark_value: ("Image dark value", 40, 8).unit("8-bit pixel value"),
+    image_capture_success: ("Image Capture Success", 48, 1),
+    detection_success: ("Detection Success", 49, 1),
+    identification_success: ("Identification Success", 50, 1),
+    attitude_success: ("AttitudeSuccess", 51, 1),
+    processing_time_error: ("Processing Time Error", 52, 1),
+    tracking_module_enabled: ("Tracking Module Enabled", 53, 1),
+    prediction_enabled: ("Prediction Enabled", 54, 1),
+    comms_error: ("Comms error", 55, 1),
+    sample_period: ("Sample Period", 56, 16),
+    star_1_confidence: ("Star 1 confidence", 72, 8).unit("%"),
+    star_2_confidence: ("Star 2 confidence", 80, 8).unit("%"),
+    star_3_confidence: ("Star 3 confidence", 88, 8).unit("%"),
+    magnitude_star_1: ("Magnitude Star 1", 96, 16),
+    magnitude_star_2: ("Magnitude Star 2", 112, 16),
+    magnitude_star_3: ("Magnitude Star 3", 128, 16),
+    catalogue_star_1: ("Catalogue Star 1", 144, 16),
+    centroid_x_star_1: ("Centroid X Star 1", 160, 16),
+    centroid_y_star_1: ("Centroid Y Star 1", 176, 16),
+    catalogue_star_2: ("Catalogue Star 2", 192, 16),
+    centroid_x_star_2: ("Centroid X Star 2", 208, 16),
+    centroid_y_star_2: ("Centroid Y Star 2", 224, 16),
+    catalogue_star_3: ("Catalogue Star 3", 240, 16),
+    centroid_x_star_3: ("Centroid X Star 3", 256, 16),
+    centroid_y_star_3: ("Centroid Y Star 3", 272, 16),
+    capture: ("Capture", 288, 16).unit("ms"),
+    detection: ("Detection", 304, 16).unit("ms"),
+    identification: ("Identification", 320, 16).unit("ms"),
+    x_axis_rate: ("x-Axis rate", 336, 16).scale(&X_AXIS_RATE),
+    y_axis_rate: ("y-Axis rate", 352, 16).scale(&Y_AXIS_RATE),
+    z_axis_rate: ("z-Axis rate", 368, 16).scale(&Z_AXIS_RATE),
+    q0: ("Q0", 384, 16).scale(&Q0),
+    q1: ("Q1", 400, 16).scale(&Q1),
+    q2: ("Q2", 416, 16).scale(&Q2),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawStarTracker {
+    const TELEMETRY_ID: u32 = 211;
 }

@@ -2,13 +2,15 @@
 
 //! Save Configuration, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Save Configuration: telecommand 63, 0 bytes. Table 92.
 ///
 /// Keeps the current configuration in flash.
 ///
-/// Note ACP-054 (open): Two saves for three stored sets.
+/// Note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS
+/// configuration, the orbit parameters and the system configuration. Telecommands save the current
+/// configuration and the orbit parameters; which the first covers is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -53,12 +55,9 @@ impl SaveConfiguration {
     }
 }
 
-impl crate::wire::Telecommand for SaveConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 63;
+message!(SaveConfiguration {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SaveConfiguration {
+    const TELECOMMAND_ID: u32 = 63;
 }

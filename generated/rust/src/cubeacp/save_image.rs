@@ -3,13 +3,14 @@
 //! Save Image, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Save Image: telecommand 80, 2 bytes. Table 94.
 ///
 /// Takes a picture with a CubeSense or the CubeStar camera and saves it to the SD card.
 ///
-/// Note ACP-055 (certain): Save Image saves before it captures.
+/// Note ACP-055 (certain): Save Image saves before it captures. The description has the steps in
+/// the wrong order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -66,12 +67,11 @@ impl SaveImage {
     }
 }
 
-impl crate::wire::Telecommand for SaveImage {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 80;
+message!(SaveImage {
+    camera_select: ("Camera Select", 0, 8),
+    image_size: ("Image Size", 8, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SaveImage {
+    const TELECOMMAND_ID: u32 = 80;
 }

@@ -3,7 +3,7 @@
 //! Set Attitude Control Mode, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error};
+use crate::support::{message, put, take, Coded, Error};
 
 /// Set Attitude Control Mode: telecommand 13, 3 bytes. Table 77.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -19,9 +19,12 @@ pub struct SetAttitudeControlMode {
     ///
     /// 65535 (0xFFFF): no timeout.
     ///
-    /// Note ACP-022 (open): Timeout of a control mode: 0.
+    /// Note ACP-022 (open): Timeout of a control mode: 0. 0xFFFF is for ever; what 0 does is not
+    /// said. No frame returns the time left.
     ///
-    /// Note ACP-023 (certain): Control mode None does not exist.
+    /// Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the
+    /// mode falls back, when the control mode is None. The member with value 0 is called No
+    /// control.
     pub timeout: u16,
 }
 
@@ -72,12 +75,11 @@ impl SetAttitudeControlMode {
     }
 }
 
-impl crate::wire::Telecommand for SetAttitudeControlMode {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 13;
+message!(SetAttitudeControlMode {
+    control_mode: ("Control Mode", 0, 8),
+    timeout: ("Timeout", 8, 16).unit("s"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetAttitudeControlMode {
+    const TELECOMMAND_ID: u32 = 13;
 }

@@ -2,14 +2,15 @@
 
 //! Set Detumbling Control Parameters, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Set Detumbling Control Parameters: configuration, set by telecommand 38, got by telemetry 208,
 /// 14 bytes. Table 195.
 ///
 /// Gains and references of the detumbling mode.
 ///
-/// Note ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
+/// get id have neutral names, but for eight. Names and identifiers are held as printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,13 +20,14 @@ pub struct SetDetumblingControlParameters {
     ///
     /// Ks.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the
+    /// control laws are in another document.
     pub detumbling_spin_gain: f32,
     /// Detumbling Damping Gain: bits 32 to 63, 32-bit float.
     ///
     /// Kd.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): see Detumbling Spin Gain.
     pub detumbling_damping_gain: f32,
     /// Reference spin rate: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
@@ -34,13 +36,14 @@ pub struct SetDetumblingControlParameters {
     ///
     /// Must be below 0 deg/s.
     ///
-    /// Note ACP-162 (certain): Limits of a sign in words only.
+    /// Note ACP-162 (certain): Limits of a sign in words only. Two references must always be
+    /// smaller than 0; the types allow the opposite, and what the program does with it is not said.
     pub spin_rate: i16,
     /// Fast BDot Detumbling Gain: bits 80 to 111, 32-bit float.
     ///
     /// Kdf.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): see Detumbling Spin Gain.
     pub fast_bdot_detumbling_gain: f32,
 }
 
@@ -102,42 +105,47 @@ impl SetDetumblingControlParameters {
         f64::from(self.spin_rate) / 1_000.0
     }
 
-    /// Sets Reference spin rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Reference spin rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_spin_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.spin_rate = SPIN_RATE.raw(value)?;
         Ok(())
     }
-}
 
-const SPIN_RATE: Scale = Scale {
-    field: "Reference spin rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+    /// Reference spin rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn spin_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.spin_rate) / 1_000.0
+    }
 
-impl crate::wire::Telecommand for SetDetumblingControlParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 38;
+    /// Reference spin rate in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn spin_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.spin_rate)
+    }
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
+    /// Sets Reference spin rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_spin_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.spin_rate = SPIN_RATE.whole(value.into(), 1, 0)?;
+        Ok(())
     }
 }
 
-impl crate::wire::Telemetry for SetDetumblingControlParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 208;
+const SPIN_RATE: Scale = Scale::new("Reference spin rate", (-32_768, 32_767), (1, 0, 1_000));
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+message!(SetDetumblingControlParameters {
+    detumbling_spin_gain: ("Detumbling Spin Gain", 0, 32),
+    detumbling_damping_gain: ("Detumbling Damping Gain", 32, 32),
+    spin_rate: ("Reference spin rate", 64, 16)
+        .unit("deg/s").limits(&[("below", 0.0)]).scale(&SPIN_RATE),
+    fast_bdot_detumbling_gain: ("Fast BDot Detumbling Gain", 80, 32),
+});
+
+impl crate::Telecommand for SetDetumblingControlParameters {
+    const TELECOMMAND_ID: u32 = 38;
+}
+
+impl crate::Telemetry for SetDetumblingControlParameters {
+    const TELEMETRY_ID: u32 = 208;
 }

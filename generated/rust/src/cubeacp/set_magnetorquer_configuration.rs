@@ -3,12 +3,13 @@
 //! Set Magnetorquer Configuration, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Set Magnetorquer Configuration: configuration, set by telecommand 21, got by telemetry 136, 3
 /// bytes. Table 179.
 ///
-/// Note ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
+/// get id have neutral names, but for eight. Names and identifiers are held as printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -16,15 +17,17 @@ use crate::support::{Coded, Error};
 pub struct SetMagnetorquerConfiguration {
     /// Magnetorquer 1 Configuration: bits 0 to 7.
     ///
-    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output. Each axis is
+    /// said to need a torquer output 1, 2 or 3. The configuration works the other way round and
+    /// gives an axis to each torquer, or Not Used.
     pub magnetorquer_1_configuration: Coded<enums::AxisSelect>,
     /// Magnetorquer 2 Configuration: bits 8 to 15.
     ///
-    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    /// Note ACP-103 (open): see Magnetorquer 1 Configuration.
     pub magnetorquer_2_configuration: Coded<enums::AxisSelect>,
     /// Magnetorquer 3 Configuration: bits 16 to 23.
     ///
-    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    /// Note ACP-103 (open): see Magnetorquer 1 Configuration.
     pub magnetorquer_3_configuration: Coded<enums::AxisSelect>,
 }
 
@@ -77,22 +80,16 @@ impl SetMagnetorquerConfiguration {
     }
 }
 
-impl crate::wire::Telecommand for SetMagnetorquerConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 21;
+message!(SetMagnetorquerConfiguration {
+    magnetorquer_1_configuration: ("Magnetorquer 1 Configuration", 0, 8),
+    magnetorquer_2_configuration: ("Magnetorquer 2 Configuration", 8, 8),
+    magnetorquer_3_configuration: ("Magnetorquer 3 Configuration", 16, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetMagnetorquerConfiguration {
+    const TELECOMMAND_ID: u32 = 21;
 }
 
-impl crate::wire::Telemetry for SetMagnetorquerConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 136;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SetMagnetorquerConfiguration {
+    const TELEMETRY_ID: u32 = 136;
 }

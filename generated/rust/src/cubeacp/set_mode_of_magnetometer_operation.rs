@@ -3,7 +3,7 @@
 //! Set Mode of Magnetometer Operation, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Set Mode of Magnetometer Operation: telecommand 56, 1 byte. Table 89.
 ///
@@ -17,7 +17,9 @@ pub struct SetModeOfMagnetometerOperation {
     ///
     /// The magnetometer that estimation and control use.
     ///
-    /// Note ACP-049 (open): Magnetometer mode can be set in two places.
+    /// Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a
+    /// configuration message set the same mode. Which wins after a restart, and whether the
+    /// telecommand changes what the configuration returns, is not said.
     pub magnetometer_mode: Coded<enums::MagModeVal>,
 }
 
@@ -64,12 +66,10 @@ impl SetModeOfMagnetometerOperation {
     }
 }
 
-impl crate::wire::Telecommand for SetModeOfMagnetometerOperation {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 56;
+message!(SetModeOfMagnetometerOperation {
+    magnetometer_mode: ("Magnetometer Mode", 0, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetModeOfMagnetometerOperation {
+    const TELECOMMAND_ID: u32 = 56;
 }

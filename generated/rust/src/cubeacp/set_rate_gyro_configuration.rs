@@ -3,14 +3,16 @@
 //! Set Rate Gyro Configuration, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error, Scale};
+use crate::support::{message, put, take, Coded, Error, Scale};
 
 /// Set Rate Gyro Configuration: configuration, set by telecommand 23, got by telemetry 138, 10
 /// bytes. Table 182.
 ///
-/// Note ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
+/// get id have neutral names, but for eight. Names and identifiers are held as printed.
 ///
-/// Note ACP-131 (certain): Gyro, rate sensor and MEMS.
+/// Note ACP-131 (certain): Gyro, rate sensor and MEMS. One sensor has three names, two of them in
+/// one message.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -25,23 +27,26 @@ pub struct SetRateGyroConfiguration {
     /// X-Rate Sensor Offset: bits 24 to 39, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
-    /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias. Whether the offset is added
+    /// or subtracted, and hence whether the estimated bias can be copied into it, is not said. Both
+    /// have the same factor.
     pub x_rate_sensor_offset: i16,
     /// Y-Rate Sensor Offset: bits 40 to 55, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
-    /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    /// Note ACP-132 (open): see X-Rate Sensor Offset.
     pub y_rate_sensor_offset: i16,
     /// Z-Rate Sensor Offset: bits 56 to 71, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
-    /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    /// Note ACP-132 (open): see X-Rate Sensor Offset.
     pub z_rate_sensor_offset: i16,
     /// RateSensorMult: bits 72 to 79, raw 0 to 255.
     ///
     /// Factor on the rate sensor measurements.
     ///
-    /// Note ACP-130 (open): RateSensorMult has no scale and no blanks.
+    /// Note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8 bits;
+    /// whether it is a whole factor, and of which quantity, is not said.
     pub rate_sensor_mult: u8,
 }
 
@@ -107,13 +112,29 @@ impl SetRateGyroConfiguration {
         f64::from(self.x_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets X-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets X-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_x_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.x_rate_sensor_offset = X_RATE_SENSOR_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// X-Rate Sensor Offset in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_rate_sensor_offset_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.x_rate_sensor_offset) / 1_000.0
+    }
+
+    /// X-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn x_rate_sensor_offset_mdeg_per_s(&self) -> i32 {
+        i32::from(self.x_rate_sensor_offset)
+    }
+
+    /// Sets X-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_x_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.x_rate_sensor_offset = X_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -123,13 +144,29 @@ impl SetRateGyroConfiguration {
         f64::from(self.y_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets Y-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Y-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_y_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.y_rate_sensor_offset = Y_RATE_SENSOR_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// Y-Rate Sensor Offset in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_rate_sensor_offset_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.y_rate_sensor_offset) / 1_000.0
+    }
+
+    /// Y-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn y_rate_sensor_offset_mdeg_per_s(&self) -> i32 {
+        i32::from(self.y_rate_sensor_offset)
+    }
+
+    /// Sets Y-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_y_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.y_rate_sensor_offset = Y_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -139,60 +176,59 @@ impl SetRateGyroConfiguration {
         f64::from(self.z_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets Z-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Z-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_z_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.z_rate_sensor_offset = Z_RATE_SENSOR_OFFSET.raw(value)?;
         Ok(())
     }
-}
 
-const X_RATE_SENSOR_OFFSET: Scale = Scale {
-    field: "X-Rate Sensor Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+    /// Z-Rate Sensor Offset in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_rate_sensor_offset_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.z_rate_sensor_offset) / 1_000.0
+    }
 
-const Y_RATE_SENSOR_OFFSET: Scale = Scale {
-    field: "Y-Rate Sensor Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+    /// Z-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn z_rate_sensor_offset_mdeg_per_s(&self) -> i32 {
+        i32::from(self.z_rate_sensor_offset)
+    }
 
-const Z_RATE_SENSOR_OFFSET: Scale = Scale {
-    field: "Z-Rate Sensor Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-impl crate::wire::Telecommand for SetRateGyroConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 23;
-
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
+    /// Sets Z-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_z_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.z_rate_sensor_offset = Z_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
+        Ok(())
     }
 }
 
-impl crate::wire::Telemetry for SetRateGyroConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 138;
+const X_RATE_SENSOR_OFFSET: Scale =
+    Scale::new("X-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+const Y_RATE_SENSOR_OFFSET: Scale =
+    Scale::new("Y-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const Z_RATE_SENSOR_OFFSET: Scale =
+    Scale::new("Z-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+message!(SetRateGyroConfiguration {
+    gyro1_configuration: ("Gyro1 Configuration", 0, 8),
+    gyro2_configuration: ("Gyro2 Configuration", 8, 8),
+    gyro3_configuration: ("Gyro3 Configuration", 16, 8),
+    x_rate_sensor_offset: ("X-Rate Sensor Offset", 24, 16)
+        .unit("deg/s").scale(&X_RATE_SENSOR_OFFSET),
+    y_rate_sensor_offset: ("Y-Rate Sensor Offset", 40, 16)
+        .unit("deg/s").scale(&Y_RATE_SENSOR_OFFSET),
+    z_rate_sensor_offset: ("Z-Rate Sensor Offset", 56, 16)
+        .unit("deg/s").scale(&Z_RATE_SENSOR_OFFSET),
+    rate_sensor_mult: ("RateSensorMult", 72, 8),
+});
+
+impl crate::Telecommand for SetRateGyroConfiguration {
+    const TELECOMMAND_ID: u32 = 23;
+}
+
+impl crate::Telemetry for SetRateGyroConfiguration {
+    const TELEMETRY_ID: u32 = 138;
 }

@@ -3,14 +3,15 @@
 //! Set Tracking Controller Gain Parameters, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error};
+use crate::support::{message, put, take, Coded, Error};
 
 /// Set Tracking Controller Gain Parameters: configuration, set by telecommand 54, got by telemetry
 /// 221, 13 bytes. Table 198.
 ///
 /// Gains of the tracking mode.
 ///
-/// Note ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
+/// get id have neutral names, but for eight. Names and identifiers are held as printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,25 +21,28 @@ pub struct SetTrackingControllerGainParameters {
     ///
     /// Kp3.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the
+    /// control laws are in another document.
     pub tracking_proportional_gain: f32,
     /// Tracking Derivative Gain: bits 32 to 63, 32-bit float.
     ///
     /// Kd3.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): see Tracking Proportional Gain.
     pub tracking_derivative_gain: f32,
     /// Tracking Integral Gain: bits 64 to 95, 32-bit float.
     ///
     /// Ki3.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): see Tracking Proportional Gain.
     pub tracking_integral_gain: f32,
     /// Target-tracking Facet: bits 96 to 103.
     ///
     /// Body axis that is pointed at the target.
     ///
-    /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
+    /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration serves
+    /// actuators, sensors and facets. A facet that points to the sun or to a target as Not Used is
+    /// allowed by its table and not explained.
     pub target_tracking_facet: Coded<enums::AxisSelect>,
 }
 
@@ -93,22 +97,17 @@ impl SetTrackingControllerGainParameters {
     }
 }
 
-impl crate::wire::Telecommand for SetTrackingControllerGainParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 54;
+message!(SetTrackingControllerGainParameters {
+    tracking_proportional_gain: ("Tracking Proportional Gain", 0, 32),
+    tracking_derivative_gain: ("Tracking Derivative Gain", 32, 32),
+    tracking_integral_gain: ("Tracking Integral Gain", 64, 32),
+    target_tracking_facet: ("Target-tracking Facet", 96, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetTrackingControllerGainParameters {
+    const TELECOMMAND_ID: u32 = 54;
 }
 
-impl crate::wire::Telemetry for SetTrackingControllerGainParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 221;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SetTrackingControllerGainParameters {
+    const TELEMETRY_ID: u32 = 221;
 }

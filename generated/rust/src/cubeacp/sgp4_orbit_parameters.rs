@@ -2,7 +2,7 @@
 
 //! SGP4 Orbit Parameters, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// SGP4 Orbit Parameters: configuration, set by telecommand 45, got by telemetry 207, 64 bytes.
 /// Table 194.
@@ -21,7 +21,8 @@ pub struct Sgp4OrbitParameters {
     pub argument_of_perigee: f64,
     /// B-Star drag term: bits 256 to 319, 64-bit float.
     ///
-    /// Note ACP-161 (open): B-Star has no unit.
+    /// Note ACP-161 (open): B-Star has no unit. The drag term of two-line elements is per earth
+    /// radius; the table has none.
     pub b_star_drag_term: f64,
     /// Mean Motion: bits 320 to 383, 64-bit float, in orbits/day.
     pub mean_motion: f64,
@@ -31,7 +32,9 @@ pub struct Sgp4OrbitParameters {
     ///
     /// Year and day in one number.
     ///
-    /// Note ACP-160 (open): Epoch: year.day.
+    /// Note ACP-160 (open): Epoch: year.day. The unit is a format. Two or four digits of the year,
+    /// and whether day 1 is the first of January, are left open; as a fraction of a year it would
+    /// be something else.
     pub epoch: f64,
 }
 
@@ -94,22 +97,22 @@ impl Sgp4OrbitParameters {
     }
 }
 
-impl crate::wire::Telecommand for Sgp4OrbitParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 45;
+message!(Sgp4OrbitParameters {
+    inclination: ("Inclination", 0, 64).unit("deg"),
+    eccentricity: ("Eccentricity", 64, 64),
+    right_ascension_of_the_ascending_node: ("Right-ascension of the Ascending Node", 128, 64)
+        .unit("deg"),
+    argument_of_perigee: ("Argument of Perigee", 192, 64).unit("deg"),
+    b_star_drag_term: ("B-Star drag term", 256, 64),
+    mean_motion: ("Mean Motion", 320, 64).unit("orbits/day"),
+    mean_anomaly: ("Mean Anomaly", 384, 64).unit("deg"),
+    epoch: ("Epoch", 448, 64).unit("year.day"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for Sgp4OrbitParameters {
+    const TELECOMMAND_ID: u32 = 45;
 }
 
-impl crate::wire::Telemetry for Sgp4OrbitParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 207;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Sgp4OrbitParameters {
+    const TELEMETRY_ID: u32 = 207;
 }

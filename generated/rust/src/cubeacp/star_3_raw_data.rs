@@ -2,7 +2,7 @@
 
 //! Star 3 Raw Data, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Star 3 Raw Data: telemetry 214, 6 bytes. Table 162.
 ///
@@ -18,15 +18,17 @@ pub struct Star3RawData {
     ///
     /// Number in the star catalogue.
     ///
-    /// Note ACP-117 (open): Catalogue number or catalogue index.
+    /// Note ACP-117 (open): Catalogue number or catalogue index. The frames are described with an
+    /// index, their fields with a number of a catalogue that is not named.
     pub catalogue_star_3: u16,
     /// Centroid X Star 3: bits 16 to 31, raw -32768 to 32767.
     ///
-    /// Note ACP-116 (open): Star centroids have no scale.
+    /// Note ACP-116 (open): Star centroids have no scale. Signed 16-bit centroids without pixel,
+    /// angle or factor; the configuration has the image centre as a float in pixels.
     pub centroid_x_star_3: i16,
     /// Centroid Y Star 3: bits 32 to 47, raw -32768 to 32767.
     ///
-    /// Note ACP-116 (open): Star centroids have no scale.
+    /// Note ACP-116 (open): see Centroid X Star 3.
     pub centroid_y_star_3: i16,
 }
 
@@ -77,12 +79,12 @@ impl Star3RawData {
     }
 }
 
-impl crate::wire::Telemetry for Star3RawData {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 214;
+message!(Star3RawData {
+    catalogue_star_3: ("Catalogue Star 3", 0, 16),
+    centroid_x_star_3: ("Centroid X Star 3", 16, 16),
+    centroid_y_star_3: ("Centroid Y Star 3", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Star3RawData {
+    const TELEMETRY_ID: u32 = 214;
 }

@@ -2,7 +2,7 @@
 
 //! Star Magnitude, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Star Magnitude: telemetry 187, 6 bytes. Table 145.
 ///
@@ -18,19 +18,20 @@ pub struct StarMagnitude {
     ///
     /// Instrument magnitude.
     ///
-    /// Note ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16 bits
+    /// without a factor can be neither fractional nor negative.
     pub magnitude_star_1: u16,
     /// Magnitude Star 2: bits 16 to 31, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Note ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): see Magnitude Star 1.
     pub magnitude_star_2: u16,
     /// Magnitude Star 3: bits 32 to 47, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Note ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): see Magnitude Star 1.
     pub magnitude_star_3: u16,
 }
 
@@ -81,12 +82,12 @@ impl StarMagnitude {
     }
 }
 
-impl crate::wire::Telemetry for StarMagnitude {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 187;
+message!(StarMagnitude {
+    magnitude_star_1: ("Magnitude Star 1", 0, 16),
+    magnitude_star_2: ("Magnitude Star 2", 16, 16),
+    magnitude_star_3: ("Magnitude Star 3", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for StarMagnitude {
+    const TELEMETRY_ID: u32 = 187;
 }

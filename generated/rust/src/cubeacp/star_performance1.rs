@@ -3,7 +3,7 @@
 //! Star Performance1, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Star Performance1: telemetry 188, 6 bytes. Table 146.
 ///
@@ -11,7 +11,9 @@ use crate::support::{Coded, Error};
 ///
 /// Bit 52 of the log mask.
 ///
-/// Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
+/// Note ACP-096 (certain): Star Performance2 has the description of Star Performance1. Both are
+/// described as performance parameters of the star measurement; the second holds flags, a period
+/// and confidences.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,24 +22,22 @@ pub struct StarPerformance1 {
     /// Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// value. What is counted stands in place of a unit; noise repeats the name. They are kept as
+    /// units of counts.
     pub number_of_stars_detected: u8,
     /// Star image noise: bits 8 to 15, raw 0 to 255, in noise.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub star_image_noise: u8,
     /// Invalid Stars: bits 16 to 23, raw 0 to 255, in Invalid stars.
     ///
     /// How many of the detected stars are invalid.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub invalid_stars: u8,
     /// Number of stars identified: bits 24 to 31, raw 0 to 255, in stars.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub number_of_stars_identified: u8,
     /// Identification mode: bits 32 to 39.
     pub identification_mode: Coded<enums::StarIdModeVal>,
@@ -45,8 +45,7 @@ pub struct StarPerformance1 {
     ///
     /// Mean of the centre line of the image.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub image_dark_value: u8,
 }
 
@@ -103,12 +102,15 @@ impl StarPerformance1 {
     }
 }
 
-impl crate::wire::Telemetry for StarPerformance1 {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 188;
+message!(StarPerformance1 {
+    number_of_stars_detected: ("Number of stars detected", 0, 8).unit("stars"),
+    star_image_noise: ("Star image noise", 8, 8).unit("noise"),
+    invalid_stars: ("Invalid Stars", 16, 8).unit("Invalid stars"),
+    number_of_stars_identified: ("Number of stars identified", 24, 8).unit("stars"),
+    identification_mode: ("Identification mode", 32, 8),
+    image_dark_value: ("Image dark value", 40, 8).unit("8-bit pixel value"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for StarPerformance1 {
+    const TELEMETRY_ID: u32 = 188;
 }

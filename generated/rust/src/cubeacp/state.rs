@@ -2,13 +2,14 @@
 
 //! CubeACP State, a message of node `cubeacp`.
 
-use crate::support::{flags, Error};
+use crate::support::{flags, message, Error};
 
 /// CubeACP State: telemetry 135, 1 byte. Table 101.
 ///
 /// Errors in loading settings from flash and in using the SD card.
 ///
-/// Note ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
+/// They are written 0 and ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,19 +19,21 @@ pub struct State {
     ///
     /// Reading it from flash failed.
     ///
-    /// Note ACP-054 (open): Two saves for three stored sets.
+    /// Note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS
+    /// configuration, the orbit parameters and the system configuration. Telecommands save the
+    /// current configuration and the orbit parameters; which the first covers is not said.
     pub adcs_config_load_error: bool,
     /// Orbit Parameter Load Error: bit 1.
     ///
     /// Reading them from flash failed.
     ///
-    /// Note ACP-054 (open): Two saves for three stored sets.
+    /// Note ACP-054 (open): see ADCS Config Load Error.
     pub orbit_parameter_load_error: bool,
     /// System Configuration Load Error: bit 2.
     ///
     /// Reading it from flash failed.
     ///
-    /// Note ACP-054 (open): Two saves for three stored sets.
+    /// Note ACP-054 (open): see ADCS Config Load Error.
     pub system_configuration_load_error: bool,
     /// SD card initialisation error: bit 3.
     pub sd_card_initialisation_error: bool,
@@ -94,12 +97,15 @@ impl State {
     }
 }
 
-impl crate::wire::Telemetry for State {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 135;
+message!(State {
+    adcs_config_load_error: ("ADCS Config Load Error", 0, 1),
+    orbit_parameter_load_error: ("Orbit Parameter Load Error", 1, 1),
+    system_configuration_load_error: ("System Configuration Load Error", 2, 1),
+    sd_card_initialisation_error: ("SD card initialisation error", 3, 1),
+    sd_card_read_error: ("SD card read error", 4, 1),
+    sd_card_write_error: ("SD card write error", 5, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for State {
+    const TELEMETRY_ID: u32 = 135;
 }

@@ -3,11 +3,12 @@
 //! Status of Image Capture and Save Operation, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Status of Image Capture and Save Operation: telemetry 233, 2 bytes. Table 176.
 ///
-/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
+/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A
+/// telecommand or request sent to the wrong program is taken for another one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -17,7 +18,8 @@ pub struct StatusOfImageCaptureAndSaveOperation {
     pub percentage_complete: u8,
     /// Status: bits 8 to 15.
     ///
-    /// Note ACP-124 (open): Image status: no value for busy or done.
+    /// Note ACP-124 (open): Image status: no value for busy or done. The status of the operation
+    /// lists errors only, so No Error stands for not started, running and finished.
     pub status: Coded<enums::ImSaveStatus>,
 }
 
@@ -66,12 +68,11 @@ impl StatusOfImageCaptureAndSaveOperation {
     }
 }
 
-impl crate::wire::Telemetry for StatusOfImageCaptureAndSaveOperation {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 233;
+message!(StatusOfImageCaptureAndSaveOperation {
+    percentage_complete: ("Percentage Complete", 0, 8).unit("%"),
+    status: ("Status", 8, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for StatusOfImageCaptureAndSaveOperation {
+    const TELEMETRY_ID: u32 = 233;
 }

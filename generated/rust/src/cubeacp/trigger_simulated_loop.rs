@@ -3,14 +3,17 @@
 //! Trigger ADCS Loop with Simulated Sensor Data, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error, Scale};
+use crate::support::{message, put, take, Coded, Error, Scale};
 
 /// Trigger ADCS Loop with Simulated Sensor Data: telecommand 19, 127 bytes. Table 84.
 ///
 /// Runs the control loop once on the given measurements. Only valid while ADCS Run Mode is
 /// Triggered.
 ///
-/// Note ACP-032 (open): Simulated data are accepted while triggered, not while simulating.
+/// Note ACP-032 (open): Simulated data are accepted while triggered, not while simulating. The
+/// telecommand with simulated measurements is valid only in mode Triggered, and there is a mode
+/// Simulation that no other text mentions. The sentence was probably taken over from the
+/// telecommand before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -22,300 +25,323 @@ pub struct TriggerSimulatedLoop {
     pub unix_time: u32,
     /// Css Raw 1: bits 32 to 47, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8. The raw
+    /// values of the coarse sun sensors are twice as wide as in the frames that report them.
+    /// Whether more than 255 may be sent is not said.
     pub css_raw_1: u16,
     /// Css Raw 2: bits 48 to 63, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_2: u16,
     /// Css Raw 3: bits 64 to 79, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_3: u16,
     /// Css Raw 4: bits 80 to 95, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_4: u16,
     /// Css Raw 5: bits 96 to 111, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_5: u16,
     /// Css Raw 6: bits 112 to 127, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_6: u16,
     /// Css Raw 7: bits 128 to 143, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_7: u16,
     /// Css Raw 8: bits 144 to 159, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_8: u16,
     /// Css Raw 9: bits 160 to 175, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_9: u16,
     /// Css Raw 10: bits 176 to 191, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_10: u16,
     /// Cam1 Raw X: bits 192 to 207, raw -32768 to 32767.
     ///
     /// Raw angle.
     ///
-    /// Note ACP-036 (open): Simulated data: raw camera angles.
+    /// Note ACP-036 (open): Simulated data: raw camera angles. They are called raw angles here,
+    /// centroids by name and azimuth and elevation by description in the frames. No scale is given
+    /// in any.
     ///
-    /// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+    /// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The telecommand
+    /// begins with Cam1. Frame 194 and the ids 166 and 167 have Cam2 before Cam1.
     pub cam1_raw_x: i16,
     /// Cam1 Raw Y: bits 208 to 223, raw -32768 to 32767.
     ///
     /// Raw angle.
     ///
-    /// Note ACP-036 (open): Simulated data: raw camera angles.
+    /// Note ACP-036 (open): see Cam1 Raw X.
     pub cam1_raw_y: i16,
     /// Cam1 Busy: bits 224 to 231, raw 0 to 255.
     ///
     /// Capture status.
     ///
-    /// Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    /// Note ACP-035 (likely): Simulated data: camera results are plain numbers. Capture status and
+    /// detection result are unsigned integers here and enumerations in the frames. The first is
+    /// called Busy although it is a status of six values.
     pub cam1_busy: u8,
     /// Cam1 Result: bits 232 to 239, raw 0 to 255.
     ///
     /// Detection result.
     ///
-    /// Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    /// Note ACP-035 (likely): see Cam1 Busy.
     pub cam1_result: u8,
     /// Cam2 Raw X: bits 240 to 255, raw -32768 to 32767.
     ///
     /// Raw angle.
     ///
-    /// Note ACP-036 (open): Simulated data: raw camera angles.
+    /// Note ACP-036 (open): see Cam1 Raw X.
     ///
-    /// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+    /// Note ACP-038 (certain): see Cam1 Raw X.
     pub cam2_raw_x: i16,
     /// Cam2 Raw Y: bits 256 to 271, raw -32768 to 32767.
     ///
     /// Raw angle.
     ///
-    /// Note ACP-036 (open): Simulated data: raw camera angles.
+    /// Note ACP-036 (open): see Cam1 Raw X.
     pub cam2_raw_y: i16,
     /// Cam2 Busy: bits 272 to 279, raw 0 to 255.
     ///
     /// Capture status.
     ///
-    /// Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    /// Note ACP-035 (likely): see Cam1 Busy.
     pub cam2_busy: u8,
     /// Cam2 Result: bits 280 to 287, raw 0 to 255.
     ///
     /// Detection result.
     ///
-    /// Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    /// Note ACP-035 (likely): see Cam1 Busy.
     pub cam2_result: u8,
     /// Mag Raw X: bits 288 to 303, raw -32768 to 32767.
     ///
-    /// Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+    /// Note ACP-041 (open): Simulated data: the second magnetometer is missing. One magnetometer
+    /// can be simulated, and nothing says which one it stands for when the modes select another.
     pub mag_raw_x: i16,
     /// Mag Raw Y: bits 304 to 319, raw -32768 to 32767.
     ///
-    /// Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+    /// Note ACP-041 (open): see Mag Raw X.
     pub mag_raw_y: i16,
     /// Mag Raw Z: bits 320 to 335, raw -32768 to 32767.
     ///
-    /// Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+    /// Note ACP-041 (open): see Mag Raw X.
     pub mag_raw_z: i16,
     /// Rate Raw X: bits 336 to 367, raw -2147483648 to 2147483647.
     ///
-    /// Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+    /// Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16. The raw rates are
+    /// twice as wide as in the frames that report them, without a scale in either.
     pub rate_raw_x: i32,
     /// Rate Raw Y: bits 368 to 399, raw -2147483648 to 2147483647.
     ///
-    /// Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+    /// Note ACP-034 (open): see Rate Raw X.
     pub rate_raw_y: i32,
     /// Rate Raw Z: bits 400 to 431, raw -2147483648 to 2147483647.
     ///
-    /// Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+    /// Note ACP-034 (open): see Rate Raw X.
     pub rate_raw_z: i32,
     /// Wheel Raw X: bits 432 to 447, raw -32768 to 32767, in rpm.
     ///
-    /// Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+    /// Note ACP-040 (open): Simulated data: raw wheel speeds in rpm. The wheel speed is called raw
+    /// and has a unit; the frame with the same unit is among the calibrated measurements.
     pub wheel_raw_x: i16,
     /// Wheel Raw Y: bits 448 to 463, raw -32768 to 32767, in rpm.
     ///
-    /// Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+    /// Note ACP-040 (open): see Wheel Raw X.
     pub wheel_raw_y: i16,
     /// Wheel Raw Z: bits 464 to 479, raw -32768 to 32767, in rpm.
     ///
-    /// Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+    /// Note ACP-040 (open): see Wheel Raw X.
     pub wheel_raw_z: i16,
     /// Star1CameraX: bits 480 to 495, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames. Star
+    /// vectors have a factor in telemetry and none here, and are in camera and inertial instead of
+    /// body and orbit axes.
     pub star1_camera_x: i16,
     /// Star1CameraY: bits 496 to 511, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star1_camera_y: i16,
     /// Star1CameraZ: bits 512 to 527, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star1_camera_z: i16,
     /// Star1InertialX: bits 528 to 543, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star1_inertial_x: i16,
     /// Star1InertialY: bits 544 to 559, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star1_inertial_y: i16,
     /// Star1InertialZ: bits 560 to 575, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star1_inertial_z: i16,
     /// Star2CameraX: bits 576 to 591, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star2_camera_x: i16,
     /// Star2CameraY: bits 592 to 607, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star2_camera_y: i16,
     /// Star2CameraZ: bits 608 to 623, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star2_camera_z: i16,
     /// Star2InertialX: bits 624 to 639, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star2_inertial_x: i16,
     /// Star2InertialY: bits 640 to 655, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star2_inertial_y: i16,
     /// Star2InertialZ: bits 656 to 671, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star2_inertial_z: i16,
     /// Star3CameraX: bits 672 to 687, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star3_camera_x: i16,
     /// Star3CameraY: bits 688 to 703, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star3_camera_y: i16,
     /// Star3CameraZ: bits 704 to 719, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star3_camera_z: i16,
     /// Star3InertialX: bits 720 to 735, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star3_inertial_x: i16,
     /// Star3InertialY: bits 736 to 751, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star3_inertial_y: i16,
     /// Star3InertialZ: bits 752 to 767, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star3_inertial_z: i16,
     /// Gps Solution Status: bits 768 to 775.
     ///
-    /// Note ACP-042 (certain): GPS is spelt Gps in one field.
+    /// Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands among
+    /// fields with GPS, and the sun sensors are Css in the same telecommand.
     pub gps_solution_status: Coded<enums::GpsSolutionStatus>,
     /// GPS Reference Week: bits 776 to 791, raw 0 to 65535.
     ///
-    /// Note ACP-089 (open): GPS week: with or without roll-overs.
+    /// Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full
+    /// week, ten of which a receiver sends. A number of roll-overs is a setting, so it is open
+    /// which of the two this is.
     pub gps_reference_week: u16,
     /// GPS Time Milliseconds: bits 792 to 823, raw 0 to 4294967295, in ms.
     pub gps_time_milliseconds: u32,
     /// ECEF Position X: bits 824 to 855, raw -2147483648 to 2147483647, in m.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16
+    /// bits in the state frames and 32 bits in the GPS frames and the simulated data, with the same
+    /// name, description and unit.
     pub ecef_position_x: i32,
     /// ECEF Velocity X: bits 856 to 871, raw -32768 to 32767, in m/s.
     ///
-    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity from the
+    /// receiver has a step of 1 m/s, that of the propagator 0.25 m/s. A factor may have been lost;
+    /// none is made up.
     pub ecef_velocity_x: i16,
     /// ECEF Position Y: bits 872 to 903, raw -2147483648 to 2147483647, in m.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): see ECEF Position X.
     pub ecef_position_y: i32,
     /// ECEF Velocity Y: bits 904 to 919, raw -32768 to 32767, in m/s.
     ///
-    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): see ECEF Velocity X.
     pub ecef_velocity_y: i16,
     /// ECEF Position Z: bits 920 to 951, raw -2147483648 to 2147483647, in m.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): see ECEF Position X.
     pub ecef_position_z: i32,
     /// ECEF Velocity Z: bits 952 to 967, raw -32768 to 32767, in m/s.
     ///
-    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): see ECEF Velocity X.
     pub ecef_velocity_z: i16,
     /// X-pos Standard Deviation: bits 968 to 975, raw 0 to 255; physical `raw = value*10.0`, 0 to
     /// 25.5 m.
     ///
-    /// Note ACP-030 (certain): Formulas are written in two directions.
+    /// Note ACP-030 (certain): Formulas are written in two directions. Two telecommands give the
+    /// raw value as a multiple of the physical one, everything else the physical value from the raw
+    /// one. Both are held as printed.
     pub x_pos_standard_deviation: u8,
     /// Y-pos Standard Deviation: bits 976 to 983, raw 0 to 255; physical `raw = value*10.0`, 0 to
     /// 25.5 m.
     ///
-    /// Note ACP-030 (certain): Formulas are written in two directions.
+    /// Note ACP-030 (certain): see X-pos Standard Deviation.
     pub y_pos_standard_deviation: u8,
     /// Z-pos Standard Deviation: bits 984 to 991, raw 0 to 255; physical `raw = value*10.0`, 0 to
     /// 25.5 m.
     ///
-    /// Note ACP-030 (certain): Formulas are written in two directions.
+    /// Note ACP-030 (certain): see X-pos Standard Deviation.
     pub z_pos_standard_deviation: u8,
     /// X-vel Standard Deviation: bits 992 to 999, raw 0 to 255, in m/s.
     ///
-    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second. Deviations of the
+    /// position have a factor of 0.1, those of the velocity none. A whole 1 m/s is coarse for a GPS
+    /// velocity, and the limit that is compared with it is set in hundredths.
     pub x_vel_standard_deviation: u8,
     /// Y-vel Standard Deviation: bits 1000 to 1007, raw 0 to 255, in m/s.
     ///
-    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): see X-vel Standard Deviation.
     pub y_vel_standard_deviation: u8,
     /// Z-vel Standard Deviation: bits 1008 to 1015, raw 0 to 255, in m/s.
     ///
-    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): see X-vel Standard Deviation.
     pub z_vel_standard_deviation: u8,
 }
 
@@ -487,13 +513,29 @@ impl TriggerSimulatedLoop {
         f64::from(self.x_pos_standard_deviation) / 10.0
     }
 
-    /// Sets X-pos Standard Deviation in m, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets X-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_x_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.x_pos_standard_deviation = X_POS_STANDARD_DEVIATION.raw(value)?;
+        Ok(())
+    }
+
+    /// X-pos Standard Deviation in m, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_pos_standard_deviation_m_f32(&self) -> f32 {
+        f32::from(self.x_pos_standard_deviation) / 10.0
+    }
+
+    /// X-pos Standard Deviation in mm, exact: 0 to 25500.
+    #[must_use]
+    pub fn x_pos_standard_deviation_mm(&self) -> i32 {
+        i32::from(self.x_pos_standard_deviation) * 100
+    }
+
+    /// Sets X-pos Standard Deviation in mm, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_x_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
+        self.x_pos_standard_deviation = X_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -503,13 +545,29 @@ impl TriggerSimulatedLoop {
         f64::from(self.y_pos_standard_deviation) / 10.0
     }
 
-    /// Sets Y-pos Standard Deviation in m, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Y-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_y_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.y_pos_standard_deviation = Y_POS_STANDARD_DEVIATION.raw(value)?;
+        Ok(())
+    }
+
+    /// Y-pos Standard Deviation in m, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_pos_standard_deviation_m_f32(&self) -> f32 {
+        f32::from(self.y_pos_standard_deviation) / 10.0
+    }
+
+    /// Y-pos Standard Deviation in mm, exact: 0 to 25500.
+    #[must_use]
+    pub fn y_pos_standard_deviation_mm(&self) -> i32 {
+        i32::from(self.y_pos_standard_deviation) * 100
+    }
+
+    /// Sets Y-pos Standard Deviation in mm, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_y_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
+        self.y_pos_standard_deviation = Y_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -519,50 +577,109 @@ impl TriggerSimulatedLoop {
         f64::from(self.z_pos_standard_deviation) / 10.0
     }
 
-    /// Sets Z-pos Standard Deviation in m, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Z-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_z_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.z_pos_standard_deviation = Z_POS_STANDARD_DEVIATION.raw(value)?;
         Ok(())
     }
+
+    /// Z-pos Standard Deviation in m, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_pos_standard_deviation_m_f32(&self) -> f32 {
+        f32::from(self.z_pos_standard_deviation) / 10.0
+    }
+
+    /// Z-pos Standard Deviation in mm, exact: 0 to 25500.
+    #[must_use]
+    pub fn z_pos_standard_deviation_mm(&self) -> i32 {
+        i32::from(self.z_pos_standard_deviation) * 100
+    }
+
+    /// Sets Z-pos Standard Deviation in mm, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_z_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
+        self.z_pos_standard_deviation = Z_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const X_POS_STANDARD_DEVIATION: Scale = Scale {
-    field: "X-pos Standard Deviation",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const X_POS_STANDARD_DEVIATION: Scale =
+    Scale::new("X-pos Standard Deviation", (0, 255), (1, 0, 10));
 
-const Y_POS_STANDARD_DEVIATION: Scale = Scale {
-    field: "Y-pos Standard Deviation",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const Y_POS_STANDARD_DEVIATION: Scale =
+    Scale::new("Y-pos Standard Deviation", (0, 255), (1, 0, 10));
 
-const Z_POS_STANDARD_DEVIATION: Scale = Scale {
-    field: "Z-pos Standard Deviation",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const Z_POS_STANDARD_DEVIATION: Scale =
+    Scale::new("Z-pos Standard Deviation", (0, 255), (1, 0, 10));
 
-impl crate::wire::Telecommand for TriggerSimulatedLoop {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 19;
+message!(TriggerSimulatedLoop {
+    unix_time: ("Unix Time", 0, 32).unit("s"),
+    css_raw_1: ("Css Raw 1", 32, 16),
+    css_raw_2: ("Css Raw 2", 48, 16),
+    css_raw_3: ("Css Raw 3", 64, 16),
+    css_raw_4: ("Css Raw 4", 80, 16),
+    css_raw_5: ("Css Raw 5", 96, 16),
+    css_raw_6: ("Css Raw 6", 112, 16),
+    css_raw_7: ("Css Raw 7", 128, 16),
+    css_raw_8: ("Css Raw 8", 144, 16),
+    css_raw_9: ("Css Raw 9", 160, 16),
+    css_raw_10: ("Css Raw 10", 176, 16),
+    cam1_raw_x: ("Cam1 Raw X", 192, 16),
+    cam1_raw_y: ("Cam1 Raw Y", 208, 16),
+    cam1_busy: ("Cam1 Busy", 224, 8),
+    cam1_result: ("Cam1 Result", 232, 8),
+    cam2_raw_x: ("Cam2 Raw X", 240, 16),
+    cam2_raw_y: ("Cam2 Raw Y", 256, 16),
+    cam2_busy: ("Cam2 Busy", 272, 8),
+    cam2_result: ("Cam2 Result", 280, 8),
+    mag_raw_x: ("Mag Raw X", 288, 16),
+    mag_raw_y: ("Mag Raw Y", 304, 16),
+    mag_raw_z: ("Mag Raw Z", 320, 16),
+    rate_raw_x: ("Rate Raw X", 336, 32),
+    rate_raw_y: ("Rate Raw Y", 368, 32),
+    rate_raw_z: ("Rate Raw Z", 400, 32),
+    wheel_raw_x: ("Wheel Raw X", 432, 16).unit("rpm"),
+    wheel_raw_y: ("Wheel Raw Y", 448, 16).unit("rpm"),
+    wheel_raw_z: ("Wheel Raw Z", 464, 16).unit("rpm"),
+    star1_camera_x: ("Star1CameraX", 480, 16),
+    star1_camera_y: ("Star1CameraY", 496, 16),
+    star1_camera_z: ("Star1CameraZ", 512, 16),
+    star1_inertial_x: ("Star1InertialX", 528, 16),
+    star1_inertial_y: ("Star1InertialY", 544, 16),
+    star1_inertial_z: ("Star1InertialZ", 560, 16),
+    star2_camera_x: ("Star2CameraX", 576, 16),
+    star2_camera_y: ("Star2CameraY", 592, 16),
+    star2_camera_z: ("Star2CameraZ", 608, 16),
+    star2_inertial_x: ("Star2InertialX", 624, 16),
+    star2_inertial_y: ("Star2InertialY", 640, 16),
+    star2_inertial_z: ("Star2InertialZ", 656, 16),
+    star3_camera_x: ("Star3CameraX", 672, 16),
+    star3_camera_y: ("Star3CameraY", 688, 16),
+    star3_camera_z: ("Star3CameraZ", 704, 16),
+    star3_inertial_x: ("Star3InertialX", 720, 16),
+    star3_inertial_y: ("Star3InertialY", 736, 16),
+    star3_inertial_z: ("Star3InertialZ", 752, 16),
+    gps_solution_status: ("Gps Solution Status", 768, 8),
+    gps_reference_week: ("GPS Reference Week", 776, 16),
+    gps_time_milliseconds: ("GPS Time Milliseconds", 792, 32).unit("ms"),
+    ecef_position_x: ("ECEF Position X", 824, 32).unit("m"),
+    ecef_velocity_x: ("ECEF Velocity X", 856, 16).unit("m/s"),
+    ecef_position_y: ("ECEF Position Y", 872, 32).unit("m"),
+    ecef_velocity_y: ("ECEF Velocity Y", 904, 16).unit("m/s"),
+    ecef_position_z: ("ECEF Position Z", 920, 32).unit("m"),
+    ecef_velocity_z: ("ECEF Velocity Z", 952, 16).unit("m/s"),
+    x_pos_standard_deviation: ("X-pos Standard Deviation", 968, 8)
+        .unit("m").scale(&X_POS_STANDARD_DEVIATION),
+    y_pos_standard_deviation: ("Y-pos Standard Deviation", 976, 8)
+        .unit("m").scale(&Y_POS_STANDARD_DEVIATION),
+    z_pos_standard_deviation: ("Z-pos Standard Deviation", 984, 8)
+        .unit("m").scale(&Z_POS_STANDARD_DEVIATION),
+    x_vel_standard_deviation: ("X-vel Standard Deviation", 992, 8).unit("m/s"),
+    y_vel_standard_deviation: ("Y-vel Standard Deviation", 1_000, 8).unit("m/s"),
+    z_vel_standard_deviation: ("Z-vel Standard Deviation", 1_008, 8).unit("m/s"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for TriggerSimulatedLoop {
+    const TELECOMMAND_ID: u32 = 19;
 }

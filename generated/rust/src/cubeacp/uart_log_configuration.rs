@@ -2,7 +2,7 @@
 
 //! UART Log Configuration, a message of node `cubeacp`.
 
-use crate::support::{array, put, put_array, take, Error};
+use crate::support::{array, message, put, put_array, take, Error};
 
 /// UART Log Configuration: configuration, set by telecommand 106, got by telemetry 237, 12 bytes.
 /// Table 213.
@@ -17,14 +17,17 @@ pub struct UartLogConfiguration {
     ///
     /// Mask of up to 80 telemetry frames.
     ///
-    /// Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
+    /// Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned. Seventeen bits
+    /// of the mask have no frame: 2, 5, 6 and 66 to 79. What a log with one of them set holds is
+    /// not said.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub log_selection: [u8; 10],
     /// Log Period: bits 80 to 95, raw 0 to 65535.
     ///
     /// 0: logging disabled.
     ///
-    /// Note ACP-183 (open): Log period has no unit.
+    /// Note ACP-183 (open): Log period has no unit. Zero switches logging off; seconds or
+    /// iterations of the loop are both possible, and equal only while the loop runs at 1 Hz.
     pub log_period: u16,
 }
 
@@ -77,22 +80,15 @@ impl UartLogConfiguration {
     }
 }
 
-impl crate::wire::Telecommand for UartLogConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 106;
+message!(UartLogConfiguration {
+    log_selection: ("Log Selection", 0, 80),
+    log_period: ("Log Period", 80, 16),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for UartLogConfiguration {
+    const TELECOMMAND_ID: u32 = 106;
 }
 
-impl crate::wire::Telemetry for UartLogConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 237;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for UartLogConfiguration {
+    const TELEMETRY_ID: u32 = 237;
 }

@@ -2,7 +2,7 @@
 
 //! Wheel Speed Commands, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Wheel Speed Commands: telemetry 158, 6 bytes. Table 114.
 ///
@@ -14,15 +14,17 @@ use crate::support::{put, take, Error};
 pub struct WheelSpeedCommands {
     /// Commanded X Wheel Speed: bits 0 to 15, raw -32768 to 32767, in rpm.
     ///
-    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds. The
+    /// descriptions are those of the measured speeds; the names tell the difference. The
+    /// telecommand names them again in another way.
     pub commanded_x_wheel_speed: i16,
     /// Commanded Y Wheel Speed: bits 16 to 31, raw -32768 to 32767, in rpm.
     ///
-    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    /// Note ACP-072 (certain): see Commanded X Wheel Speed.
     pub commanded_y_wheel_speed: i16,
     /// Commanded Z Wheel Speed: bits 32 to 47, raw -32768 to 32767, in rpm.
     ///
-    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    /// Note ACP-072 (certain): see Commanded X Wheel Speed.
     pub commanded_z_wheel_speed: i16,
 }
 
@@ -73,12 +75,12 @@ impl WheelSpeedCommands {
     }
 }
 
-impl crate::wire::Telemetry for WheelSpeedCommands {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 158;
+message!(WheelSpeedCommands {
+    commanded_x_wheel_speed: ("Commanded X Wheel Speed", 0, 16).unit("rpm"),
+    commanded_y_wheel_speed: ("Commanded Y Wheel Speed", 16, 16).unit("rpm"),
+    commanded_z_wheel_speed: ("Commanded Z Wheel Speed", 32, 16).unit("rpm"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for WheelSpeedCommands {
+    const TELEMETRY_ID: u32 = 158;
 }

@@ -2,13 +2,15 @@
 
 //! Enumerations. Every one keeps values that have no name.
 
-use crate::support::Enumeration;
+use crate::support::enumeration;
 
 /// MagState: an enumeration. Table 58.
 ///
 /// State of the CubeMag service.
 ///
-/// Note MAG-008 (open): MagState has no deployed state.
+/// Note MAG-008 (open): MagState has no deployed state. The service can be armed, deploying, idle
+/// or in error. A deployed boom shows as idle at best, and what a unit without a boom reports is
+/// not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -59,14 +61,6 @@ impl MagState {
     }
 }
 
-impl Enumeration for MagState {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for MagState {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -80,18 +74,14 @@ impl From<u8> for MagState {
     }
 }
 
-impl From<MagState> for u8 {
-    #[inline]
-    fn from(value: MagState) -> Self {
-        value.raw()
-    }
-}
+enumeration!(MagState: u8);
 
 /// MntState: an enumeration. Table 59.
 ///
 /// State of a magnetometer service.
 ///
-/// Note MAG-009 (open): MntState: Mnt is not explained.
+/// Note MAG-009 (open): MntState: Mnt is not explained. The states belong to the magnetometers by
+/// the table that uses them; Mnt stands nowhere else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -108,11 +98,12 @@ pub enum MntState {
     ///
     /// Sampling automatically.
     ///
-    /// Note MAG-010 (open): MntState: Auto and Sample.
+    /// Note MAG-010 (open): MntState: Auto and Sample. Both mean sampling; when a single sample is
+    /// taken, and how automatic sampling is started, is not in the excerpt.
     Auto,
     /// Sample (4).
     ///
-    /// Note MAG-010 (open): MntState: Auto and Sample.
+    /// Note MAG-010 (open): see Auto.
     Sample,
     /// Error (5).
     Error,
@@ -152,14 +143,6 @@ impl MntState {
     }
 }
 
-impl Enumeration for MntState {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for MntState {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -175,9 +158,4 @@ impl From<u8> for MntState {
     }
 }
 
-impl From<MntState> for u8 {
-    #[inline]
-    fn from(value: MntState) -> Self {
-        value.raw()
-    }
-}
+enumeration!(MntState: u8);

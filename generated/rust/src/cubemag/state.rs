@@ -3,13 +3,15 @@
 //! State, a message of node `cubemag`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// State: telemetry 188, 3 bytes. Table 57.
 ///
 /// States of all services.
 ///
-/// Note MAG-004 (certain): Number 57 is used twice in the addendum.
+/// Note MAG-004 (certain): Number 57 is used twice in the addendum. Both parts have a Table 57,
+/// State here and Motor Power there. They come from two documents, and the source does not say
+/// where one ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,19 +21,21 @@ pub struct State {
     ///
     /// Of the CubeMag service.
     ///
-    /// Note MAG-007 (certain): State: names are cut short in three ways.
+    /// Note MAG-007 (certain): State: names are cut short in three ways. MagSvc, Primary Mag and
+    /// Red Mag stand for service, primary and redundant magnetometer; the measurement frames spell
+    /// redundant out.
     pub mag_svc_state: Coded<enums::MagState>,
     /// Primary Mag State: bits 8 to 15.
     ///
     /// Of the primary magnetometer.
     ///
-    /// Note MAG-007 (certain): State: names are cut short in three ways.
+    /// Note MAG-007 (certain): see MagSvc State.
     pub primary_mag_state: Coded<enums::MntState>,
     /// Red Mag State: bits 16 to 23.
     ///
     /// Of the redundant magnetometer.
     ///
-    /// Note MAG-007 (certain): State: names are cut short in three ways.
+    /// Note MAG-007 (certain): see MagSvc State.
     pub red_mag_state: Coded<enums::MntState>,
 }
 
@@ -82,12 +86,12 @@ impl State {
     }
 }
 
-impl crate::wire::Telemetry for State {
-    const NODE: &'static str = "cubemag";
-    const TELEMETRY_ID: u8 = 188;
+message!(State {
+    mag_svc_state: ("MagSvc State", 0, 8),
+    primary_mag_state: ("Primary Mag State", 8, 8),
+    red_mag_state: ("Red Mag State", 16, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for State {
+    const TELEMETRY_ID: u32 = 188;
 }

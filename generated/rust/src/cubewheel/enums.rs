@@ -2,7 +2,7 @@
 
 //! Enumerations. Every one keeps values that have no name.
 
-use crate::support::Enumeration;
+use crate::support::enumeration;
 
 /// WheelErrorState: an enumeration. Table 48.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -23,7 +23,8 @@ pub enum WheelErrorState {
     ///
     /// The speed asked for was not reached in time.
     ///
-    /// Note WHL-011 (open): Speed Not Reached Timeout: the time allowed is not given.
+    /// Note WHL-011 (open): Speed Not Reached Timeout: the time allowed is not given. The period is
+    /// called allocated; neither a figure nor a message that sets it is in the excerpt.
     SpeedNotReachedTimeout,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -57,14 +58,6 @@ impl WheelErrorState {
     }
 }
 
-impl Enumeration for WheelErrorState {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for WheelErrorState {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -78,9 +71,4 @@ impl From<u8> for WheelErrorState {
     }
 }
 
-impl From<WheelErrorState> for u8 {
-    #[inline]
-    fn from(value: WheelErrorState) -> Self {
-        value.raw()
-    }
-}
+enumeration!(WheelErrorState: u8);

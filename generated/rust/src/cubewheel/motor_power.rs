@@ -2,17 +2,22 @@
 
 //! Motor Power, a message of node `cubewheel`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Motor Power: telemetry 197, 1 byte. Table 57.
 ///
 /// Whether the motor is switched on.
 ///
-/// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
+/// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag. Tables
+/// 47, 48, 56 and 57 exist in the manual with other contents, 57 also in the first part of the
+/// addendum.
 ///
-/// Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
+/// Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word. The frame
+/// tells whether the motor is on; its text switches it, and its field is a power switch that is
+/// switched.
 ///
-/// Note WHL-016 (open): Motor Power: seven bits are not described.
+/// Note WHL-016 (open): Motor Power: seven bits are not described. One bit of the byte is
+/// explained; the others are held as reserved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,7 +25,7 @@ use crate::support::Error;
 pub struct MotorPower {
     /// Motor Power Switch: bit 0.
     ///
-    /// Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
+    /// Note WHL-015 (likely): see Motor Power.
     pub motor_power_switch: bool,
 }
 
@@ -67,12 +72,10 @@ impl MotorPower {
     }
 }
 
-impl crate::wire::Telemetry for MotorPower {
-    const NODE: &'static str = "cubewheel";
-    const TELEMETRY_ID: u8 = 197;
+message!(MotorPower {
+    motor_power_switch: ("Motor Power Switch", 0, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for MotorPower {
+    const TELEMETRY_ID: u32 = 197;
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from binascii import crc_hqx
 from functools import cache
 
-from .._base import Buffer
+from .._hints import Buffer
 from .errors import need
 from .link import CrcForm, Link
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from .._base import Buffer
+from .._hints import Buffer
 from .errors import need
 from .link import Link
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Literal, NamedTuple, Optional
 
-from .._base import Buffer, Message
+from .._base import Message
 from .._errors import LengthError, RangeError
+from .._hints import Buffer
 from .errors import UnsupportedError, need
 from .link import Link, LogBit, LogMask
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
-from icdgen_runtime._base import Buffer, FieldInfo, Message
+from icdgen_runtime._base import FieldInfo, Message
 from icdgen_runtime._errors import LengthError, RangeError, UnknownIdError
+from icdgen_runtime._hints import Buffer
 from icdgen_runtime._lazy import Messages
 
 from icdgen import codec

@@ -5,34 +5,34 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class ClearErrorFlags(_base.Message):
     """Clear Error Flags: telecommand 7, 0 bytes. Table 61.
 
     Clears the latched error flags of Bootloader State.
 
     Erratum BOOT-022 (certain): Clear Error Flags with a checksum deploys the
-    magnetometer boom where CubeACP runs.
+    magnetometer boom where CubeACP runs. The checksum of no parameters is 0xFF, so 07
+    FF is Deploy Magnetometer Boom with a time-out of 255 s. The ids are the vendor's
+    and stay. The bootloader knows no checksums, so that none is sent over its link; who
+    sends them to CubeACP must know that CubeACP runs.
 
     Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control
-    program.
+    program. The two programs answer on the same buses and addresses. These ids are a
+    different message in each, of another length in three cases, so who is answering
+    must be known first.
 
-    Note BOOT-005 (certain): Clear Error Flags and Clear Errors.
+    Note BOOT-005 (certain): Clear Error Flags and Clear Errors. The bootloader clears
+    with Clear Error Flags, the control program with Clear Errors, and the protocol
+    section names the second for both.
 
     Note BOOT-006 (open): What the bootloader does with telecommands of the control
-    program.
+    program. The ids of the control program are unknown to the bootloader, but four are
+    known with another meaning; telecommand 7 meant to deploy a boom clears flags. The
+    reverse is worse: 7 sent to clear flags deploys the boom.
     """
-
-    __slots__ = ()
 
     NODE = "bootloader"
     NAME = "Clear Error Flags"
@@ -41,20 +41,3 @@ class ClearErrorFlags(_base.Message):
     IDS = (ID,)
     LENGTH = 0
     TABLE = 61
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> ClearErrorFlags:
-        """The message in a frame of exactly 0 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack()
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,18 +5,10 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .programs_list import ProgramsList
 
-_STRUCT = struct.Struct("<2B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, ProgramsList))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class CopyToInternalFlash(_base.Message):
     """Copy Program to Internal Flash: telecommand 103, 2 bytes. Table 67.
 
@@ -26,11 +18,6 @@ class CopyToInternalFlash(_base.Message):
     the bootloader itself.
     """
 
-    __slots__ = (
-        "source_program_index",
-        "overwrite",
-    )
-
     NODE = "bootloader"
     NAME = "Copy Program to Internal Flash"
     KIND = "telecommand"
@@ -38,65 +25,34 @@ class CopyToInternalFlash(_base.Message):
     IDS = (ID,)
     LENGTH = 2
     TABLE = 67
-    FIELDS = (
-        _base.FieldInfo(
-            "source_program_index",
-            "Source Program Index",
-            0,
-            8,
-            "enum",
-            enum=ProgramsList,
-        ),
-        _base.FieldInfo(
-            "overwrite",
-            "Bootloader overwrite flag",
-            8,
-            8,
-            "uint",
-            special=(
-                (90, "overwrite the boot segment"),
-            ),
-        ),
-    )
 
-    source_program_index: ProgramsList
+    source_program_index: ProgramsList = _base.field(
+        "Source Program Index", 0, 8, "enum", default=ProgramsList.BOOTLOADER
+    )
     """Source Program Index: bits 0 to 7.
 
     Note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense.
+    The source may be the internal program itself or the bootloader. The result is not
+    described.
     """
-    overwrite: int
+
+    overwrite: int = _base.field(
+        "Bootloader overwrite flag",
+        8,
+        8,
+        "uint",
+        default=0,
+        special=(
+            (90, "overwrite the boot segment"),
+        ),
+    )
     """Bootloader overwrite flag: bits 8 to 15, raw 0 to 255.
 
     To be used with great caution.
 
     90 (0x5A): overwrite the boot segment.
 
-    Note BOOT-012 (likely): Bootloader overwrite flag is a magic number.
+    Note BOOT-012 (likely): Bootloader overwrite flag is a magic number. A field of 8
+    bits is called a flag and acts at one value. Which value to send otherwise is not
+    said; anything else is assumed to leave the boot segment alone.
     """
-
-    def __init__(
-        self,
-        *,
-        source_program_index: ProgramsList = ProgramsList.BOOTLOADER,
-        overwrite: int = 0,
-    ) -> None:
-        self.source_program_index = source_program_index
-        self.overwrite = overwrite
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CopyToInternalFlash:
-        """The message in a frame of exactly 2 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, self.overwrite = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.source_program_index = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.source_program_index, self.overwrite)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,31 +5,21 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool), (1, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class CopyToInternalFlashProgress(_base.Message):
     """Copy To Internal Flash Progress: telemetry 233, 1 byte. Table 71.
 
     Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control
-    program.
+    program. The two programs answer on the same buses and addresses. These ids are a
+    different message in each, of another length in three cases, so who is answering
+    must be known first.
 
-    Note BOOT-020 (open): Progress frame without progress.
+    Note BOOT-020 (open): Progress frame without progress. The frame tells busy and
+    error, not how far the copy has come; and no time-out is suggested for it, although
+    2 s are for reading.
     """
-
-    __slots__ = (
-        "busy",
-        "error",
-    )
 
     NODE = "bootloader"
     NAME = "Copy To Internal Flash Progress"
@@ -38,40 +28,9 @@ class CopyToInternalFlashProgress(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 71
-    FIELDS = (
-        _base.FieldInfo("busy", "Busy", 0, 1, "bool"),
-        _base.FieldInfo("error", "Error", 1, 1, "bool"),
-    )
 
-    busy: bool
+    busy: bool = _base.field("Busy", 0, 1, "bool", default=False)
     """Busy: bit 0."""
-    error: bool
+
+    error: bool = _base.field("Error", 1, 1, "bool", default=False)
     """Error: bit 1."""
-
-    def __init__(
-        self,
-        *,
-        busy: bool = False,
-        error: bool = False,
-    ) -> None:
-        self.busy = busy
-        self.error = error
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CopyToInternalFlashProgress:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.busy, self.error = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.busy, self.error]
-            return _pack(v0)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,35 +5,20 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .programs_list import ProgramsList
 
-_STRUCT = struct.Struct("<2BIH")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, ProgramsList))
-_BITS_1 = _codec.bit_table((0, 1, bool))
-_BYTES_1 = _codec.Inverse(_BITS_1)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class ProgramInformation(_base.Message):
     """Program Information: telemetry 232, 8 bytes. Table 70.
 
     Answer to Read Program Information, to be polled until it is not busy.
 
     Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control
-    program.
+    program. The two programs answer on the same buses and addresses. These ids are a
+    different message in each, of another length in three cases, so who is answering
+    must be known first.
     """
-
-    __slots__ = (
-        "program_index",
-        "busy",
-        "file_size",
-        "checksum",
-    )
 
     NODE = "bootloader"
     NAME = "Program Information"
@@ -42,75 +27,36 @@ class ProgramInformation(_base.Message):
     IDS = (ID,)
     LENGTH = 8
     TABLE = 70
-    FIELDS = (
-        _base.FieldInfo(
-            "program_index",
-            "Program Index",
-            0,
-            8,
-            "enum",
-            enum=ProgramsList,
-        ),
-        _base.FieldInfo("busy", "Busy", 8, 1, "bool"),
-        _base.FieldInfo("file_size", "File Size", 16, 32, "uint", unit="byte"),
-        _base.FieldInfo("checksum", "Checksum", 48, 16, "uint"),
-    )
 
-    program_index: ProgramsList
+    program_index: ProgramsList = _base.field("Program Index", 0, 8, "enum", default=ProgramsList.BOOTLOADER)
     """Program Index: bits 0 to 7.
 
     Note BOOT-018 (open): Read Program Information: whether the answer belongs to the
-    request.
+    request. The request and the frame each have a program index. Whether the frame
+    still shows the previous one while busy, and how a wrong index shows, is not said.
     """
-    busy: bool
+
+    busy: bool = _base.field("Busy", 8, 1, "bool", default=False)
     """Busy: bit 8.
 
     Still reading.
     """
-    file_size: int
+
+    file_size: int = _base.field("File Size", 16, 32, "uint", default=0, unit="byte")
     """File Size: bits 16 to 47, raw 0 to 4294967295, in byte.
 
-    Erratum BOOT-021 (certain): Size of a program has its unit in words only.
+    Erratum BOOT-021 (certain): Size of a program has its unit in words only. Bytes
+    stand in the description, not as a unit of measure.
 
-    Note BOOT-019 (open): Program Information: what the checksum covers.
+    Note BOOT-019 (open): Program Information: what the checksum covers. File size and
+    checksum are given for a place in flash, which has no file. Whether the checksum
+    runs over the size or over the whole area is not said.
     """
-    checksum: int
+
+    checksum: int = _base.field("Checksum", 48, 16, "uint", default=0)
     """Checksum: bits 48 to 63, raw 0 to 65535.
 
     CRC-16.
 
-    Note BOOT-019 (open): Program Information: what the checksum covers.
+    Note BOOT-019 (open): see File Size.
     """
-
-    def __init__(
-        self,
-        *,
-        program_index: ProgramsList = ProgramsList.BOOTLOADER,
-        busy: bool = False,
-        file_size: int = 0,
-        checksum: int = 0,
-    ) -> None:
-        self.program_index = program_index
-        self.busy = busy
-        self.file_size = file_size
-        self.checksum = checksum
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> ProgramInformation:
-        """The message in a frame of exactly 8 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, v1, self.file_size, self.checksum = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.program_index = _BITS_0[v0]
-        self.busy = _BITS_1[v1]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v1 = _BYTES_1[self.busy]
-            return _pack(self.program_index, v1, self.file_size, self.checksum)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

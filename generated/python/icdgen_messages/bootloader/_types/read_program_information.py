@@ -5,27 +5,15 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .programs_list import ProgramsList
 
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, ProgramsList))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class ReadProgramInformation(_base.Message):
     """Read Program Information: telecommand 102, 1 byte. Table 65.
 
     Starts to read length and CRC of a stored program for Program Information.
     """
-
-    __slots__ = (
-        "program_index",
-    )
 
     NODE = "bootloader"
     NAME = "Read Program Information"
@@ -34,41 +22,6 @@ class ReadProgramInformation(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 65
-    FIELDS = (
-        _base.FieldInfo(
-            "program_index",
-            "Program Index",
-            0,
-            8,
-            "enum",
-            enum=ProgramsList,
-        ),
-    )
 
-    program_index: ProgramsList
+    program_index: ProgramsList = _base.field("Program Index", 0, 8, "enum", default=ProgramsList.BOOTLOADER)
     """Program Index: bits 0 to 7."""
-
-    def __init__(
-        self,
-        *,
-        program_index: ProgramsList = ProgramsList.BOOTLOADER,
-    ) -> None:
-        self.program_index = program_index
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> ReadProgramInformation:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.program_index = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.program_index)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

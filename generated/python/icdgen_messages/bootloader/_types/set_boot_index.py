@@ -5,28 +5,15 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .boot_set_programs_list import BootSetProgramsList
 
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, BootSetProgramsList))
-_DEFAULT_0 = _codec.unnamed(BootSetProgramsList, 0)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class SetBootIndex(_base.Message):
     """Set Boot Index: telecommand 100, 1 byte. Table 62.
 
     Selects the program to boot. Also sets the boot status back to New Selection.
     """
-
-    __slots__ = (
-        "program_index",
-    )
 
     NODE = "bootloader"
     NAME = "Set Boot Index"
@@ -35,44 +22,12 @@ class SetBootIndex(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 62
-    FIELDS = (
-        _base.FieldInfo(
-            "program_index",
-            "Program Index",
-            0,
-            8,
-            "enum",
-            enum=BootSetProgramsList,
-        ),
-    )
 
-    program_index: BootSetProgramsList
+    program_index: BootSetProgramsList = _base.field("Program Index", 0, 8, "enum", default=BootSetProgramsList(0))
     """Program Index: bits 0 to 7.
 
-    Note BOOT-007 (certain): Set Boot Index selects among one.
+    Note BOOT-007 (certain): Set Boot Index selects among one. The telecommand is to
+    choose a program, but its enumeration has one member and the text forbids others.
+    Its use is a side effect that the table does not mention: it sets the boot status
+    back.
     """
-
-    def __init__(
-        self,
-        *,
-        program_index: BootSetProgramsList = _DEFAULT_0,
-    ) -> None:
-        self.program_index = program_index
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetBootIndex:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.program_index = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.program_index)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

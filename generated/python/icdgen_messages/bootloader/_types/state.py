@@ -5,56 +5,23 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<H2B2x")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table(
-    (0, 1, bool),
-    (1, 1, bool),
-    (2, 1, bool),
-    (3, 1, bool),
-    (4, 1, bool),
-    (5, 1, bool),
-    (6, 1, bool),
-    (7, 1, bool),
-)
-_BYTES_0 = _codec.Inverse(_BITS_0)
-_BITS_1 = _codec.bit_table((0, 1, bool), (1, 1, bool), (2, 1, bool), (3, 1, bool))
-_BYTES_1 = _codec.Inverse(_BITS_1)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class State(_base.Message):
     """Bootloader State: telemetry 132, 6 bytes. Table 69.
 
     Up-time, SRAM state and error flags. The error flags stay set until Clear Error
     Flags.
 
-    Erratum BOOT-013 (open): Bootloader State: 6 bytes announced, 28 bits described.
+    Erratum BOOT-013 (open): Bootloader State: 6 bytes announced, 28 bits described. The
+    last 20 bits of the frame are not explained. They are held as reserved.
 
     Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control
-    program.
+    program. The two programs answer on the same buses and addresses. These ids are a
+    different message in each, of another length in three cases, so who is answering
+    must be known first.
     """
-
-    __slots__ = (
-        "uptime",
-        "sram1_is_enabled",
-        "sram2_is_enabled",
-        "sram_latchup_error",
-        "sram_latchup_recovered",
-        "sd_card_initialisation_error",
-        "sd_card_read_error",
-        "sd_card_write_error",
-        "external_flash_error",
-        "internal_flash_error",
-        "eeprom_error",
-        "boot_register_corrupt",
-        "communications_error_with_radio",
-    )
 
     NODE = "bootloader"
     NAME = "Bootloader State"
@@ -63,173 +30,76 @@ class State(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 69
-    FIELDS = (
-        _base.FieldInfo("uptime", "Up-time (s)", 0, 16, "uint", unit="s"),
-        _base.FieldInfo("sram1_is_enabled", "SRAM1 is enabled", 16, 1, "bool"),
-        _base.FieldInfo("sram2_is_enabled", "SRAM2 is enabled", 17, 1, "bool"),
-        _base.FieldInfo(
-            "sram_latchup_error",
-            "SRAM Latch-up Error occurred and could not be recovered",
-            18,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "sram_latchup_recovered",
-            "SRAM Latch-up Occurred but recovered after power cycle",
-            19,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "sd_card_initialisation_error",
-            "SD card initialisation error",
-            20,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("sd_card_read_error", "SD card read error", 21, 1, "bool"),
-        _base.FieldInfo("sd_card_write_error", "SD card write error", 22, 1, "bool"),
-        _base.FieldInfo("external_flash_error", "External Flash Error", 23, 1, "bool"),
-        _base.FieldInfo("internal_flash_error", "Internal Flash Error", 24, 1, "bool"),
-        _base.FieldInfo("eeprom_error", "EEPROM Error", 25, 1, "bool"),
-        _base.FieldInfo("boot_register_corrupt", "Boot Register Corrupt", 26, 1, "bool"),
-        _base.FieldInfo(
-            "communications_error_with_radio",
-            "Communications Error with Radio",
-            27,
-            1,
-            "bool",
-        ),
-    )
 
-    uptime: int
+    uptime: int = _base.field("Up-time (s)", 0, 16, "uint", default=0, unit="s")
     """Up-time (s): bits 0 to 15, raw 0 to 65535, in s.
 
-    Note BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds.
+    Note BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds. Name and
+    description differ, and the name repeats the unit. The field ends at 65535 s, while
+    the bootloader may stay for ever; what it shows then is not said.
     """
-    sram1_is_enabled: bool
+
+    sram1_is_enabled: bool = _base.field("SRAM1 is enabled", 16, 1, "bool", default=False)
     """SRAM1 is enabled: bit 16."""
-    sram2_is_enabled: bool
+
+    sram2_is_enabled: bool = _base.field("SRAM2 is enabled", 17, 1, "bool", default=False)
     """SRAM2 is enabled: bit 17."""
-    sram_latchup_error: bool
+
+    sram_latchup_error: bool = _base.field(
+        "SRAM Latch-up Error occurred and could not be recovered", 18, 1, "bool", default=False
+    )
     """SRAM Latch-up Error occurred and could not be recovered: bit 18.
 
-    Note BOOT-017 (certain): Latch-up has three spellings.
+    Note BOOT-017 (certain): Latch-up has three spellings. Latch-up in the flags of the
+    bootloader, latchups and Latchup in the common frames, latch-up in the text.
     """
-    sram_latchup_recovered: bool
+
+    sram_latchup_recovered: bool = _base.field(
+        "SRAM Latch-up Occurred but recovered after power cycle", 19, 1, "bool", default=False
+    )
     """SRAM Latch-up Occurred but recovered after power cycle: bit 19.
 
-    Note BOOT-017 (certain): Latch-up has three spellings.
+    Note BOOT-017 (certain): see SRAM Latch-up Error occurred and could not be
+    recovered.
     """
-    sd_card_initialisation_error: bool
+
+    sd_card_initialisation_error: bool = _base.field("SD card initialisation error", 20, 1, "bool", default=False)
     """SD card initialisation error: bit 20."""
-    sd_card_read_error: bool
+
+    sd_card_read_error: bool = _base.field("SD card read error", 21, 1, "bool", default=False)
     """SD card read error: bit 21."""
-    sd_card_write_error: bool
+
+    sd_card_write_error: bool = _base.field("SD card write error", 22, 1, "bool", default=False)
     """SD card write error: bit 22."""
-    external_flash_error: bool
+
+    external_flash_error: bool = _base.field("External Flash Error", 23, 1, "bool", default=False)
     """External Flash Error: bit 23.
 
     Erasing or writing failed.
     """
-    internal_flash_error: bool
+
+    internal_flash_error: bool = _base.field("Internal Flash Error", 24, 1, "bool", default=False)
     """Internal Flash Error: bit 24.
 
     Erasing or writing failed.
     """
-    eeprom_error: bool
+
+    eeprom_error: bool = _base.field("EEPROM Error", 25, 1, "bool", default=False)
     """EEPROM Error: bit 25.
 
     Writing failed.
     """
-    boot_register_corrupt: bool
+
+    boot_register_corrupt: bool = _base.field("Boot Register Corrupt", 26, 1, "bool", default=False)
     """Boot Register Corrupt: bit 26.
 
     It held invalid data.
     """
-    communications_error_with_radio: bool
+
+    communications_error_with_radio: bool = _base.field("Communications Error with Radio", 27, 1, "bool", default=False)
     """Communications Error with Radio: bit 27.
 
-    Note BOOT-016 (open): Bootloader State: a radio that the manual does not know.
+    Note BOOT-016 (open): Bootloader State: a radio that the manual does not know. A
+    flag reports communication errors with a radio. No radio, bus to it or setting for
+    it is mentioned anywhere.
     """
-
-    def __init__(
-        self,
-        *,
-        uptime: int = 0,
-        sram1_is_enabled: bool = False,
-        sram2_is_enabled: bool = False,
-        sram_latchup_error: bool = False,
-        sram_latchup_recovered: bool = False,
-        sd_card_initialisation_error: bool = False,
-        sd_card_read_error: bool = False,
-        sd_card_write_error: bool = False,
-        external_flash_error: bool = False,
-        internal_flash_error: bool = False,
-        eeprom_error: bool = False,
-        boot_register_corrupt: bool = False,
-        communications_error_with_radio: bool = False,
-    ) -> None:
-        self.uptime = uptime
-        self.sram1_is_enabled = sram1_is_enabled
-        self.sram2_is_enabled = sram2_is_enabled
-        self.sram_latchup_error = sram_latchup_error
-        self.sram_latchup_recovered = sram_latchup_recovered
-        self.sd_card_initialisation_error = sd_card_initialisation_error
-        self.sd_card_read_error = sd_card_read_error
-        self.sd_card_write_error = sd_card_write_error
-        self.external_flash_error = external_flash_error
-        self.internal_flash_error = internal_flash_error
-        self.eeprom_error = eeprom_error
-        self.boot_register_corrupt = boot_register_corrupt
-        self.communications_error_with_radio = communications_error_with_radio
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> State:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.uptime, v2, v3 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        (
-            self.sram1_is_enabled,
-            self.sram2_is_enabled,
-            self.sram_latchup_error,
-            self.sram_latchup_recovered,
-            self.sd_card_initialisation_error,
-            self.sd_card_read_error,
-            self.sd_card_write_error,
-            self.external_flash_error,
-        ) = _BITS_0[v2]
-        (
-            self.internal_flash_error,
-            self.eeprom_error,
-            self.boot_register_corrupt,
-            self.communications_error_with_radio,
-        ) = _BITS_1[v3]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v2 = _BYTES_0[
-                self.sram1_is_enabled,
-                self.sram2_is_enabled,
-                self.sram_latchup_error,
-                self.sram_latchup_recovered,
-                self.sd_card_initialisation_error,
-                self.sd_card_read_error,
-                self.sd_card_write_error,
-                self.external_flash_error,
-            ]
-            v3 = _BYTES_1[
-                self.internal_flash_error,
-                self.eeprom_error,
-                self.boot_register_corrupt,
-                self.communications_error_with_radio,
-            ]
-            return _pack(self.uptime, v2, v3)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,25 +5,17 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class AdvanceFileListReadPointer(_base.Message):
     """Advance File List Read Pointer: telecommand 113, 0 bytes. Table 18.
 
     Makes File Information describe the next file.
 
-    Note COM-040 (certain): A flow diagram is referred to without its number.
+    Note COM-040 (certain): A flow diagram is referred to without its number. The
+    process is described by the flow diagram in nothing; figure 14 is meant.
     """
-
-    __slots__ = ()
 
     NODE = "common"
     NAME = "Advance File List Read Pointer"
@@ -32,20 +24,3 @@ class AdvanceFileListReadPointer(_base.Message):
     IDS = (ID,)
     LENGTH = 0
     TABLE = 18
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> AdvanceFileListReadPointer:
-        """The message in a frame of exactly 0 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack()
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,28 +5,19 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<H")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class BlockChecksum(_base.Message):
     """Block Checksum: telemetry 246, 2 bytes. Table 46.
 
     CRC-16 of the received upload block, to be compared before the block is finalized.
 
     Note COM-041 (open): File upload is listed as common but described for the
-    bootloader only.
+    bootloader only. The messages of the upload are in the list common to both programs,
+    the procedure belongs to the bootloader. Whether the ACP answers them, refuses them,
+    or uploads somewhere is not said.
     """
-
-    __slots__ = (
-        "checksum",
-    )
 
     NODE = "common"
     NAME = "Block Checksum"
@@ -35,37 +26,12 @@ class BlockChecksum(_base.Message):
     IDS = (ID,)
     LENGTH = 2
     TABLE = 46
-    FIELDS = (
-        _base.FieldInfo("checksum", "Checksum", 0, 16, "uint"),
-    )
 
-    checksum: int
+    checksum: int = _base.field("Checksum", 0, 16, "uint", default=0)
     """Checksum: bits 0 to 15, raw 0 to 65535.
 
     Note COM-106 (open): Checksum of an uploaded block is asked for before its length is
-    known.
+    known. The test comes before the block is committed, but the length of the block is
+    first sent when it is committed. Over how many bytes the node computes it for a
+    short last block is open.
     """
-
-    def __init__(
-        self,
-        *,
-        checksum: int = 0,
-    ) -> None:
-        self.checksum = checksum
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> BlockChecksum:
-        """The message in a frame of exactly 2 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (self.checksum,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.checksum)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,39 +5,20 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .boot_cause import BootCause
 from .boot_programs_list import BootProgramsList
 from .reset_cause import ResetCause
 
-_STRUCT = struct.Struct("<BH3B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, BootProgramsList))
-_BITS_1 = _codec.bit_table((0, 4, ResetCause), (4, 4, BootCause))
-_BYTES_1 = _codec.Inverse(_BITS_1)
-_DEFAULT_0 = _codec.unnamed(BootProgramsList, 0)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class BootAndRunningProgramStatus(_base.Message):
     """Boot And Running Program Status: telemetry 129, 6 bytes. Table 28.
 
     Causes of the last reset and reboot, and the running program.
 
-    Note COM-062 (certain): Capitals of the boot status frame differ in the text.
+    Note COM-062 (certain): Capitals of the boot status frame differ in the text. Boot
+    And Running Program Status is Boot and Running Program Status in the text.
     """
-
-    __slots__ = (
-        "cause_of_mcu_reset",
-        "boot_cause",
-        "boot_counter",
-        "boot_program_index",
-        "firmware_version_major",
-        "firmware_version_minor",
-    )
 
     NODE = "common"
     NAME = "Boot And Running Program Status"
@@ -46,123 +27,53 @@ class BootAndRunningProgramStatus(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 28
-    FIELDS = (
-        _base.FieldInfo(
-            "cause_of_mcu_reset",
-            "Cause of MCU Reset",
-            0,
-            4,
-            "enum",
-            enum=ResetCause,
-        ),
-        _base.FieldInfo("boot_cause", "Boot Cause", 4, 4, "enum", enum=BootCause),
-        _base.FieldInfo("boot_counter", "Boot Counter", 8, 16, "uint"),
-        _base.FieldInfo(
-            "boot_program_index",
-            "Boot Program Index",
-            24,
-            8,
-            "enum",
-            enum=BootProgramsList,
-        ),
-        _base.FieldInfo(
-            "firmware_version_major",
-            "Firmware version (Major)",
-            32,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "firmware_version_minor",
-            "Firmware version (Minor)",
-            40,
-            8,
-            "uint",
-        ),
-    )
 
-    cause_of_mcu_reset: ResetCause
+    cause_of_mcu_reset: ResetCause = _base.field("Cause of MCU Reset", 0, 4, "enum", default=ResetCause.POWER_ON_RESET)
     """Cause of MCU Reset: bits 0 to 3.
 
     From a hardware register of the MCU.
 
-    Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
+    Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap. Both are described
+    as the reason of the last reset. That the first comes from a hardware register and
+    the second from the software can be inferred only; which one holds when they
+    disagree is not said.
     """
-    boot_cause: BootCause
+
+    boot_cause: BootCause = _base.field("Boot Cause", 4, 4, "enum", default=BootCause.UNEXPECTED)
     """Boot Cause: bits 4 to 7.
 
     Why the CubeComputer last rebooted.
 
-    Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
+    Note COM-059 (open): see Cause of MCU Reset.
     """
-    boot_counter: int
+
+    boot_counter: int = _base.field("Boot Counter", 8, 16, "uint", default=0)
     """Boot Counter: bits 8 to 23, raw 0 to 65535.
 
     How often the CubeComputer has booted.
 
-    Note COM-058 (certain): Reset Counter and Boot Counter are the same field.
+    Note COM-058 (certain): Reset Counter and Boot Counter are the same field. The text
+    calls the counter Reset Counter and, a few paragraphs later, Boot Counter; the table
+    has Boot Counter only. The text counts starts of the bootloader, the table boots of
+    the CubeComputer.
     """
-    boot_program_index: BootProgramsList
+
+    boot_program_index: BootProgramsList = _base.field("Boot Program Index", 24, 8, "enum", default=BootProgramsList(0))
     """Boot Program Index: bits 24 to 31.
 
     Where the running program is stored.
     """
-    firmware_version_major: int
+
+    firmware_version_major: int = _base.field("Firmware version (Major)", 32, 8, "uint", default=0)
     """Firmware version (Major): bits 32 to 39, raw 0 to 255.
 
-    Note COM-061 (open): Firmware version stands in two frames.
+    Note COM-061 (open): Firmware version stands in two frames. Both frames hold major
+    and minor version in bytes. Whether frame 129 gives that of the running program or
+    of the one to be booted is not said.
     """
-    firmware_version_minor: int
+
+    firmware_version_minor: int = _base.field("Firmware version (Minor)", 40, 8, "uint", default=0)
     """Firmware version (Minor): bits 40 to 47, raw 0 to 255.
 
-    Note COM-061 (open): Firmware version stands in two frames.
+    Note COM-061 (open): see Firmware version (Major).
     """
-
-    def __init__(
-        self,
-        *,
-        cause_of_mcu_reset: ResetCause = ResetCause.POWER_ON_RESET,
-        boot_cause: BootCause = BootCause.UNEXPECTED,
-        boot_counter: int = 0,
-        boot_program_index: BootProgramsList = _DEFAULT_0,
-        firmware_version_major: int = 0,
-        firmware_version_minor: int = 0,
-    ) -> None:
-        self.cause_of_mcu_reset = cause_of_mcu_reset
-        self.boot_cause = boot_cause
-        self.boot_counter = boot_counter
-        self.boot_program_index = boot_program_index
-        self.firmware_version_major = firmware_version_major
-        self.firmware_version_minor = firmware_version_minor
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> BootAndRunningProgramStatus:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                v0,
-                self.boot_counter,
-                v3,
-                self.firmware_version_major,
-                self.firmware_version_minor,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.boot_program_index = _BITS_0[v3]
-        self.cause_of_mcu_reset, self.boot_cause = _BITS_1[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_1[self.cause_of_mcu_reset, self.boot_cause]
-            return _pack(
-                v0,
-                self.boot_counter,
-                self.boot_program_index,
-                self.firmware_version_major,
-                self.firmware_version_minor,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

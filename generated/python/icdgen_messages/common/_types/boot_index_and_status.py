@@ -5,31 +5,16 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .boot_programs_list import BootProgramsList
 from .boot_status import BootStatus
 
-_STRUCT = struct.Struct("<2B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, BootProgramsList))
-_BITS_1 = _codec.bit_table((0, 8, BootStatus))
-_DEFAULT_0 = _codec.unnamed(BootProgramsList, 0)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class BootIndexAndStatus(_base.Message):
     """Boot Index and Status: telemetry 130, 2 bytes. Table 32.
 
     Program selected for booting, and how the last attempt went.
     """
-
-    __slots__ = (
-        "program_index",
-        "boot_status",
-    )
 
     NODE = "common"
     NAME = "Boot Index and Status"
@@ -38,50 +23,14 @@ class BootIndexAndStatus(_base.Message):
     IDS = (ID,)
     LENGTH = 2
     TABLE = 32
-    FIELDS = (
-        _base.FieldInfo(
-            "program_index",
-            "Program Index",
-            0,
-            8,
-            "enum",
-            enum=BootProgramsList,
-        ),
-        _base.FieldInfo("boot_status", "Boot Status", 8, 8, "enum", enum=BootStatus),
-    )
 
-    program_index: BootProgramsList
+    program_index: BootProgramsList = _base.field("Program Index", 0, 8, "enum", default=BootProgramsList(0))
     """Program Index: bits 0 to 7.
 
-    Note COM-069 (open): Program Index of the boot status can be the bootloader.
+    Note COM-069 (open): Program Index of the boot status can be the bootloader. The
+    frame shows which program is selected to boot, with an enumeration that has the
+    bootloader; only the internal program can be selected.
     """
-    boot_status: BootStatus
+
+    boot_status: BootStatus = _base.field("Boot Status", 8, 8, "enum", default=BootStatus.NEW_SELECTION)
     """Boot Status: bits 8 to 15."""
-
-    def __init__(
-        self,
-        *,
-        program_index: BootProgramsList = _DEFAULT_0,
-        boot_status: BootStatus = BootStatus.NEW_SELECTION,
-    ) -> None:
-        self.program_index = program_index
-        self.boot_status = boot_status
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> BootIndexAndStatus:
-        """The message in a frame of exactly 2 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, v1 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.program_index = _BITS_0[v0]
-        self.boot_status = _BITS_1[v1]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.program_index, self.boot_status)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

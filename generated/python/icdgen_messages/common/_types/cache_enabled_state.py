@@ -5,26 +5,13 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class CacheEnabledState(_base.Message):
     """Cache enabled state: configuration, set by telecommand 3, got by telemetry 131, 1
     byte. Table 48.
     """
-
-    __slots__ = (
-        "enabled_state",
-    )
 
     NODE = "common"
     NAME = "Cache enabled state"
@@ -34,38 +21,10 @@ class CacheEnabledState(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 1
     TABLE = 48
-    FIELDS = (
-        _base.FieldInfo("enabled_state", "Enabled state", 0, 1, "bool"),
-    )
 
-    enabled_state: bool
+    enabled_state: bool = _base.field("Enabled state", 0, 1, "bool", default=False)
     """Enabled state: bit 0.
 
-    Note COM-108 (open): Cache enabled state: which cache, and the default.
+    Note COM-108 (open): Cache enabled state: which cache, and the default. The setting
+    switches a cache that the manual does not mention anywhere else.
     """
-
-    def __init__(
-        self,
-        *,
-        enabled_state: bool = False,
-    ) -> None:
-        self.enabled_state = enabled_state
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CacheEnabledState:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.enabled_state = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.enabled_state]
-            return _pack(v0)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

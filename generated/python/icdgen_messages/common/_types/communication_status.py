@@ -5,43 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<2HBx")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table(
-    (0, 1, bool),
-    (1, 1, bool),
-    (2, 1, bool),
-    (3, 1, bool),
-    (4, 1, bool),
-    (5, 1, bool),
-)
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class CommunicationStatus(_base.Message):
     """Communication Status: telemetry 144, 6 bytes. Table 37.
 
     Counts of messages received, and error flags of the interfaces.
 
     Erratum COM-084 (open): Communication Status: 6 bytes announced, 38 bits described.
+    The last byte and two bits of the one before it are not explained. The frame may be
+    filled up to the size of the loggable ones. They are held as reserved.
     """
-
-    __slots__ = (
-        "telecommand_counter",
-        "telemetry_request_counter",
-        "telecommand_buffer_overrun",
-        "uart_protocol_error",
-        "uart_incomplete_message",
-        "i2c_telemetry_error",
-        "i2c_telecommand_buffer_error",
-        "can_telecommand_buffer_error",
-    )
 
     NODE = "common"
     NAME = "Communication Status"
@@ -50,167 +25,92 @@ class CommunicationStatus(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 37
-    FIELDS = (
-        _base.FieldInfo("telecommand_counter", "Telecommand counter", 0, 16, "uint"),
-        _base.FieldInfo(
-            "telemetry_request_counter",
-            "Telemetry request counter",
-            16,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "telecommand_buffer_overrun",
-            "Telecommand buffer overrun",
-            32,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("uart_protocol_error", "UART protocol error", 33, 1, "bool"),
-        _base.FieldInfo(
-            "uart_incomplete_message",
-            "UART incomplete message",
-            34,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("i2c_telemetry_error", "I2C telemetry error", 35, 1, "bool"),
-        _base.FieldInfo(
-            "i2c_telecommand_buffer_error",
-            "I2C telecommand buffer error",
-            36,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "can_telecommand_buffer_error",
-            "CAN telecommand buffer error",
-            37,
-            1,
-            "bool",
-        ),
-    )
 
-    telecommand_counter: int
+    telecommand_counter: int = _base.field("Telecommand counter", 0, 16, "uint", default=0)
     """Telecommand counter: bits 0 to 15, raw 0 to 65535.
 
     Telecommands received.
 
-    Note COM-082 (open): Counters: served or received.
+    Note COM-082 (open): Counters: served or received. The text counts commands and
+    requests that have been served, the table those that have been received. Refused
+    ones make the difference.
     """
-    telemetry_request_counter: int
+
+    telemetry_request_counter: int = _base.field("Telemetry request counter", 16, 16, "uint", default=0)
     """Telemetry request counter: bits 16 to 31, raw 0 to 65535.
 
     Requests received.
 
-    Note COM-082 (open): Counters: served or received.
+    Note COM-082 (open): see Telecommand counter.
     """
-    telecommand_buffer_overrun: bool
+
+    telecommand_buffer_overrun: bool = _base.field("Telecommand buffer overrun", 32, 1, "bool", default=False)
     """Telecommand buffer overrun: bit 32.
 
     The buffer overflowed while a telecommand came in.
 
-    Note COM-081 (open): Which telecommand clears the communication error flags.
+    Note COM-081 (open): Which telecommand clears the communication error flags. For the
+    I2C flag a Clear Errors telecommand is named. It exists in the control program only,
+    and by its table clears ADCS and HK flags. Of the other flags, and of the
+    bootloader, nothing is said.
     """
-    uart_protocol_error: bool
+
+    uart_protocol_error: bool = _base.field("UART protocol error", 33, 1, "bool", default=False)
     """UART protocol error: bit 33.
 
     Note COM-078 (open): UART: what a receiver does on an invalid escape or an
-    unfinished message.
+    unfinished message. An ESC followed by anything else should not occur, and a start
+    without a preceding end sets a flag. Whether the message begun is dropped or goes
+    on, and after which pause, is not said.
 
-    Note COM-081 (open): Which telecommand clears the communication error flags.
+    Note COM-081 (open): see Telecommand buffer overrun.
     """
-    uart_incomplete_message: bool
+
+    uart_incomplete_message: bool = _base.field("UART incomplete message", 34, 1, "bool", default=False)
     """UART incomplete message: bit 34.
 
     A message began before the one before it had ended.
 
-    Note COM-078 (open): UART: what a receiver does on an invalid escape or an
-    unfinished message.
+    Note COM-078 (open): see UART protocol error.
 
-    Note COM-081 (open): Which telecommand clears the communication error flags.
+    Note COM-081 (open): see Telecommand buffer overrun.
     """
-    i2c_telemetry_error: bool
+
+    i2c_telemetry_error: bool = _base.field("I2C telemetry error", 35, 1, "bool", default=False)
     """I2C telemetry error: bit 35.
 
     More bytes were read than the frame has. Stays set until Clear Errors.
 
-    Note COM-079 (open): I2C telemetry error: too many bytes, or any wrong number.
+    Note COM-079 (open): I2C telemetry error: too many bytes, or any wrong number. The
+    text sets the flag for an incorrect number of bytes, read past the end or
+    incomplete. The table sets it only for more bytes than the frame has.
 
     Note COM-080 (likely): I2C: reading one byte more is both an error and the way to
-    get the checksum.
+    get the checksum. An incorrect number of bytes sets an error flag, yet the control
+    program allows one more for the checksum. The flag must then be set from the second
+    extra byte on; the text does not say so.
 
-    Note COM-081 (open): Which telecommand clears the communication error flags.
+    Note COM-081 (open): see Telecommand buffer overrun.
     """
-    i2c_telecommand_buffer_error: bool
+
+    i2c_telecommand_buffer_error: bool = _base.field("I2C telecommand buffer error", 36, 1, "bool", default=False)
     """I2C telecommand buffer error: bit 36.
 
     A telecommand was longer than the buffer.
 
-    Note COM-081 (open): Which telecommand clears the communication error flags.
+    Note COM-081 (open): see Telecommand buffer overrun.
 
-    Note COM-083 (open): Two buffer errors have the same description.
+    Note COM-083 (open): Two buffer errors have the same description. The flags for I2C
+    and CAN are both explained as a telecommand larger than the buffer; the size of
+    neither buffer is given.
     """
-    can_telecommand_buffer_error: bool
+
+    can_telecommand_buffer_error: bool = _base.field("CAN telecommand buffer error", 37, 1, "bool", default=False)
     """CAN telecommand buffer error: bit 37.
 
     A telecommand was longer than the buffer.
 
-    Note COM-081 (open): Which telecommand clears the communication error flags.
+    Note COM-081 (open): see Telecommand buffer overrun.
 
-    Note COM-083 (open): Two buffer errors have the same description.
+    Note COM-083 (open): see I2C telecommand buffer error.
     """
-
-    def __init__(
-        self,
-        *,
-        telecommand_counter: int = 0,
-        telemetry_request_counter: int = 0,
-        telecommand_buffer_overrun: bool = False,
-        uart_protocol_error: bool = False,
-        uart_incomplete_message: bool = False,
-        i2c_telemetry_error: bool = False,
-        i2c_telecommand_buffer_error: bool = False,
-        can_telecommand_buffer_error: bool = False,
-    ) -> None:
-        self.telecommand_counter = telecommand_counter
-        self.telemetry_request_counter = telemetry_request_counter
-        self.telecommand_buffer_overrun = telecommand_buffer_overrun
-        self.uart_protocol_error = uart_protocol_error
-        self.uart_incomplete_message = uart_incomplete_message
-        self.i2c_telemetry_error = i2c_telemetry_error
-        self.i2c_telecommand_buffer_error = i2c_telecommand_buffer_error
-        self.can_telecommand_buffer_error = can_telecommand_buffer_error
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CommunicationStatus:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.telecommand_counter, self.telemetry_request_counter, v4 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        (
-            self.telecommand_buffer_overrun,
-            self.uart_protocol_error,
-            self.uart_incomplete_message,
-            self.i2c_telemetry_error,
-            self.i2c_telecommand_buffer_error,
-            self.can_telecommand_buffer_error,
-        ) = _BITS_0[v4]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v4 = _BYTES_0[
-                self.telecommand_buffer_overrun,
-                self.uart_protocol_error,
-                self.uart_incomplete_message,
-                self.i2c_telemetry_error,
-                self.i2c_telecommand_buffer_error,
-                self.can_telecommand_buffer_error,
-            ]
-            return _pack(self.telecommand_counter, self.telemetry_request_counter, v4)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

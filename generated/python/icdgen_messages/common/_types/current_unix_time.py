@@ -5,25 +5,13 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<IH")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class CurrentUnixTime(_base.Message):
     """Current Unix Time: configuration, set by telecommand 2, got by telemetry 140, 6
     bytes. Table 50.
     """
-
-    __slots__ = (
-        "current_unix_time",
-        "milliseconds",
-    )
 
     NODE = "common"
     NAME = "Current Unix Time"
@@ -33,53 +21,20 @@ class CurrentUnixTime(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 6
     TABLE = 50
-    FIELDS = (
-        _base.FieldInfo(
-            "current_unix_time",
-            "Current Unix Time",
-            0,
-            32,
-            "uint",
-            unit="s",
-        ),
-        _base.FieldInfo("milliseconds", "Milliseconds", 32, 16, "uint", unit="ms"),
-    )
 
-    current_unix_time: int
+    current_unix_time: int = _base.field("Current Unix Time", 0, 32, "uint", default=0, unit="s")
     """Current Unix Time: bits 0 to 31, raw 0 to 4294967295, in s.
 
     Since 1970-01-01 00:00.
 
-    Note COM-111 (open): Unix time: time zone and leap seconds are not given.
+    Note COM-111 (open): Unix time: time zone and leap seconds are not given. The epoch
+    is stated without UTC, and the offset against GPS time is not mentioned although GPS
+    time is a telemetry frame of its own.
     """
-    milliseconds: int
+
+    milliseconds: int = _base.field("Milliseconds", 32, 16, "uint", default=0, unit="ms")
     """Milliseconds: bits 32 to 47, raw 0 to 65535, in ms.
 
-    Note COM-110 (open): Milliseconds: range is not given.
+    Note COM-110 (open): Milliseconds: range is not given. The field has 16 bits; values
+    above 999 are not excluded.
     """
-
-    def __init__(
-        self,
-        *,
-        current_unix_time: int = 0,
-        milliseconds: int = 0,
-    ) -> None:
-        self.current_unix_time = current_unix_time
-        self.milliseconds = milliseconds
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CurrentUnixTime:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.current_unix_time, self.milliseconds = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.current_unix_time, self.milliseconds)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,32 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B2H")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool), (1, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class DownloadBlockReady(_base.Message):
     """Download Block Ready: telemetry 242, 5 bytes. Table 42.
 
     Whether the block asked for by Load File Download Block is in the buffer.
 
-    Note COM-093 (open): Polling has no interval and no time-out.
+    Note COM-093 (open): Polling has no interval and no time-out. How often the
+    acknowledge may be polled, and when to give up, is not said. For files a time is
+    suggested for two of the operations only.
     """
-
-    __slots__ = (
-        "ready",
-        "parameter_error",
-        "block_crc16_checksum",
-        "block_length",
-    )
 
     NODE = "common"
     NAME = "Download Block Ready"
@@ -39,58 +25,28 @@ class DownloadBlockReady(_base.Message):
     IDS = (ID,)
     LENGTH = 5
     TABLE = 42
-    FIELDS = (
-        _base.FieldInfo("ready", "Ready", 0, 1, "bool"),
-        _base.FieldInfo("parameter_error", "ParameterError", 1, 1, "bool"),
-        _base.FieldInfo("block_crc16_checksum", "Block CRC16 Checksum", 8, 16, "uint"),
-        _base.FieldInfo("block_length", "Block Length", 24, 16, "uint", unit="byte"),
-    )
 
-    ready: bool
+    ready: bool = _base.field("Ready", 0, 1, "bool", default=False)
     """Ready: bit 0."""
-    parameter_error: bool
+
+    parameter_error: bool = _base.field("ParameterError", 1, 1, "bool", default=False)
     """ParameterError: bit 1.
 
     Message length and hole map together led to invalid array lengths.
 
-    Note COM-097 (open): ParameterError refers to arrays that no message has.
+    Note COM-097 (open): ParameterError refers to arrays that no message has. The
+    combination of message length and hole map is said to have led to invalid array
+    lengths. Which combinations do is not said, and the download text does not mention
+    the flag.
     """
-    block_crc16_checksum: int
+
+    block_crc16_checksum: int = _base.field("Block CRC16 Checksum", 8, 16, "uint", default=0)
     """Block CRC16 Checksum: bits 8 to 23, raw 0 to 65535."""
-    block_length: int
+
+    block_length: int = _base.field("Block Length", 24, 16, "uint", default=0, unit="byte")
     """Block Length: bits 24 to 39, raw 0 to 65535, in byte.
 
-    Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant
+    throughout, but of the tables of messages only that of the program information says
+    so.
     """
-
-    def __init__(
-        self,
-        *,
-        ready: bool = False,
-        parameter_error: bool = False,
-        block_crc16_checksum: int = 0,
-        block_length: int = 0,
-    ) -> None:
-        self.ready = ready
-        self.parameter_error = parameter_error
-        self.block_crc16_checksum = block_crc16_checksum
-        self.block_length = block_length
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> DownloadBlockReady:
-        """The message in a frame of exactly 5 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, self.block_crc16_checksum, self.block_length = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.ready, self.parameter_error = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.ready, self.parameter_error]
-            return _pack(v0, self.block_crc16_checksum, self.block_length)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3H")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class EdacErrorCounters(_base.Message):
     """EDAC Error Counters: telemetry 143, 6 bytes. Table 36.
 
     Memory errors that scrubbing the SRAM has found and corrected.
     """
-
-    __slots__ = (
-        "single_sram_upsets",
-        "double_sram_upsets",
-        "multiple_sram_upsets",
-    )
 
     NODE = "common"
     NAME = "EDAC Error Counters"
@@ -34,64 +21,27 @@ class EdacErrorCounters(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 36
-    FIELDS = (
-        _base.FieldInfo("single_sram_upsets", "Single SRAM upsets", 0, 16, "uint"),
-        _base.FieldInfo("double_sram_upsets", "Double SRAM upsets", 16, 16, "uint"),
-        _base.FieldInfo("multiple_sram_upsets", "Multiple SRAM upsets", 32, 16, "uint"),
-    )
 
-    single_sram_upsets: int
+    single_sram_upsets: int = _base.field("Single SRAM upsets", 0, 16, "uint", default=0)
     """Single SRAM upsets: bits 0 to 15, raw 0 to 65535.
 
     Counted per byte.
     """
-    double_sram_upsets: int
+
+    double_sram_upsets: int = _base.field("Double SRAM upsets", 16, 16, "uint", default=0)
     """Double SRAM upsets: bits 16 to 31, raw 0 to 65535.
 
     Counted per byte.
 
-    Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been.
+    Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been. The
+    frame is said to count errors that were detected and corrected. It has counters for
+    double and multiple upsets in a byte, which such a code detects at best.
     """
-    multiple_sram_upsets: int
+
+    multiple_sram_upsets: int = _base.field("Multiple SRAM upsets", 32, 16, "uint", default=0)
     """Multiple SRAM upsets: bits 32 to 47, raw 0 to 65535.
 
     Counted per byte.
 
-    Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been.
+    Note COM-077 (likely): see Double SRAM upsets.
     """
-
-    def __init__(
-        self,
-        *,
-        single_sram_upsets: int = 0,
-        double_sram_upsets: int = 0,
-        multiple_sram_upsets: int = 0,
-    ) -> None:
-        self.single_sram_upsets = single_sram_upsets
-        self.double_sram_upsets = double_sram_upsets
-        self.multiple_sram_upsets = multiple_sram_upsets
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> EdacErrorCounters:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.single_sram_upsets,
-                self.double_sram_upsets,
-                self.multiple_sram_upsets,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.single_sram_upsets,
-                self.double_sram_upsets,
-                self.multiple_sram_upsets,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,21 +5,10 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .file_type import FileType
 
-_STRUCT = struct.Struct("<3B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, FileType))
-_BITS_1 = _codec.bit_table((0, 1, bool))
-_BYTES_1 = _codec.Inverse(_BITS_1)
-_DEFAULT_0 = _codec.unnamed(FileType, 0)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class EraseFile(_base.Message):
     """Erase File: telecommand 108, 3 bytes. Table 15.
 
@@ -28,14 +17,10 @@ class EraseFile(_base.Message):
 
     Dangerous: The file is lost; all files are with Erase All.
 
-    Note COM-034 (open): Erase File: what the other fields mean with Erase All.
+    Note COM-034 (open): Erase File: what the other fields mean with Erase All. With the
+    flag set all files go; whether type and counter must still be valid, or limit the
+    erasing to one type, is not said.
     """
-
-    __slots__ = (
-        "file_type",
-        "file_counter",
-        "erase_all",
-    )
 
     NODE = "common"
     NAME = "Erase File"
@@ -44,52 +29,19 @@ class EraseFile(_base.Message):
     IDS = (ID,)
     LENGTH = 3
     TABLE = 15
-    FIELDS = (
-        _base.FieldInfo("file_type", "File Type", 0, 8, "enum", enum=FileType),
-        _base.FieldInfo("file_counter", "File Counter", 8, 8, "uint"),
-        _base.FieldInfo("erase_all", "Erase All", 16, 1, "bool"),
-    )
 
-    file_type: FileType
+    file_type: FileType = _base.field("File Type", 0, 8, "enum", default=FileType(0))
     """File Type: bits 0 to 7."""
-    file_counter: int
+
+    file_counter: int = _base.field("File Counter", 8, 8, "uint", default=0)
     """File Counter: bits 8 to 15, raw 0 to 255.
 
-    Note COM-035 (open): File counter of 8 bits.
+    Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens
+    with the next one is not said.
     """
-    erase_all: bool
+
+    erase_all: bool = _base.field("Erase All", 16, 1, "bool", default=False)
     """Erase All: bit 16.
 
     All files instead of this one.
     """
-
-    def __init__(
-        self,
-        *,
-        file_type: FileType = _DEFAULT_0,
-        file_counter: int = 0,
-        erase_all: bool = False,
-    ) -> None:
-        self.file_type = file_type
-        self.file_counter = file_counter
-        self.erase_all = erase_all
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> EraseFile:
-        """The message in a frame of exactly 3 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, self.file_counter, v2 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.file_type = _BITS_0[v0]
-        self.erase_all = _BITS_1[v2]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v2 = _BYTES_1[self.erase_all]
-            return _pack(self.file_type, self.file_counter, v2)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,17 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<H20s")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_DEFAULT_0 = bytes(20)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class FileDownloadBufferWithFileContents(_base.Message):
     """File Download Buffer with File Contents: telemetry 241, 22 bytes. Table 41.
 
@@ -23,14 +15,15 @@ class FileDownloadBufferWithFileContents(_base.Message):
     Initiate Download Burst.
 
     Note COM-051 (certain): Messages of the download have other names in the text.
+    Initiate File Download Burst and Download File Packet do not exist. Initiate
+    Download Burst and File Download Buffer with File Contents are meant.
 
-    Note COM-052 (open): Download packets: id of the telecommand or of the frame.
+    Note COM-052 (open): Download packets: id of the telecommand or of the frame. On
+    UART the packets are said to be headed by the id of the telecommand, 119. The frame
+    with their format has the id 241. Which of the two the reads on I2C are headed by is
+    not said; 241 is assumed. With 119 a packet and an acknowledge differ by length
+    only.
     """
-
-    __slots__ = (
-        "packet_counter",
-        "file_bytes",
-    )
 
     NODE = "common"
     NAME = "File Download Buffer with File Contents"
@@ -39,49 +32,26 @@ class FileDownloadBufferWithFileContents(_base.Message):
     IDS = (ID,)
     LENGTH = 22
     TABLE = 41
-    FIELDS = (
-        _base.FieldInfo("packet_counter", "Packet counter", 0, 16, "uint"),
-        _base.FieldInfo("file_bytes", "File bytes", 16, 160, "bytes"),
-    )
 
-    packet_counter: int
+    packet_counter: int = _base.field("Packet counter", 0, 16, "uint", default=0)
     """Packet counter: bits 0 to 15, raw 0 to 65535.
 
     Position of the packet in the burst.
 
-    Note COM-047 (likely): Packet numbers: from 0 or from 1.
+    Note COM-047 (likely): Packet numbers: from 0 or from 1. Neither the upload nor the
+    download says where the count begins. The code walks bits 0 to 1023 of the hole map,
+    so 0 is likely.
     """
-    file_bytes: bytes
+
+    file_bytes: bytes = _base.field("File bytes", 16, 160, "bytes", default=bytes(20))
     """File bytes: bytes 2 to 21.
 
-    Note COM-029 (certain): One field, several spellings.
+    Note COM-029 (certain): One field, several spellings. The same things are written
+    Magic number and Magic Number, BlockLength and Block Length, File bytes and File
+    Bytes, File Counter, Counter and File Ctr, and Checksum with and without CRC16.
+    Names are held as printed.
 
-    Note COM-048 (open): Last packet of a block: fill is not defined.
+    Note COM-048 (open): Last packet of a block: fill is not defined. Packets have
+    always 20 bytes of data. What follows the end of the file in the last one, in either
+    direction, is not said, nor whether the checksum covers it.
     """
-
-    def __init__(
-        self,
-        *,
-        packet_counter: int = 0,
-        file_bytes: bytes = _DEFAULT_0,
-    ) -> None:
-        self.packet_counter = packet_counter
-        self.file_bytes = file_bytes
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> FileDownloadBufferWithFileContents:
-        """The message in a frame of exactly 22 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.packet_counter, self.file_bytes = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v2 = _codec.sized(self.file_bytes, 20)
-            return _pack(self.packet_counter, v2)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,40 +5,24 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .file_type import FileType
 
-_STRUCT = struct.Struct("<2B2IH")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 4, FileType), (4, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
-_DEFAULT_0 = _codec.unnamed(FileType, 0)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class FileInformation(_base.Message):
     """File Information: telemetry 243, 12 bytes. Table 43.
 
     The file at the list pointer. All zeros with Busy Updating clear: the end of the
     list.
 
-    Note COM-093 (open): Polling has no interval and no time-out.
+    Note COM-093 (open): Polling has no interval and no time-out. How often the
+    acknowledge may be polled, and when to give up, is not said. For files a time is
+    suggested for two of the operations only.
 
     Note COM-102 (certain): File information and index entry order the same items
-    differently.
+    differently. The frame has size, date and checksum; the index has checksum, size and
+    date, and whole bytes. One layout cannot read the other.
     """
-
-    __slots__ = (
-        "file_type",
-        "busy_updating",
-        "file_ctr",
-        "file_size",
-        "file_date_and_time",
-        "file_crc16_checksum",
-    )
 
     NODE = "common"
     NAME = "File Information"
@@ -47,101 +31,53 @@ class FileInformation(_base.Message):
     IDS = (ID,)
     LENGTH = 12
     TABLE = 43
-    FIELDS = (
-        _base.FieldInfo("file_type", "File Type", 0, 4, "enum", enum=FileType),
-        _base.FieldInfo("busy_updating", "Busy Updating", 4, 1, "bool"),
-        _base.FieldInfo("file_ctr", "File Ctr", 8, 8, "uint"),
-        _base.FieldInfo("file_size", "File Size", 16, 32, "uint", unit="byte"),
-        _base.FieldInfo(
-            "file_date_and_time",
-            "File Date and Time",
-            48,
-            32,
-            "uint",
-            unit="MS-DOS time",
-        ),
-        _base.FieldInfo("file_crc16_checksum", "File CRC16 Checksum", 80, 16, "uint"),
-    )
 
-    file_type: FileType
+    file_type: FileType = _base.field("File Type", 0, 4, "enum", default=FileType(0))
     """File Type: bits 0 to 3."""
-    busy_updating: bool
+
+    busy_updating: bool = _base.field("Busy Updating", 4, 1, "bool", default=False)
     """Busy Updating: bit 4.
 
     The other fields are valid once this is clear.
 
-    Note COM-101 (certain): Busy Updating has no description.
+    Note COM-101 (certain): Busy Updating has no description. What it means stands only
+    in the text: the rest of the frame is valid once it is clear.
     """
-    file_ctr: int
+
+    file_ctr: int = _base.field("File Ctr", 8, 8, "uint", default=0)
     """File Ctr: bits 8 to 15, raw 0 to 255.
 
     With the type it identifies the file.
 
-    Note COM-029 (certain): One field, several spellings.
+    Note COM-029 (certain): One field, several spellings. The same things are written
+    Magic number and Magic Number, BlockLength and Block Length, File bytes and File
+    Bytes, File Counter, Counter and File Ctr, and Checksum with and without CRC16.
+    Names are held as printed.
 
-    Note COM-035 (open): File counter of 8 bits.
+    Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens
+    with the next one is not said.
     """
-    file_size: int
+
+    file_size: int = _base.field("File Size", 16, 32, "uint", default=0, unit="byte")
     """File Size: bits 16 to 47, raw 0 to 4294967295, in byte.
 
-    Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant
+    throughout, but of the tables of messages only that of the program information says
+    so.
     """
-    file_date_and_time: int
+
+    file_date_and_time: int = _base.field("File Date and Time", 48, 32, "uint", default=0, unit="MS-DOS time")
     """File Date and Time: bits 48 to 79, raw 0 to 4294967295, in MS-DOS time.
 
     In MS-DOS format.
 
-    Erratum COM-099 (certain): File Date and Time: a packed date in seconds.
+    Erratum COM-099 (certain): File Date and Time: a packed date in seconds. The unit is
+    given as s, but the value is a date and time packed into bit fields, so it counts
+    nothing. Held with a unit of its own; the raw value is not converted.
 
-    Note COM-100 (open): Time zone of file times is not given.
+    Note COM-100 (open): Time zone of file times is not given. Whether UTC or something
+    else fills the packed date is not said; its resolution is 2 s.
     """
-    file_crc16_checksum: int
+
+    file_crc16_checksum: int = _base.field("File CRC16 Checksum", 80, 16, "uint", default=0)
     """File CRC16 Checksum: bits 80 to 95, raw 0 to 65535."""
-
-    def __init__(
-        self,
-        *,
-        file_type: FileType = _DEFAULT_0,
-        busy_updating: bool = False,
-        file_ctr: int = 0,
-        file_size: int = 0,
-        file_date_and_time: int = 0,
-        file_crc16_checksum: int = 0,
-    ) -> None:
-        self.file_type = file_type
-        self.busy_updating = busy_updating
-        self.file_ctr = file_ctr
-        self.file_size = file_size
-        self.file_date_and_time = file_date_and_time
-        self.file_crc16_checksum = file_crc16_checksum
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> FileInformation:
-        """The message in a frame of exactly 12 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                v0,
-                self.file_ctr,
-                self.file_size,
-                self.file_date_and_time,
-                self.file_crc16_checksum,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.file_type, self.busy_updating = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.file_type, self.busy_updating]
-            return _pack(
-                v0,
-                self.file_ctr,
-                self.file_size,
-                self.file_date_and_time,
-                self.file_crc16_checksum,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,17 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<H20s")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_DEFAULT_0 = bytes(20)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class FileUploadPacket(_base.Message):
     """File Upload Packet: telecommand 115, 22 bytes. Table 21.
 
@@ -24,17 +16,18 @@ class FileUploadPacket(_base.Message):
     The node does not acknowledge it.
 
     Note COM-041 (open): File upload is listed as common but described for the
-    bootloader only.
+    bootloader only. The messages of the upload are in the list common to both programs,
+    the procedure belongs to the bootloader. Whether the ACP answers them, refuses them,
+    or uploads somewhere is not said.
 
     Note COM-046 (likely): File Upload Packet is not acknowledged, against the rule.
+    Every telecommand is answered on UART and CAN, and a second one before the answer
+    corrupts the buffer. This one is sent in a stream and never answered.
 
     Note COM-125 (certain): File Upload Packet: messages of 20 bytes, parameters of 22.
+    The procedure sends messages with a size of 20 bytes each. 20 are the bytes of the
+    file; with the packet number the telecommand has 22.
     """
-
-    __slots__ = (
-        "packet_number",
-        "file_bytes",
-    )
 
     NODE = "common"
     NAME = "File Upload Packet"
@@ -44,45 +37,19 @@ class FileUploadPacket(_base.Message):
     LENGTH = 22
     TABLE = 21
     ACKNOWLEDGED = False
-    FIELDS = (
-        _base.FieldInfo("packet_number", "Packet Number", 0, 16, "uint"),
-        _base.FieldInfo("file_bytes", "File Bytes", 16, 160, "bytes"),
-    )
 
-    packet_number: int
+    packet_number: int = _base.field("Packet Number", 0, 16, "uint", default=0)
     """Packet Number: bits 0 to 15, raw 0 to 65535.
 
-    Note COM-047 (likely): Packet numbers: from 0 or from 1.
+    Note COM-047 (likely): Packet numbers: from 0 or from 1. Neither the upload nor the
+    download says where the count begins. The code walks bits 0 to 1023 of the hole map,
+    so 0 is likely.
     """
-    file_bytes: bytes
+
+    file_bytes: bytes = _base.field("File Bytes", 16, 160, "bytes", default=bytes(20))
     """File Bytes: bytes 2 to 21.
 
-    Note COM-048 (open): Last packet of a block: fill is not defined.
+    Note COM-048 (open): Last packet of a block: fill is not defined. Packets have
+    always 20 bytes of data. What follows the end of the file in the last one, in either
+    direction, is not said, nor whether the checksum covers it.
     """
-
-    def __init__(
-        self,
-        *,
-        packet_number: int = 0,
-        file_bytes: bytes = _DEFAULT_0,
-    ) -> None:
-        self.packet_number = packet_number
-        self.file_bytes = file_bytes
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> FileUploadPacket:
-        """The message in a frame of exactly 22 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.packet_number, self.file_bytes = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v2 = _codec.sized(self.file_bytes, 20)
-            return _pack(self.packet_number, v2)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,35 +5,25 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .file_upload_destination import FileUploadDestination
 
-_STRUCT = struct.Struct("<BIH")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, FileUploadDestination))
-_DEFAULT_0 = _codec.unnamed(FileUploadDestination, 0)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class FinalizeUploadBlock(_base.Message):
     """Finalize Upload Block: telecommand 116, 7 bytes. Table 22.
 
     Commits the received block to its destination.
 
     Note COM-041 (open): File upload is listed as common but described for the
-    bootloader only.
+    bootloader only. The messages of the upload are in the list common to both programs,
+    the procedure belongs to the bootloader. Whether the ACP answers them, refuses them,
+    or uploads somewhere is not said.
 
-    Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
+    Note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text
+    ends with the checksum test before the block is committed. The telecommand that
+    commits it and the frame that reports it are never named; both stood in a figure at
+    best.
     """
-
-    __slots__ = (
-        "destination",
-        "offset",
-        "block_length",
-    )
 
     NODE = "common"
     NAME = "Finalize Upload Block"
@@ -42,59 +32,22 @@ class FinalizeUploadBlock(_base.Message):
     IDS = (ID,)
     LENGTH = 7
     TABLE = 22
-    FIELDS = (
-        _base.FieldInfo(
-            "destination",
-            "Destination",
-            0,
-            8,
-            "enum",
-            enum=FileUploadDestination,
-        ),
-        _base.FieldInfo("offset", "Offset", 8, 32, "uint", unit="byte"),
-        _base.FieldInfo("block_length", "Block Length", 40, 16, "uint", unit="byte"),
-    )
 
-    destination: FileUploadDestination
+    destination: FileUploadDestination = _base.field("Destination", 0, 8, "enum", default=FileUploadDestination(0))
     """Destination: bits 0 to 7."""
-    offset: int
+
+    offset: int = _base.field("Offset", 8, 32, "uint", default=0, unit="byte")
     """Offset: bits 8 to 39, raw 0 to 4294967295, in byte.
 
     Where in the file the block belongs.
 
-    Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant
+    throughout, but of the tables of messages only that of the program information says
+    so.
     """
-    block_length: int
+
+    block_length: int = _base.field("Block Length", 40, 16, "uint", default=0, unit="byte")
     """Block Length: bits 40 to 55, raw 0 to 65535, in byte.
 
-    Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    Erratum COM-039 (likely): see Offset.
     """
-
-    def __init__(
-        self,
-        *,
-        destination: FileUploadDestination = _DEFAULT_0,
-        offset: int = 0,
-        block_length: int = 0,
-    ) -> None:
-        self.destination = destination
-        self.offset = offset
-        self.block_length = block_length
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> FinalizeUploadBlock:
-        """The message in a frame of exactly 7 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, self.offset, self.block_length = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.destination = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.destination, self.offset, self.block_length)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

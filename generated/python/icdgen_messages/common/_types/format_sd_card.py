@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class FormatSdCard(_base.Message):
     """Format SD card: telecommand 33, 1 byte. Table 14.
 
@@ -23,10 +16,6 @@ class FormatSdCard(_base.Message):
     Dangerous: All files on the SD card are lost.
     """
 
-    __slots__ = (
-        "magic_number",
-    )
-
     NODE = "common"
     NAME = "Format SD card"
     KIND = "telecommand"
@@ -34,38 +23,11 @@ class FormatSdCard(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 14
-    FIELDS = (
-        _base.FieldInfo("magic_number", "Magic Number", 0, 8, "uint", const=90),
-    )
 
-    magic_number: int
+    magic_number: int = _base.field("Magic Number", 0, 8, "uint", default=90, const=90)
     """Magic Number: bits 0 to 7, raw 0 to 255.
 
     Guards against accidental formatting.
 
     Always 90 (0x5A).
     """
-
-    def __init__(
-        self,
-        *,
-        magic_number: int = 90,
-    ) -> None:
-        self.magic_number = magic_number
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> FormatSdCard:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (self.magic_number,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.magic_number)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

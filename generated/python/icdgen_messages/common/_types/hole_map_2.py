@@ -5,17 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<16s")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_DEFAULT_0 = bytes(16)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class HoleMap2(_base.Message):
     """Hole Map 2: configuration, set by telecommand 121, got by telemetry 248, 16
     bytes. Table 53.
@@ -23,19 +15,20 @@ class HoleMap2(_base.Message):
     Packets 128 to 255 of a file block.
 
     Note COM-115 (certain): Hole maps are named for the upload and serve the download
-    too.
+    too. All eight messages are described as file upload hole map. For a download the
+    OBC sets them, for an upload it reads them. Whether both use one buffer is not said.
 
-    Note COM-116 (open): Hole map: who clears it before a download.
+    Note COM-116 (open): Hole map: who clears it before a download. Only Reset Upload
+    Block is said to reset the map. Before a download it may hold what the last transfer
+    left; the first burst ignores it, the second does not.
 
-    Note COM-117 (likely): Hole map: bits beyond the last packet.
+    Note COM-117 (likely): Hole map: bits beyond the last packet. The code treats every
+    0 among 1024 bits as a packet missed, also those that a shorter block does not have.
 
     Note COM-124 (certain): The hole map is read with eight frames, one table is
-    referred to.
+    referred to. Frames 247 to 254 are said to be described by Table 52, which describes
+    the first of them.
     """
-
-    __slots__ = (
-        "hole_map",
-    )
 
     NODE = "common"
     NAME = "Hole Map 2"
@@ -45,37 +38,9 @@ class HoleMap2(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 16
     TABLE = 53
-    FIELDS = (
-        _base.FieldInfo("hole_map", "Hole Map", 0, 128, "bytes"),
-    )
 
-    hole_map: bytes
+    hole_map: bytes = _base.field("Hole Map", 0, 128, "bytes", default=bytes(16))
     """Hole Map: bytes 0 to 15.
 
     One bit a packet, least significant bit of byte 0 first. 1: received.
     """
-
-    def __init__(
-        self,
-        *,
-        hole_map: bytes = _DEFAULT_0,
-    ) -> None:
-        self.hole_map = hole_map
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> HoleMap2:
-        """The message in a frame of exactly 16 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (self.hole_map,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _codec.sized(self.hole_map, 16)
-            return _pack(v0)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<4B2H")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class Identification(_base.Message):
     """Identification: telemetry 128, 8 bytes. Table 27.
 
@@ -22,17 +15,10 @@ class Identification(_base.Message):
     booting on.
 
     Note COM-054 (likely): The identification request stops the boot that it is to
-    check.
+    check. A request that reaches the bootloader keeps it from booting: asked within the
+    first 5 s, or after a reset that nobody planned, it prevents the start. Section 7.1
+    does not say how the boot is resumed; Run Selected Program would do it.
     """
-
-    __slots__ = (
-        "node_type",
-        "interface_version",
-        "firmware_version_major",
-        "firmware_version_minor",
-        "runtime_seconds",
-        "runtime_milliseconds",
-    )
 
     NODE = "common"
     NAME = "Identification"
@@ -41,117 +27,44 @@ class Identification(_base.Message):
     IDS = (ID,)
     LENGTH = 8
     TABLE = 27
-    FIELDS = (
-        _base.FieldInfo("node_type", "Node type", 0, 8, "uint"),
-        _base.FieldInfo("interface_version", "Interface version", 8, 8, "uint"),
-        _base.FieldInfo(
-            "firmware_version_major",
-            "Firmware version (Major)",
-            16,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "firmware_version_minor",
-            "Firmware version (Minor)",
-            24,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "runtime_seconds",
-            "Runtime (seconds)",
-            32,
-            16,
-            "uint",
-            unit="s",
-        ),
-        _base.FieldInfo(
-            "runtime_milliseconds",
-            "Runtime (milliseconds)",
-            48,
-            16,
-            "uint",
-            unit="ms",
-        ),
-    )
 
-    node_type: int
+    node_type: int = _base.field("Node type", 0, 8, "uint", default=0)
     """Node type: bits 0 to 7, raw 0 to 255.
 
     Tells the bootloader from the control program.
     """
-    interface_version: int
+
+    interface_version: int = _base.field("Interface version", 8, 8, "uint", default=0)
     """Interface version: bits 8 to 15, raw 0 to 255.
 
-    Erratum COM-055 (certain): Interface version should be 1.
+    Erratum COM-055 (certain): Interface version should be 1. The identification frame
+    is said to carry 1. The programs that it identifies carry 7 and 3, so the constant
+    would refuse every real answer.
     """
-    firmware_version_major: int
+
+    firmware_version_major: int = _base.field("Firmware version (Major)", 16, 8, "uint", default=0)
     """Firmware version (Major): bits 16 to 23, raw 0 to 255."""
-    firmware_version_minor: int
+
+    firmware_version_minor: int = _base.field("Firmware version (Minor)", 24, 8, "uint", default=0)
     """Firmware version (Minor): bits 24 to 31, raw 0 to 255."""
-    runtime_seconds: int
+
+    runtime_seconds: int = _base.field("Runtime (seconds)", 32, 16, "uint", default=0, unit="s")
     """Runtime (seconds): bits 32 to 47, raw 0 to 65535, in s.
 
     Since the processor started.
 
-    Erratum COM-057 (certain): Runtime has its unit in words only.
+    Erratum COM-057 (certain): Runtime has its unit in words only. Seconds stand in name
+    and description, not as a unit of measure.
 
-    Note COM-056 (open): Runtime ends after 18 hours.
+    Note COM-056 (open): Runtime ends after 18 hours. Seconds since start-up have 16
+    bits and reach 65535 s, 18 h 12 min. What follows is not said.
     """
-    runtime_milliseconds: int
+
+    runtime_milliseconds: int = _base.field("Runtime (milliseconds)", 48, 16, "uint", default=0, unit="ms")
     """Runtime (milliseconds): bits 48 to 63, raw 0 to 65535, in ms.
 
     Beyond the whole seconds.
 
     Erratum COM-127 (certain): Milliseconds of the runtime have their unit in words
-    only.
+    only. Milliseconds stand in name and description, not as a unit of measure.
     """
-
-    def __init__(
-        self,
-        *,
-        node_type: int = 0,
-        interface_version: int = 0,
-        firmware_version_major: int = 0,
-        firmware_version_minor: int = 0,
-        runtime_seconds: int = 0,
-        runtime_milliseconds: int = 0,
-    ) -> None:
-        self.node_type = node_type
-        self.interface_version = interface_version
-        self.firmware_version_major = firmware_version_major
-        self.firmware_version_minor = firmware_version_minor
-        self.runtime_seconds = runtime_seconds
-        self.runtime_milliseconds = runtime_milliseconds
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> Identification:
-        """The message in a frame of exactly 8 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.node_type,
-                self.interface_version,
-                self.firmware_version_major,
-                self.firmware_version_minor,
-                self.runtime_seconds,
-                self.runtime_milliseconds,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.node_type,
-                self.interface_version,
-                self.firmware_version_major,
-                self.firmware_version_minor,
-                self.runtime_seconds,
-                self.runtime_milliseconds,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,35 +5,28 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class InitializeUploadComplete(_base.Message):
     """Initialize Upload Complete: telemetry 244, 1 byte. Table 44.
 
     Polled after Initiate File Upload.
 
     Note COM-041 (open): File upload is listed as common but described for the
-    bootloader only.
+    bootloader only. The messages of the upload are in the list common to both programs,
+    the procedure belongs to the bootloader. Whether the ACP answers them, refuses them,
+    or uploads somewhere is not said.
 
     Note COM-104 (certain): Upload is initiated, initialized and finalized under
-    changing names.
+    changing names. Initiate File Upload is followed by Initialize Upload Complete;
+    Finalize Upload Block is described as finalizing the uploaded file block, and its
+    frame Upload Block Complete as finalizing complete.
 
-    Note COM-105 (open): Initialisation of an upload can fail silently.
+    Note COM-105 (open): Initialisation of an upload can fail silently. The frame has a
+    busy flag only; a failed erase of the flash shows nowhere until the checksum of a
+    block is wrong.
     """
-
-    __slots__ = (
-        "busy",
-    )
 
     NODE = "common"
     NAME = "Initialize Upload Complete"
@@ -42,40 +35,13 @@ class InitializeUploadComplete(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 44
-    FIELDS = (
-        _base.FieldInfo("busy", "Busy", 0, 1, "bool"),
-    )
 
-    busy: bool
+    busy: bool = _base.field("Busy", 0, 1, "bool", default=False)
     """Busy: bit 0.
 
     Still preparing, for instance erasing flash.
 
-    Note COM-103 (certain): Frames named complete report busy.
+    Note COM-103 (certain): Frames named complete report busy. Initialize Upload
+    Complete and Upload Block Complete hold a flag that is set while the operation is
+    not complete.
     """
-
-    def __init__(
-        self,
-        *,
-        busy: bool = False,
-    ) -> None:
-        self.busy = busy
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> InitializeUploadComplete:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.busy = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.busy]
-            return _pack(v0)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

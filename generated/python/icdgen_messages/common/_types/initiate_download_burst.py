@@ -5,18 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<2B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class InitiateDownloadBurst(_base.Message):
     """Initiate Download Burst: telecommand 119, 2 bytes. Table 25.
 
@@ -24,16 +15,19 @@ class InitiateDownloadBurst(_base.Message):
     succession, on I2C the master reads them one by one.
 
     Note COM-051 (certain): Messages of the download have other names in the text.
+    Initiate File Download Burst and Download File Packet do not exist. Initiate
+    Download Burst and File Download Buffer with File Contents are meant.
 
-    Note COM-052 (open): Download packets: id of the telecommand or of the frame.
+    Note COM-052 (open): Download packets: id of the telecommand or of the frame. On
+    UART the packets are said to be headed by the id of the telecommand, 119. The frame
+    with their format has the id 241. Which of the two the reads on I2C are headed by is
+    not said; 241 is assumed. With 119 a packet and an acknowledge differ by length
+    only.
 
-    Note COM-053 (open): Download over CAN is not described.
+    Note COM-053 (open): Download over CAN is not described. Packets are pushed on UART
+    and read on I2C. For CAN, which both programs support, nothing is said; a packet of
+    22 bytes would need an extended transaction of four.
     """
-
-    __slots__ = (
-        "message_length",
-        "ignore_hole_map",
-    )
 
     NODE = "common"
     NAME = "Initiate Download Burst"
@@ -42,46 +36,17 @@ class InitiateDownloadBurst(_base.Message):
     IDS = (ID,)
     LENGTH = 2
     TABLE = 25
-    FIELDS = (
-        _base.FieldInfo("message_length", "Message Length", 0, 8, "uint"),
-        _base.FieldInfo("ignore_hole_map", "Ignore Hole Map", 8, 1, "bool"),
-    )
 
-    message_length: int
+    message_length: int = _base.field("Message Length", 0, 8, "uint", default=0)
     """Message Length: bits 0 to 7, raw 0 to 255.
 
-    Note COM-050 (open): Initiate Download Burst: Message Length is not explained.
+    Note COM-050 (open): Initiate Download Burst: Message Length is not explained. The
+    length of a message is fixed at 22 bytes by the frame and the text. Which value has
+    to be sent, and what others do, is not said; one error flag refers to it.
     """
-    ignore_hole_map: bool
+
+    ignore_hole_map: bool = _base.field("Ignore Hole Map", 8, 1, "bool", default=False)
     """Ignore Hole Map: bit 8.
 
     Set: all packets. Clear: only those whose bit in the hole map is 0.
     """
-
-    def __init__(
-        self,
-        *,
-        message_length: int = 0,
-        ignore_hole_map: bool = False,
-    ) -> None:
-        self.message_length = message_length
-        self.ignore_hole_map = ignore_hole_map
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> InitiateDownloadBurst:
-        """The message in a frame of exactly 2 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.message_length, v1 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.ignore_hole_map = _BITS_0[v1]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v1 = _BYTES_0[self.ignore_hole_map]
-            return _pack(self.message_length, v1)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

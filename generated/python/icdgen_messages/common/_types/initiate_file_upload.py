@@ -5,19 +5,10 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .file_upload_destination import FileUploadDestination
 
-_STRUCT = struct.Struct("<2B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, FileUploadDestination))
-_DEFAULT_0 = _codec.unnamed(FileUploadDestination, 0)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class InitiateFileUpload(_base.Message):
     """Initiate File Upload: telecommand 114, 2 bytes. Table 19.
 
@@ -26,13 +17,10 @@ class InitiateFileUpload(_base.Message):
     Dangerous: The program in the destination is lost.
 
     Note COM-041 (open): File upload is listed as common but described for the
-    bootloader only.
+    bootloader only. The messages of the upload are in the list common to both programs,
+    the procedure belongs to the bootloader. Whether the ACP answers them, refuses them,
+    or uploads somewhere is not said.
     """
-
-    __slots__ = (
-        "destination",
-        "block_size",
-    )
 
     NODE = "common"
     NAME = "Initiate File Upload"
@@ -41,54 +29,18 @@ class InitiateFileUpload(_base.Message):
     IDS = (ID,)
     LENGTH = 2
     TABLE = 19
-    FIELDS = (
-        _base.FieldInfo(
-            "destination",
-            "Destination",
-            0,
-            8,
-            "enum",
-            enum=FileUploadDestination,
-        ),
-        _base.FieldInfo("block_size", "BlockSize", 8, 8, "uint"),
-    )
 
-    destination: FileUploadDestination
+    destination: FileUploadDestination = _base.field("Destination", 0, 8, "enum", default=FileUploadDestination(0))
     """Destination: bits 0 to 7.
 
     Only the flash programs are supported.
     """
-    block_size: int
+
+    block_size: int = _base.field("BlockSize", 8, 8, "uint", default=0)
     """BlockSize: bits 8 to 15, raw 0 to 255.
 
     Ignored, may be 0.
 
-    Note COM-042 (certain): BlockSize is a byte and ignored.
+    Note COM-042 (certain): BlockSize is a byte and ignored. The field cannot hold the
+    size of a block, and the text says that it is ignored and may be 0.
     """
-
-    def __init__(
-        self,
-        *,
-        destination: FileUploadDestination = _DEFAULT_0,
-        block_size: int = 0,
-    ) -> None:
-        self.destination = destination
-        self.block_size = block_size
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> InitiateFileUpload:
-        """The message in a frame of exactly 2 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, self.block_size = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.destination = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.destination, self.block_size)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,30 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<I2B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class LastLoggedEvent(_base.Message):
     """Last Logged Event: telemetry 141, 6 bytes. Table 34.
 
     The event at the log pointer, which Reset Log Pointer and Advance Log Pointer move.
 
     Note COM-073 (certain): Last Logged Event: wrong telecommands, and a bracket left
-    open.
+    open. The pointer is said to be adjusted with telecommands 3 and 4. Reset Log
+    Pointer is 4 and Advance Log Pointer 5; 3 sets the cache.
     """
-
-    __slots__ = (
-        "time_of_event",
-        "event_id",
-        "event_parameter",
-    )
 
     NODE = "common"
     NAME = "Last Logged Event"
@@ -37,52 +25,23 @@ class LastLoggedEvent(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 34
-    FIELDS = (
-        _base.FieldInfo("time_of_event", "Time of Event", 0, 32, "uint"),
-        _base.FieldInfo("event_id", "Event ID", 32, 8, "uint"),
-        _base.FieldInfo("event_parameter", "Event Parameter", 40, 8, "uint"),
-    )
 
-    time_of_event: int
+    time_of_event: int = _base.field("Time of Event", 0, 32, "uint", default=0)
     """Time of Event: bits 0 to 31, raw 0 to 4294967295.
 
-    Note COM-074 (open): Time of Event has no description.
+    Note COM-074 (open): Time of Event has no description. Neither unit nor epoch is
+    given; Unix time in seconds is a guess from the width.
     """
-    event_id: int
+
+    event_id: int = _base.field("Event ID", 32, 8, "uint", default=0)
     """Event ID: bits 32 to 39, raw 0 to 255.
 
-    Note COM-075 (open): Events are not listed.
+    Note COM-075 (open): Events are not listed. Event ID and parameter are numbers
+    without a key.
     """
-    event_parameter: int
+
+    event_parameter: int = _base.field("Event Parameter", 40, 8, "uint", default=0)
     """Event Parameter: bits 40 to 47, raw 0 to 255.
 
-    Note COM-075 (open): Events are not listed.
+    Note COM-075 (open): see Event ID.
     """
-
-    def __init__(
-        self,
-        *,
-        time_of_event: int = 0,
-        event_id: int = 0,
-        event_parameter: int = 0,
-    ) -> None:
-        self.time_of_event = time_of_event
-        self.event_id = event_id
-        self.event_parameter = event_parameter
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> LastLoggedEvent:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.time_of_event, self.event_id, self.event_parameter = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.time_of_event, self.event_id, self.event_parameter)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

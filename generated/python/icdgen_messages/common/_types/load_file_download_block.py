@@ -5,32 +5,16 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .file_type import FileType
 
-_STRUCT = struct.Struct("<2BIH")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, FileType))
-_DEFAULT_0 = _codec.unnamed(FileType, 0)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class LoadFileDownloadBlock(_base.Message):
     """Load File Download Block: telecommand 112, 8 bytes. Table 17.
 
     Reads part of a file into the download buffer. Download Block Ready tells when it is
     there.
     """
-
-    __slots__ = (
-        "file_type",
-        "counter",
-        "offset",
-        "block_length",
-    )
 
     NODE = "common"
     NAME = "Load File Download Block"
@@ -39,78 +23,42 @@ class LoadFileDownloadBlock(_base.Message):
     IDS = (ID,)
     LENGTH = 8
     TABLE = 17
-    FIELDS = (
-        _base.FieldInfo("file_type", "File Type", 0, 8, "enum", enum=FileType),
-        _base.FieldInfo("counter", "Counter", 8, 8, "uint"),
-        _base.FieldInfo("offset", "Offset", 16, 32, "uint", unit="byte"),
-        _base.FieldInfo(
-            "block_length",
-            "BlockLength",
-            48,
-            16,
-            "uint",
-            unit="byte",
-            maximum=20480,
-        ),
-    )
 
-    file_type: FileType
+    file_type: FileType = _base.field("File Type", 0, 8, "enum", default=FileType(0))
     """File Type: bits 0 to 7."""
-    counter: int
+
+    counter: int = _base.field("Counter", 8, 8, "uint", default=0)
     """Counter: bits 8 to 15, raw 0 to 255.
 
     Of the file: with the type it identifies the file.
 
-    Note COM-029 (certain): One field, several spellings.
+    Note COM-029 (certain): One field, several spellings. The same things are written
+    Magic number and Magic Number, BlockLength and Block Length, File bytes and File
+    Bytes, File Counter, Counter and File Ctr, and Checksum with and without CRC16.
+    Names are held as printed.
 
-    Note COM-035 (open): File counter of 8 bits.
+    Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens
+    with the next one is not said.
     """
-    offset: int
+
+    offset: int = _base.field("Offset", 16, 32, "uint", default=0, unit="byte")
     """Offset: bits 16 to 47, raw 0 to 4294967295, in byte.
 
     Where in the file the block begins.
 
-    Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant
+    throughout, but of the tables of messages only that of the program information says
+    so.
     """
-    block_length: int
+
+    block_length: int = _base.field("BlockLength", 48, 16, "uint", default=0, unit="byte", maximum=20480)
     """BlockLength: bits 48 to 63, raw 0 to 65535, in byte.
 
     20 kB at most.
 
     Must be at most 20480 byte.
 
-    Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    Erratum COM-039 (likely): see Offset.
 
-    Note COM-029 (certain): One field, several spellings.
+    Note COM-029 (certain): see Counter.
     """
-
-    def __init__(
-        self,
-        *,
-        file_type: FileType = _DEFAULT_0,
-        counter: int = 0,
-        offset: int = 0,
-        block_length: int = 0,
-    ) -> None:
-        self.file_type = file_type
-        self.counter = counter
-        self.offset = offset
-        self.block_length = block_length
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> LoadFileDownloadBlock:
-        """The message in a frame of exactly 8 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, self.counter, self.offset, self.block_length = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.file_type = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.file_type, self.counter, self.offset, self.block_length)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

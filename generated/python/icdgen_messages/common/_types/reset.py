@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class Reset(_base.Message):
     """Reset: telecommand 1, 1 byte. Table 10.
 
@@ -23,12 +16,10 @@ class Reset(_base.Message):
     Dangerous: The program that runs is stopped, and what it has not saved is lost. The
     node restarts instead of acknowledging it.
 
-    Note COM-028 (open): The Reset telecommand: acknowledged or not.
+    Note COM-028 (open): The Reset telecommand: acknowledged or not. Every telecommand
+    is acknowledged, but this one restarts the program that would do it. Whether the
+    reply comes first is not said.
     """
-
-    __slots__ = (
-        "magic_number",
-    )
 
     NODE = "common"
     NAME = "Reset"
@@ -38,40 +29,16 @@ class Reset(_base.Message):
     LENGTH = 1
     TABLE = 10
     ACKNOWLEDGED = False
-    FIELDS = (
-        _base.FieldInfo("magic_number", "Magic number", 0, 8, "uint", const=90),
-    )
 
-    magic_number: int
+    magic_number: int = _base.field("Magic number", 0, 8, "uint", default=90, const=90)
     """Magic number: bits 0 to 7, raw 0 to 255.
 
     Guards against an accidental reset.
 
     Always 90 (0x5A).
 
-    Note COM-029 (certain): One field, several spellings.
+    Note COM-029 (certain): One field, several spellings. The same things are written
+    Magic number and Magic Number, BlockLength and Block Length, File bytes and File
+    Bytes, File Counter, Counter and File Ctr, and Checksum with and without CRC16.
+    Names are held as printed.
     """
-
-    def __init__(
-        self,
-        *,
-        magic_number: int = 90,
-    ) -> None:
-        self.magic_number = magic_number
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> Reset:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (self.magic_number,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.magic_number)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

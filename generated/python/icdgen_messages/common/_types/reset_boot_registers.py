@@ -5,26 +5,19 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class ResetBootRegisters(_base.Message):
     """Reset Boot Registers: telecommand 6, 0 bytes. Table 13.
 
     Resets the boot counter, boot state and boot cause.
 
     Note COM-032 (likely): Reset Boot Registers: a Boot State that no frame has, and no
-    values to reset to.
+    values to reset to. The command is said to reset Boot Counter, Boot State and Boot
+    Cause. There is no Boot State; Boot Status is probably meant. To which value status
+    and cause are reset is not said.
     """
-
-    __slots__ = ()
 
     NODE = "common"
     NAME = "Reset Boot Registers"
@@ -33,20 +26,3 @@ class ResetBootRegisters(_base.Message):
     IDS = (ID,)
     LENGTH = 0
     TABLE = 13
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> ResetBootRegisters:
-        """The message in a frame of exactly 0 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack()
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

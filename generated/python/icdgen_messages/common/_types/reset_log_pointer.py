@@ -5,28 +5,22 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class ResetLogPointer(_base.Message):
     """Reset Log Pointer: telecommand 4, 0 bytes. Table 11.
 
     Resets the pointer at which Last Logged Event reads the event buffer.
 
     Note COM-030 (certain): Log pointer telecommands speak of a frame that is named
-    otherwise.
+    otherwise. They move the pointer of LastLogEvent; the frame is called Last Logged
+    Event.
 
-    Note COM-031 (open): Log pointer: where it starts and which way it advances.
+    Note COM-031 (open): Log pointer: where it starts and which way it advances. After a
+    reset the pointer may stand at the oldest or at the newest event, and advancing may
+    go either way. What is read past the end is not said.
     """
-
-    __slots__ = ()
 
     NODE = "common"
     NAME = "Reset Log Pointer"
@@ -35,20 +29,3 @@ class ResetLogPointer(_base.Message):
     IDS = (ID,)
     LENGTH = 0
     TABLE = 11
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> ResetLogPointer:
-        """The message in a frame of exactly 0 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack()
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

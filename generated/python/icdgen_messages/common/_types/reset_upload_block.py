@@ -5,29 +5,24 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class ResetUploadBlock(_base.Message):
     """Reset Upload Block: telecommand 117, 0 bytes. Table 23.
 
     Announces a new block by clearing the hole map.
 
     Note COM-041 (open): File upload is listed as common but described for the
-    bootloader only.
+    bootloader only. The messages of the upload are in the list common to both programs,
+    the procedure belongs to the bootloader. Whether the ACP answers them, refuses them,
+    or uploads somewhere is not said.
 
     Note COM-126 (certain): Reset Upload Block tells the node of a block, and does not
-    say which.
+    say which. The telecommand is said to notify the node of the block that is to be
+    uploaded. It has no parameter; the place and the length of the block are first sent
+    when it is committed.
     """
-
-    __slots__ = ()
 
     NODE = "common"
     NAME = "Reset Upload Block"
@@ -36,20 +31,3 @@ class ResetUploadBlock(_base.Message):
     IDS = (ID,)
     LENGTH = 0
     TABLE = 23
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> ResetUploadBlock:
-        """The message in a frame of exactly 0 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack()
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

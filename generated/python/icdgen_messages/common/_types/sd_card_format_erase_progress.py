@@ -5,30 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool), (1, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class SdCardFormatEraseProgress(_base.Message):
     """SD card format/erase progress: telemetry 234, 1 byte. Table 38.
 
     Whether the SD card is still being formatted or erased.
 
-    Note COM-085 (open): Erase File: progress and failure.
+    Note COM-085 (open): Erase File: progress and failure. Only Erase All can be
+    followed. A single file, or an erase or format that fails, leaves no trace in any
+    frame.
     """
-
-    __slots__ = (
-        "format_busy",
-        "erase_all_busy",
-    )
 
     NODE = "common"
     NAME = "SD card format/erase progress"
@@ -37,45 +25,15 @@ class SdCardFormatEraseProgress(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 38
-    FIELDS = (
-        _base.FieldInfo("format_busy", "Format Busy", 0, 1, "bool"),
-        _base.FieldInfo("erase_all_busy", "Erase All Busy", 1, 1, "bool"),
-    )
 
-    format_busy: bool
+    format_busy: bool = _base.field("Format Busy", 0, 1, "bool", default=False)
     """Format Busy: bit 0."""
-    erase_all_busy: bool
+
+    erase_all_busy: bool = _base.field("Erase All Busy", 1, 1, "bool", default=False)
     """Erase All Busy: bit 1.
 
     All files are being erased.
 
-    Note COM-086 (certain): Erase All Busy: two verbs for one.
+    Note COM-086 (certain): Erase All Busy: two verbs for one. The description reads
+    formatting erasing, left over from the row above. Erasing is meant.
     """
-
-    def __init__(
-        self,
-        *,
-        format_busy: bool = False,
-        erase_all_busy: bool = False,
-    ) -> None:
-        self.format_busy = format_busy
-        self.erase_all_busy = erase_all_busy
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SdCardFormatEraseProgress:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.format_busy, self.erase_all_busy = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.format_busy, self.erase_all_busy]
-            return _pack(v0)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

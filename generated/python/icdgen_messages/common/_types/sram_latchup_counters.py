@@ -5,26 +5,17 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<2H2x")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class SramLatchupCounters(_base.Message):
     """SRAM Latchup counters: telemetry 142, 6 bytes. Table 35.
 
-    Erratum COM-076 (open): SRAM Latchup counters: 6 bytes announced, 4 described.
+    Erratum COM-076 (open): SRAM Latchup counters: 6 bytes announced, 4 described. Two
+    counters of 16 bits fill four of the six bytes. A third field is missing, or the
+    frame is filled up to the size of the loggable ones. The last two bytes are held as
+    reserved.
     """
-
-    __slots__ = (
-        "sram1_latchups",
-        "sram2_latchups",
-    )
 
     NODE = "common"
     NAME = "SRAM Latchup counters"
@@ -33,38 +24,9 @@ class SramLatchupCounters(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 35
-    FIELDS = (
-        _base.FieldInfo("sram1_latchups", "SRAM1 latchups", 0, 16, "uint"),
-        _base.FieldInfo("sram2_latchups", "SRAM2 latchups", 16, 16, "uint"),
-    )
 
-    sram1_latchups: int
+    sram1_latchups: int = _base.field("SRAM1 latchups", 0, 16, "uint", default=0)
     """SRAM1 latchups: bits 0 to 15, raw 0 to 65535."""
-    sram2_latchups: int
+
+    sram2_latchups: int = _base.field("SRAM2 latchups", 16, 16, "uint", default=0)
     """SRAM2 latchups: bits 16 to 31, raw 0 to 65535."""
-
-    def __init__(
-        self,
-        *,
-        sram1_latchups: int = 0,
-        sram2_latchups: int = 0,
-    ) -> None:
-        self.sram1_latchups = sram1_latchups
-        self.sram2_latchups = sram2_latchups
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SramLatchupCounters:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.sram1_latchups, self.sram2_latchups = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.sram1_latchups, self.sram2_latchups)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

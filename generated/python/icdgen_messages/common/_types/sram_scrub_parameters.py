@@ -5,24 +5,13 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<H")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class SramScrubParameters(_base.Message):
     """SRAM Scrub Parameters: configuration, set by telecommand 8, got by telemetry 134,
     2 bytes. Table 49.
     """
-
-    __slots__ = (
-        "scrub_size",
-    )
 
     NODE = "common"
     NAME = "SRAM Scrub Parameters"
@@ -32,36 +21,11 @@ class SramScrubParameters(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 2
     TABLE = 49
-    FIELDS = (
-        _base.FieldInfo("scrub_size", "Scrub Size", 0, 16, "uint"),
-    )
 
-    scrub_size: int
+    scrub_size: int = _base.field("Scrub Size", 0, 16, "uint", default=0)
     """Scrub Size: bits 0 to 15, raw 0 to 65535.
 
-    Note COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit.
+    Note COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit. The message
+    has one field, described as a size. Bytes, words or blocks per cycle are all
+    possible, and the cycle is not given.
     """
-
-    def __init__(
-        self,
-        *,
-        scrub_size: int = 0,
-    ) -> None:
-        self.scrub_size = scrub_size
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SramScrubParameters:
-        """The message in a frame of exactly 2 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (self.scrub_size,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.scrub_size)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,37 +5,24 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .tc_error_reason import TcErrorReason
 
-_STRUCT = struct.Struct("<4B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, TcErrorReason))
-_BITS_1 = _codec.bit_table((0, 1, bool))
-_BYTES_1 = _codec.Inverse(_BITS_1)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class TelecommandAcknowledge(_base.Message):
     """Telecommand Acknowledge: telemetry 240, 4 bytes. Table 39.
 
     What became of the last telecommand. Meant for I2C, where the node cannot answer of
     its own accord.
 
-    Note COM-092 (certain): The procedure polls a thing called Telemetry Format.
+    Note COM-092 (certain): The procedure polls a thing called Telemetry Format. The
+    steps tell to poll the Telecommand Acknowledge Telemetry Format, the caption of a
+    table, instead of the frame.
 
-    Note COM-093 (open): Polling has no interval and no time-out.
+    Note COM-093 (open): Polling has no interval and no time-out. How often the
+    acknowledge may be polled, and when to give up, is not said. For files a time is
+    suggested for two of the operations only.
     """
-
-    __slots__ = (
-        "last_tc_id",
-        "processed_flag",
-        "tc_error_status",
-        "tc_parameter_error_index",
-    )
 
     NODE = "common"
     NAME = "Telecommand Acknowledge"
@@ -44,91 +31,46 @@ class TelecommandAcknowledge(_base.Message):
     IDS = (ID,)
     LENGTH = 4
     TABLE = 39
-    FIELDS = (
-        _base.FieldInfo("last_tc_id", "Last TC ID", 0, 8, "uint"),
-        _base.FieldInfo("processed_flag", "Processed flag", 8, 1, "bool"),
-        _base.FieldInfo(
-            "tc_error_status",
-            "TC error status",
-            16,
-            8,
-            "enum",
-            enum=TcErrorReason,
-        ),
-        _base.FieldInfo(
-            "tc_parameter_error_index",
-            "TC parameter error index",
-            24,
-            8,
-            "uint",
-        ),
-    )
 
-    last_tc_id: int
+    last_tc_id: int = _base.field("Last TC ID", 0, 8, "uint", default=0)
     """Last TC ID: bits 0 to 7, raw 0 to 255.
 
     Note COM-090 (open): Last TC ID is of the last received, the error of the last
-    processed.
+    processed. Id and Processed flag belong to the last telecommand received, the error
+    status to the last one processed. While the flag is 0 the error is that of an
+    earlier telecommand than the id names, and nothing in the table says so.
     """
-    processed_flag: bool
+
+    processed_flag: bool = _base.field("Processed flag", 8, 1, "bool", default=False)
     """Processed flag: bit 8.
 
     The next telecommand may be sent. Says nothing about the outcome of the last one.
 
-    Note COM-088 (certain): Processed flag has three names.
+    Note COM-088 (certain): Processed flag has three names. Telecommand Processed flag,
+    Processed flag and Processed stand for one bit.
 
-    Note COM-089 (open): Processed flag: processed or merely taken over.
+    Note COM-089 (open): Processed flag: processed or merely taken over. It is described
+    as showing that the last telecommand has been processed, and elsewhere as no
+    indication of its execution, only of readiness for another one. When the error
+    status of the same frame becomes valid is then open.
     """
-    tc_error_status: TcErrorReason
+
+    tc_error_status: TcErrorReason = _base.field("TC error status", 16, 8, "enum", default=TcErrorReason.NO_ERROR)
     """TC error status: bits 16 to 23.
 
-    Note COM-087 (certain): TC Error is called a flag and is a code.
+    Note COM-087 (certain): TC Error is called a flag and is a code. The text speaks of
+    a TC Error flag, of the TC Error Flag with a value of 4, and of Tc Error Status. The
+    field is an enumeration of 8 bits named TC error status.
 
-    Note COM-090 (open): Last TC ID is of the last received, the error of the last
-    processed.
+    Note COM-090 (open): see Last TC ID.
     """
-    tc_parameter_error_index: int
+
+    tc_parameter_error_index: int = _base.field("TC parameter error index", 24, 8, "uint", default=0)
     """TC parameter error index: bits 24 to 31, raw 0 to 255.
 
     Which parameter was wrong.
 
-    Note COM-091 (open): TC parameter error index: index of what.
+    Note COM-091 (open): TC parameter error index: index of what. It may count
+    parameters, bytes or bits, from 0 or from 1. What it holds without an error is not
+    said, and neither UART nor CAN replies carry it.
     """
-
-    def __init__(
-        self,
-        *,
-        last_tc_id: int = 0,
-        processed_flag: bool = False,
-        tc_error_status: TcErrorReason = TcErrorReason.NO_ERROR,
-        tc_parameter_error_index: int = 0,
-    ) -> None:
-        self.last_tc_id = last_tc_id
-        self.processed_flag = processed_flag
-        self.tc_error_status = tc_error_status
-        self.tc_parameter_error_index = tc_parameter_error_index
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> TelecommandAcknowledge:
-        """The message in a frame of exactly 4 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.last_tc_id, v1, v2, self.tc_parameter_error_index = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.tc_error_status = _BITS_0[v2]
-        self.processed_flag = _BITS_1[v1]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v1 = _BYTES_1[self.processed_flag]
-            return _pack(
-                self.last_tc_id,
-                v1,
-                self.tc_error_status,
-                self.tc_parameter_error_index,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,33 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<2B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool), (1, 1, bool), (2, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class UnixTimeSaveToFlash(_base.Message):
     """Unix Time Save to Flash: configuration, set by telecommand 9, got by telemetry
     145, 2 bytes. Table 51.
 
     When the Unix time is kept in flash, so that it survives a power cycle.
 
-    Note COM-112 (certain): Unix Time Save to Flash is described in two spellings.
+    Note COM-112 (certain): Unix Time Save to Flash is described in two spellings. The
+    list has Unix time, the table unixtime.
     """
-
-    __slots__ = (
-        "save_now",
-        "save_on_update",
-        "save_periodic",
-        "period",
-    )
 
     NODE = "common"
     NAME = "Unix Time Save to Flash"
@@ -41,64 +26,32 @@ class UnixTimeSaveToFlash(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 2
     TABLE = 51
-    FIELDS = (
-        _base.FieldInfo("save_now", "Save Now", 0, 1, "bool"),
-        _base.FieldInfo("save_on_update", "Save On Update", 1, 1, "bool"),
-        _base.FieldInfo("save_periodic", "Save Periodic", 2, 1, "bool"),
-        _base.FieldInfo("period", "Period", 8, 8, "uint", unit="s"),
-    )
 
-    save_now: bool
+    save_now: bool = _base.field("Save Now", 0, 1, "bool", default=False)
     """Save Now: bit 0.
 
     Saves once.
 
-    Note COM-113 (open): Save Now is an action among settings.
+    Note COM-113 (open): Save Now is an action among settings. The message is a setting
+    that can be read back. What the action bit reads as, and whether a set with it
+    changes the other bits, is not said.
     """
-    save_on_update: bool
+
+    save_on_update: bool = _base.field("Save On Update", 1, 1, "bool", default=False)
     """Save On Update: bit 1.
 
     Saves whenever the time is set.
     """
-    save_periodic: bool
+
+    save_periodic: bool = _base.field("Save Periodic", 2, 1, "bool", default=False)
     """Save Periodic: bit 2.
 
     Saves at the interval given by Period.
     """
-    period: int
+
+    period: int = _base.field("Period", 8, 8, "uint", default=0, unit="s")
     """Period: bits 8 to 15, raw 0 to 255, in s.
 
-    Note COM-114 (open): Saving period: meaning of 0.
+    Note COM-114 (open): Saving period: meaning of 0. The period has 8 bits of seconds,
+    255 s at most. What 0 does is not said.
     """
-
-    def __init__(
-        self,
-        *,
-        save_now: bool = False,
-        save_on_update: bool = False,
-        save_periodic: bool = False,
-        period: int = 0,
-    ) -> None:
-        self.save_now = save_now
-        self.save_on_update = save_on_update
-        self.save_periodic = save_periodic
-        self.period = period
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> UnixTimeSaveToFlash:
-        """The message in a frame of exactly 2 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, self.period = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.save_now, self.save_on_update, self.save_periodic = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.save_now, self.save_on_update, self.save_periodic]
-            return _pack(v0, self.period)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

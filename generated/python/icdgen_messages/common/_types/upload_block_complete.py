@@ -5,38 +5,33 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool), (1, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class UploadBlockComplete(_base.Message):
     """Upload Block Complete: telemetry 245, 1 byte. Table 45.
 
     Polled after Finalize Upload Block.
 
     Note COM-041 (open): File upload is listed as common but described for the
-    bootloader only.
+    bootloader only. The messages of the upload are in the list common to both programs,
+    the procedure belongs to the bootloader. Whether the ACP answers them, refuses them,
+    or uploads somewhere is not said.
 
-    Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
+    Note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text
+    ends with the checksum test before the block is committed. The telecommand that
+    commits it and the frame that reports it are never named; both stood in a figure at
+    best.
 
-    Note COM-093 (open): Polling has no interval and no time-out.
+    Note COM-093 (open): Polling has no interval and no time-out. How often the
+    acknowledge may be polled, and when to give up, is not said. For files a time is
+    suggested for two of the operations only.
 
     Note COM-104 (certain): Upload is initiated, initialized and finalized under
-    changing names.
+    changing names. Initiate File Upload is followed by Initialize Upload Complete;
+    Finalize Upload Block is described as finalizing the uploaded file block, and its
+    frame Upload Block Complete as finalizing complete.
     """
-
-    __slots__ = (
-        "busy",
-        "error",
-    )
 
     NODE = "common"
     NAME = "Upload Block Complete"
@@ -45,48 +40,19 @@ class UploadBlockComplete(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 45
-    FIELDS = (
-        _base.FieldInfo("busy", "Busy", 0, 1, "bool"),
-        _base.FieldInfo("error", "Error", 1, 1, "bool"),
-    )
 
-    busy: bool
+    busy: bool = _base.field("Busy", 0, 1, "bool", default=False)
     """Busy: bit 0.
 
     Still finalizing the block.
 
-    Note COM-103 (certain): Frames named complete report busy.
+    Note COM-103 (certain): Frames named complete report busy. Initialize Upload
+    Complete and Upload Block Complete hold a flag that is set while the operation is
+    not complete.
     """
-    error: bool
+
+    error: bool = _base.field("Error", 1, 1, "bool", default=False)
     """Error: bit 1.
 
     Finalizing the block failed.
     """
-
-    def __init__(
-        self,
-        *,
-        busy: bool = False,
-        error: bool = False,
-    ) -> None:
-        self.busy = busy
-        self.error = error
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> UploadBlockComplete:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.busy, self.error = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.busy, self.error]
-            return _pack(v0)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,28 +5,15 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .execution_waypoints import ExecutionWaypoints
 
-_STRUCT = struct.Struct("<HB")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, ExecutionWaypoints))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class AcpExecutionState(_base.Message):
     """ACP Execution State: telemetry 220, 3 bytes. Table 167.
 
     Where in its loop the control program is.
     """
-
-    __slots__ = (
-        "time_since_iteration_start",
-        "current_execution_point",
-    )
 
     NODE = "cubeacp"
     NAME = "ACP Execution State"
@@ -35,56 +22,14 @@ class AcpExecutionState(_base.Message):
     IDS = (ID,)
     LENGTH = 3
     TABLE = 167
-    FIELDS = (
-        _base.FieldInfo(
-            "time_since_iteration_start",
-            "Time Since Iteration Start",
-            0,
-            16,
-            "uint",
-            unit="ms",
-        ),
-        _base.FieldInfo(
-            "current_execution_point",
-            "Current Execution Point",
-            16,
-            8,
-            "enum",
-            enum=ExecutionWaypoints,
-        ),
-    )
 
-    time_since_iteration_start: int
+    time_since_iteration_start: int = _base.field("Time Since Iteration Start", 0, 16, "uint", default=0, unit="ms")
     """Time Since Iteration Start: bits 0 to 15, raw 0 to 65535, in ms."""
-    current_execution_point: ExecutionWaypoints
+
+    current_execution_point: ExecutionWaypoints = _base.field(
+        "Current Execution Point", 16, 8, "enum", default=ExecutionWaypoints.INIT
+    )
     """Current Execution Point: bits 16 to 23.
 
     Part of the loop that is being executed.
     """
-
-    def __init__(
-        self,
-        *,
-        time_since_iteration_start: int = 0,
-        current_execution_point: ExecutionWaypoints = ExecutionWaypoints.INIT,
-    ) -> None:
-        self.time_since_iteration_start = time_since_iteration_start
-        self.current_execution_point = current_execution_point
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> AcpExecutionState:
-        """The message in a frame of exactly 3 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.time_since_iteration_start, v2 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.current_execution_point = _BITS_0[v2]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.time_since_iteration_start, self.current_execution_point)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

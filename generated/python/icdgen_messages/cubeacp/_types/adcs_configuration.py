@@ -5,42 +5,12 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
+from ... import _base
 from .asgp_filter import AsgpFilter
 from .axis_select import AxisSelect
 from .mag_mode_val import MagModeVal
 
-_STRUCT = struct.Struct("<10B3h22B3h2B3H3h2B3H4B40H33h2H3BH3BH7f5B2fh9fB3fB13f3B6H2B2i6BH48s48s")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, AxisSelect))
-_BITS_1 = _codec.bit_table((0, 8, AsgpFilter))
-_BITS_2 = _codec.bit_table((0, 1, bool))
-_BYTES_2 = _codec.Inverse(_BITS_2)
-_BITS_3 = _codec.bit_table((0, 1, bool), (1, 1, bool))
-_BYTES_3 = _codec.Inverse(_BITS_3)
-_BITS_4 = _codec.bit_table((0, 7, AxisSelect), (7, 1, bool))
-_BYTES_4 = _codec.Inverse(_BITS_4)
-_BITS_5 = _codec.bit_table(
-    (0, 1, bool),
-    (1, 1, bool),
-    (2, 1, bool),
-    (3, 1, bool),
-    (4, 1, bool),
-    (5, 1, bool),
-    (6, 2, MagModeVal),
-)
-_BYTES_5 = _codec.Inverse(_BITS_5)
-_BITS_6 = _codec.bit_table((0, 2, MagModeVal), (2, 1, bool))
-_BYTES_6 = _codec.Inverse(_BITS_6)
-_BITS_7 = _codec.bit_table((0, 4, int), (4, 4, int))
-_BYTES_7 = _codec.Inverse(_BITS_7)
-_DEFAULT_0 = bytes(48)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class AdcsConfiguration(_base.Message):
     """ADCS Configuration: configuration, set by telecommand 20, got by telemetry 206,
     504 bytes. Table 192.
@@ -59,225 +29,14 @@ class AdcsConfiguration(_base.Message):
     Repeats Augmented-SGP4 Parameters from byte 378. Repeats User-coded Controller and
     Estimator Parameters from byte 408.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
 
-    Note ACP-159 (open): The current configuration is not all of it.
+    Note ACP-159 (open): The current configuration is not all of it. The message is
+    described as the current configuration. It joins 16 of the 25 others; orbit, target,
+    attitude command, power, logs, inertial vector and system configuration are not in
+    it. Save Configuration uses the same words.
     """
-
-    __slots__ = (
-        "magnetorquer_1_configuration",
-        "magnetorquer_2_configuration",
-        "magnetorquer_3_configuration",
-        "rw1_configuration",
-        "rw2_configuration",
-        "rw3_configuration",
-        "rw4_configuration",
-        "gyro1_configuration",
-        "gyro2_configuration",
-        "gyro3_configuration",
-        "x_rate_sensor_offset",
-        "y_rate_sensor_offset",
-        "z_rate_sensor_offset",
-        "rate_sensor_mult",
-        "css1_configuration",
-        "css2_configuration",
-        "css3_configuration",
-        "css4_configuration",
-        "css5_configuration",
-        "css6_configuration",
-        "css7_configuration",
-        "css8_configuration",
-        "css9_configuration",
-        "css10_configuration",
-        "css1_relative_scale",
-        "css2_relative_scale",
-        "css3_relative_scale",
-        "css4_relative_scale",
-        "css5_relative_scale",
-        "css6_relative_scale",
-        "css7_relative_scale",
-        "css8_relative_scale",
-        "css9_relative_scale",
-        "css10_relative_scale",
-        "css_threshold",
-        "cam1_mounting_alpha",
-        "cam1_mounting_beta",
-        "cam1_mounting_gamma",
-        "cam1_detection_threshold",
-        "cam1_sensor_auto_adjust_mode",
-        "cam1_sensor_exposure_time",
-        "cam1_boresight_x",
-        "cam1_boresight_y",
-        "cam2_mounting_alpha",
-        "cam2_mounting_beta",
-        "cam2_mounting_gamma",
-        "cam2_detection_threshold",
-        "cam2_sensor_auto_adjust_mode",
-        "cam2_sensor_exposure_time",
-        "cam2_boresight_x",
-        "cam2_boresight_y",
-        "nadir_max_deviation_percentage",
-        "nadir_max_bad_edges",
-        "nadir_max_radius",
-        "nadir_min_radius",
-        "cam_1_minimum_x_of_area_1",
-        "cam_1_maximum_x_of_area_1",
-        "cam_1_minimum_y_of_area_1",
-        "cam_1_maximum_y_of_area_1",
-        "cam_1_minimum_x_of_area_2",
-        "cam_1_maximum_x_of_area_2",
-        "cam_1_minimum_y_of_area_2",
-        "cam_1_maximum_y_of_area_2",
-        "cam_1_minimum_x_of_area_3",
-        "cam_1_maximum_x_of_area_3",
-        "cam_1_minimum_y_of_area_3",
-        "cam_1_maximum_y_of_area_3",
-        "cam_1_minimum_x_of_area_4",
-        "cam_1_maximum_x_of_area_4",
-        "cam_1_minimum_y_of_area_4",
-        "cam_1_maximum_y_of_area_4",
-        "cam_1_minimum_x_of_area_5",
-        "cam_1_maximum_x_of_area_5",
-        "cam_1_minimum_y_of_area_5",
-        "cam_1_maximum_y_of_area_5",
-        "cam_2_minimum_x_of_area_1",
-        "cam_2_maximum_x_of_area_1",
-        "cam_2_minimum_y_of_area_1",
-        "cam_2_maximum_y_of_area_1",
-        "cam_2_minimum_x_of_area_2",
-        "cam_2_maximum_x_of_area_2",
-        "cam_2_minimum_y_of_area_2",
-        "cam_2_maximum_y_of_area_2",
-        "cam_2_minimum_x_of_area_3",
-        "cam_2_maximum_x_of_area_3",
-        "cam_2_minimum_y_of_area_3",
-        "cam_2_maximum_y_of_area_3",
-        "cam_2_minimum_x_of_area_4",
-        "cam_2_maximum_x_of_area_4",
-        "cam_2_minimum_y_of_area_4",
-        "cam_2_maximum_y_of_area_4",
-        "cam_2_minimum_x_of_area_5",
-        "cam_2_maximum_x_of_area_5",
-        "cam_2_minimum_y_of_area_5",
-        "cam_2_maximum_y_of_area_5",
-        "magnetometer_mounting_alpha",
-        "magnetometer_mounting_beta",
-        "magnetometer_mounting_gamma",
-        "magnetometer_channel_1_offset",
-        "magnetometer_channel_2_offset",
-        "magnetometer_channel_3_offset",
-        "magnetometer_sensitivity_s11",
-        "magnetometer_sensitivity_s22",
-        "magnetometer_sensitivity_s33",
-        "magnetometer_sensitivity_s12",
-        "magnetometer_sensitivity_s13",
-        "magnetometer_sensitivity_s21",
-        "magnetometer_sensitivity_s23",
-        "magnetometer_sensitivity_s31",
-        "magnetometer_sensitivity_s32",
-        "redundant_mag_mounting_alpha",
-        "redundant_mag_mounting_beta",
-        "redundant_mag_mounting_gamma",
-        "redundant_mag_channel_1_offset",
-        "redundant_mag_channel_2_offset",
-        "redundant_mag_channel_3_offset",
-        "redundant_mag_sensitivity_s11",
-        "redundant_mag_sensitivity_s22",
-        "redundant_mag_sensitivity_s33",
-        "redundant_mag_sensitivity_s12",
-        "redundant_mag_sensitivity_s13",
-        "redundant_mag_sensitivity_s21",
-        "redundant_mag_sensitivity_s23",
-        "redundant_mag_sensitivity_s31",
-        "redundant_mag_sensitivity_s32",
-        "star_tracker_mounting_alpha",
-        "star_tracker_mounting_beta",
-        "star_tracker_mounting_gamma",
-        "star_tracker_exposure_time",
-        "star_tracker_analog_gain",
-        "star_tracker_detection_threshold",
-        "star_tracker_star_threshold",
-        "maximum_star_matched",
-        "detection_timeout_duration",
-        "maximum_star_pixel",
-        "minimum_star_pixel",
-        "star_tracker_error_margin",
-        "star_tracker_delay_time",
-        "star_tracker_centroid_x",
-        "star_tracker_centroid_y",
-        "star_tracker_focal_length",
-        "k1_radial_distortion_coefficient",
-        "k2_radial_distortion_coefficient",
-        "p1_tangential_distortion_coefficient",
-        "p2_tangential_distortion_coefficient",
-        "star_tracking_window_width",
-        "star_tracking_margin",
-        "star_validation_margin",
-        "star_tracking_module_enable",
-        "star_tracking_location_prediction_enable",
-        "star_tracking_search_width",
-        "detumbling_spin_gain",
-        "detumbling_damping_gain",
-        "reference_spin_rate",
-        "fast_bdot_detumbling_gain",
-        "y_momentum_control_gain",
-        "y_momentum_nutation_damping_gain",
-        "y_momentum_proportional_gain",
-        "y_momentum_derivative_gain",
-        "reference_wheel_momentum",
-        "rwheel_proportional_gain",
-        "rwheel_derivative_gain",
-        "y_wheel_bias_momentum",
-        "sun_pointing_facet",
-        "control_transition_on_wheel_error",
-        "tracking_proportional_gain",
-        "tracking_derivative_gain",
-        "tracking_integral_gain",
-        "target_tracking_facet",
-        "moment_of_inertia_ixx",
-        "moment_of_inertia_iyy",
-        "moment_of_inertia_izz",
-        "product_of_inertia_ixy",
-        "product_of_inertia_ixz",
-        "product_of_inertia_iyz",
-        "magnetometer_rate_filter_system_noise",
-        "ekf_system_noise",
-        "css_measurement_noise",
-        "sun_sensor_measurement_noise",
-        "nadir_sensor_measurement_noise",
-        "magnetometer_measurement_noise",
-        "star_tracker_measurement_noise",
-        "use_sun_sensor",
-        "use_nadir_sensor",
-        "use_css",
-        "use_star_tracker",
-        "nadir_sensor_terminator_test",
-        "automatic_magnetometer_recovery",
-        "magnetometer_mode",
-        "raw_magnetometer_selection",
-        "estimation_transition_on_rate_sensor_error",
-        "cam1_period",
-        "cam2_period",
-        "incl_coefficient",
-        "raan_coefficient",
-        "ecc_coefficient",
-        "aop_coefficient",
-        "time_coefficient",
-        "pos_coefficient",
-        "maximum_position_error",
-        "asgp4_filter",
-        "xp_coefficient",
-        "yp_coefficient",
-        "gps_roll_over",
-        "position_sd",
-        "velocity_sd",
-        "min_satellites",
-        "time_gain",
-        "max_lag",
-        "min_samples",
-        "user_coded_controller_settings",
-        "user_coded_estimator_settings",
-    )
 
     NODE = "cubeacp"
     NAME = "ADCS Configuration"
@@ -287,2153 +46,1105 @@ class AdcsConfiguration(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 504
     TABLE = 192
-    FIELDS = (
-        _base.FieldInfo(
-            "magnetorquer_1_configuration",
-            "Magnetorquer 1 Configuration",
-            0,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "magnetorquer_2_configuration",
-            "Magnetorquer 2 Configuration",
-            8,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "magnetorquer_3_configuration",
-            "Magnetorquer 3 Configuration",
-            16,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "rw1_configuration",
-            "RW1 Configuration",
-            24,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "rw2_configuration",
-            "RW2 Configuration",
-            32,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "rw3_configuration",
-            "RW3 Configuration",
-            40,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "rw4_configuration",
-            "RW4 Configuration",
-            48,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "gyro1_configuration",
-            "Gyro1 Configuration",
-            56,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "gyro2_configuration",
-            "Gyro2 Configuration",
-            64,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "gyro3_configuration",
-            "Gyro3 Configuration",
-            72,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "x_rate_sensor_offset",
-            "X-Rate Sensor Offset",
-            80,
-            16,
-            "int",
-            unit="deg/s",
-            physical="x_rate_sensor_offset_deg_per_s",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "y_rate_sensor_offset",
-            "Y-Rate Sensor Offset",
-            96,
-            16,
-            "int",
-            unit="deg/s",
-            physical="y_rate_sensor_offset_deg_per_s",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "z_rate_sensor_offset",
-            "Z-Rate Sensor Offset",
-            112,
-            16,
-            "int",
-            unit="deg/s",
-            physical="z_rate_sensor_offset_deg_per_s",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo("rate_sensor_mult", "RateSensorMult", 128, 8, "uint"),
-        _base.FieldInfo(
-            "css1_configuration",
-            "CSS1 Configuration",
-            136,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css2_configuration",
-            "CSS2 Configuration",
-            144,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css3_configuration",
-            "CSS3 Configuration",
-            152,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css4_configuration",
-            "CSS4 Configuration",
-            160,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css5_configuration",
-            "CSS5 Configuration",
-            168,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css6_configuration",
-            "CSS6 Configuration",
-            176,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css7_configuration",
-            "CSS7 Configuration",
-            184,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css8_configuration",
-            "CSS8 Configuration",
-            192,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css9_configuration",
-            "CSS9 Configuration",
-            200,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css10_configuration",
-            "CSS10 Configuration",
-            208,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css1_relative_scale",
-            "CSS1 Relative Scale",
-            216,
-            8,
-            "uint",
-            physical="css1_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css2_relative_scale",
-            "CSS2 Relative Scale",
-            224,
-            8,
-            "uint",
-            physical="css2_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css3_relative_scale",
-            "CSS3 Relative Scale",
-            232,
-            8,
-            "uint",
-            physical="css3_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css4_relative_scale",
-            "CSS4 Relative Scale",
-            240,
-            8,
-            "uint",
-            physical="css4_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css5_relative_scale",
-            "CSS5 Relative Scale",
-            248,
-            8,
-            "uint",
-            physical="css5_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css6_relative_scale",
-            "CSS6 Relative Scale",
-            256,
-            8,
-            "uint",
-            physical="css6_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css7_relative_scale",
-            "CSS7 Relative Scale",
-            264,
-            8,
-            "uint",
-            physical="css7_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css8_relative_scale",
-            "CSS8 Relative Scale",
-            272,
-            8,
-            "uint",
-            physical="css8_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css9_relative_scale",
-            "CSS9 Relative Scale",
-            280,
-            8,
-            "uint",
-            physical="css9_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css10_relative_scale",
-            "CSS10 Relative Scale",
-            288,
-            8,
-            "uint",
-            physical="css10_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo("css_threshold", "CSS Threshold", 296, 8, "uint"),
-        _base.FieldInfo(
-            "cam1_mounting_alpha",
-            "Cam1 Sensor Mounting Transform Alpha Angle",
-            304,
-            16,
-            "int",
-            unit="deg",
-            physical="cam1_mounting_alpha_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam1_mounting_beta",
-            "Cam1 Sensor Mounting Transform Beta Angle",
-            320,
-            16,
-            "int",
-            unit="deg",
-            physical="cam1_mounting_beta_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam1_mounting_gamma",
-            "Cam1 Sensor Mounting Transform Gamma Angle",
-            336,
-            16,
-            "int",
-            unit="deg",
-            physical="cam1_mounting_gamma_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam1_detection_threshold",
-            "Cam1 detection threshold",
-            352,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam1_sensor_auto_adjust_mode",
-            "Cam1 sensor auto adjust mode",
-            360,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam1_sensor_exposure_time",
-            "Cam1 sensor exposure time",
-            368,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam1_boresight_x",
-            "Cam1 Boresight X",
-            384,
-            16,
-            "uint",
-            unit="pixels",
-            physical="cam1_boresight_x_pixels",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam1_boresight_y",
-            "Cam1 Boresight Y",
-            400,
-            16,
-            "uint",
-            unit="pixels",
-            physical="cam1_boresight_y_pixels",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam2_mounting_alpha",
-            "Cam2 Sensor Mounting Transform Alpha Angle",
-            416,
-            16,
-            "int",
-            unit="deg",
-            physical="cam2_mounting_alpha_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam2_mounting_beta",
-            "Cam2 Sensor Mounting Transform Beta Angle",
-            432,
-            16,
-            "int",
-            unit="deg",
-            physical="cam2_mounting_beta_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam2_mounting_gamma",
-            "Cam2 Sensor Mounting Transform Gamma Angle",
-            448,
-            16,
-            "int",
-            unit="deg",
-            physical="cam2_mounting_gamma_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam2_detection_threshold",
-            "Cam2 detection threshold",
-            464,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam2_sensor_auto_adjust_mode",
-            "Cam2 sensor auto adjust mode",
-            472,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam2_sensor_exposure_time",
-            "Cam2 sensor exposure time",
-            480,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam2_boresight_x",
-            "Cam2 Boresight X",
-            496,
-            16,
-            "uint",
-            unit="pixels",
-            physical="cam2_boresight_x_pixels",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam2_boresight_y",
-            "Cam2 Boresight Y",
-            512,
-            16,
-            "uint",
-            unit="pixels",
-            physical="cam2_boresight_y_pixels",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "nadir_max_deviation_percentage",
-            "Nadir Max Deviation Percentage",
-            528,
-            8,
-            "uint",
-            unit="%",
-        ),
-        _base.FieldInfo("nadir_max_bad_edges", "Nadir Max Bad Edges", 536, 8, "uint"),
-        _base.FieldInfo(
-            "nadir_max_radius",
-            "Nadir Max Radius",
-            544,
-            8,
-            "uint",
-            unit="deg",
-        ),
-        _base.FieldInfo(
-            "nadir_min_radius",
-            "Nadir Min Radius",
-            552,
-            8,
-            "uint",
-            unit="deg",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_x_of_area_1",
-            "Cam 1 Minimum X of area 1",
-            560,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_x_of_area_1",
-            "Cam 1 Maximum X of area 1",
-            576,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_y_of_area_1",
-            "Cam 1 Minimum Y of area 1",
-            592,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_y_of_area_1",
-            "Cam 1 Maximum Y of area 1",
-            608,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_x_of_area_2",
-            "Cam 1 Minimum X of area 2",
-            624,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_x_of_area_2",
-            "Cam 1 Maximum X of area 2",
-            640,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_y_of_area_2",
-            "Cam 1 Minimum Y of area 2",
-            656,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_y_of_area_2",
-            "Cam 1 Maximum Y of area 2",
-            672,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_x_of_area_3",
-            "Cam 1 Minimum X of area 3",
-            688,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_x_of_area_3",
-            "Cam 1 Maximum X of area 3",
-            704,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_y_of_area_3",
-            "Cam 1 Minimum Y of area 3",
-            720,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_y_of_area_3",
-            "Cam 1 Maximum Y of area 3",
-            736,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_x_of_area_4",
-            "Cam 1 Minimum X of area 4",
-            752,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_x_of_area_4",
-            "Cam 1 Maximum X of area 4",
-            768,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_y_of_area_4",
-            "Cam 1 Minimum Y of area 4",
-            784,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_y_of_area_4",
-            "Cam 1 Maximum Y of area 4",
-            800,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_x_of_area_5",
-            "Cam 1 Minimum X of area 5",
-            816,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_x_of_area_5",
-            "Cam 1 Maximum X of area 5",
-            832,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_y_of_area_5",
-            "Cam 1 Minimum Y of area 5",
-            848,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_y_of_area_5",
-            "Cam 1 Maximum Y of area 5",
-            864,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_x_of_area_1",
-            "Cam 2 Minimum X of area 1",
-            880,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_x_of_area_1",
-            "Cam 2 Maximum X of area 1",
-            896,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_y_of_area_1",
-            "Cam 2 Minimum Y of area 1",
-            912,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_y_of_area_1",
-            "Cam 2 Maximum Y of area 1",
-            928,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_x_of_area_2",
-            "Cam 2 Minimum X of area 2",
-            944,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_x_of_area_2",
-            "Cam 2 Maximum X of area 2",
-            960,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_y_of_area_2",
-            "Cam 2 Minimum Y of area 2",
-            976,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_y_of_area_2",
-            "Cam 2 Maximum Y of area 2",
-            992,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_x_of_area_3",
-            "Cam 2 Minimum X of area 3",
-            1008,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_x_of_area_3",
-            "Cam 2 Maximum X of area 3",
-            1024,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_y_of_area_3",
-            "Cam 2 Minimum Y of area 3",
-            1040,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_y_of_area_3",
-            "Cam 2 Maximum Y of area 3",
-            1056,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_x_of_area_4",
-            "Cam 2 Minimum X of area 4",
-            1072,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_x_of_area_4",
-            "Cam 2 Maximum X of area 4",
-            1088,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_y_of_area_4",
-            "Cam 2 Minimum Y of area 4",
-            1104,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_y_of_area_4",
-            "Cam 2 Maximum Y of area 4",
-            1120,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_x_of_area_5",
-            "Cam 2 Minimum X of area 5",
-            1136,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_x_of_area_5",
-            "Cam 2 Maximum X of area 5",
-            1152,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_y_of_area_5",
-            "Cam 2 Minimum Y of area 5",
-            1168,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_y_of_area_5",
-            "Cam 2 Maximum Y of area 5",
-            1184,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "magnetometer_mounting_alpha",
-            "Magnetometer Mounting Transform Alpha Angle",
-            1200,
-            16,
-            "int",
-            unit="deg",
-            physical="magnetometer_mounting_alpha_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "magnetometer_mounting_beta",
-            "Magnetometer Mounting Transform Beta Angle",
-            1216,
-            16,
-            "int",
-            unit="deg",
-            physical="magnetometer_mounting_beta_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "magnetometer_mounting_gamma",
-            "Magnetometer Mounting Transform Gamma Angle",
-            1232,
-            16,
-            "int",
-            unit="deg",
-            physical="magnetometer_mounting_gamma_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "magnetometer_channel_1_offset",
-            "Magnetometer Channel 1 Offset",
-            1248,
-            16,
-            "int",
-            physical="magnetometer_channel_1_offset_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "magnetometer_channel_2_offset",
-            "Magnetometer Channel 2 Offset",
-            1264,
-            16,
-            "int",
-            physical="magnetometer_channel_2_offset_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "magnetometer_channel_3_offset",
-            "Magnetometer Channel 3 Offset",
-            1280,
-            16,
-            "int",
-            physical="magnetometer_channel_3_offset_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "magnetometer_sensitivity_s11",
-            "Magnetometer Sensitivity Matrix S11",
-            1296,
-            16,
-            "int",
-            physical="magnetometer_sensitivity_s11_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "magnetometer_sensitivity_s22",
-            "Magnetometer Sensitivity Matrix S22",
-            1312,
-            16,
-            "int",
-            physical="magnetometer_sensitivity_s22_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "magnetometer_sensitivity_s33",
-            "Magnetometer Sensitivity Matrix S33",
-            1328,
-            16,
-            "int",
-            physical="magnetometer_sensitivity_s33_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "magnetometer_sensitivity_s12",
-            "Magnetometer Sensitivity Matrix S12",
-            1344,
-            16,
-            "int",
-            physical="magnetometer_sensitivity_s12_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "magnetometer_sensitivity_s13",
-            "Magnetometer Sensitivity Matrix S13",
-            1360,
-            16,
-            "int",
-            physical="magnetometer_sensitivity_s13_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "magnetometer_sensitivity_s21",
-            "Magnetometer Sensitivity Matrix S21",
-            1376,
-            16,
-            "int",
-            physical="magnetometer_sensitivity_s21_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "magnetometer_sensitivity_s23",
-            "Magnetometer Sensitivity Matrix S23",
-            1392,
-            16,
-            "int",
-            physical="magnetometer_sensitivity_s23_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "magnetometer_sensitivity_s31",
-            "Magnetometer Sensitivity Matrix S31",
-            1408,
-            16,
-            "int",
-            physical="magnetometer_sensitivity_s31_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "magnetometer_sensitivity_s32",
-            "Magnetometer Sensitivity Matrix S32",
-            1424,
-            16,
-            "int",
-            physical="magnetometer_sensitivity_s32_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_mounting_alpha",
-            "Redundant Magnetometer Mounting Transform Alpha Angle",
-            1440,
-            16,
-            "int",
-            unit="deg",
-            physical="redundant_mag_mounting_alpha_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_mounting_beta",
-            "Redundant Magnetometer Mounting Transform Beta Angle",
-            1456,
-            16,
-            "int",
-            unit="deg",
-            physical="redundant_mag_mounting_beta_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_mounting_gamma",
-            "Redundant Magnetometer Mounting Transform Gamma Angle",
-            1472,
-            16,
-            "int",
-            unit="deg",
-            physical="redundant_mag_mounting_gamma_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_channel_1_offset",
-            "Redundant Magnetometer Channel 1 Offset",
-            1488,
-            16,
-            "int",
-            physical="redundant_mag_channel_1_offset_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_channel_2_offset",
-            "Redundant Magnetometer Channel 2 Offset",
-            1504,
-            16,
-            "int",
-            physical="redundant_mag_channel_2_offset_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_channel_3_offset",
-            "Redundant Magnetometer Channel 3 Offset",
-            1520,
-            16,
-            "int",
-            physical="redundant_mag_channel_3_offset_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_sensitivity_s11",
-            "Redundant Magnetometer Sensitivity Matrix S11",
-            1536,
-            16,
-            "int",
-            physical="redundant_mag_sensitivity_s11_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_sensitivity_s22",
-            "Redundant Magnetometer Sensitivity Matrix S22",
-            1552,
-            16,
-            "int",
-            physical="redundant_mag_sensitivity_s22_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_sensitivity_s33",
-            "Redundant Magnetometer Sensitivity Matrix S33",
-            1568,
-            16,
-            "int",
-            physical="redundant_mag_sensitivity_s33_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_sensitivity_s12",
-            "Redundant Magnetometer Sensitivity Matrix S12",
-            1584,
-            16,
-            "int",
-            physical="redundant_mag_sensitivity_s12_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_sensitivity_s13",
-            "Redundant Magnetometer Sensitivity Matrix S13",
-            1600,
-            16,
-            "int",
-            physical="redundant_mag_sensitivity_s13_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_sensitivity_s21",
-            "Redundant Magnetometer Sensitivity Matrix S21",
-            1616,
-            16,
-            "int",
-            physical="redundant_mag_sensitivity_s21_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_sensitivity_s23",
-            "Redundant Magnetometer Sensitivity Matrix S23",
-            1632,
-            16,
-            "int",
-            physical="redundant_mag_sensitivity_s23_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_sensitivity_s31",
-            "Redundant Magnetometer Sensitivity Matrix S31",
-            1648,
-            16,
-            "int",
-            physical="redundant_mag_sensitivity_s31_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_sensitivity_s32",
-            "Redundant Magnetometer Sensitivity Matrix S32",
-            1664,
-            16,
-            "int",
-            physical="redundant_mag_sensitivity_s32_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "star_tracker_mounting_alpha",
-            "StarTracker Mounting Transform Alpha Angle",
-            1680,
-            16,
-            "int",
-            unit="deg",
-            physical="star_tracker_mounting_alpha_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "star_tracker_mounting_beta",
-            "StarTracker Mounting Transform Beta Angle",
-            1696,
-            16,
-            "int",
-            unit="deg",
-            physical="star_tracker_mounting_beta_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "star_tracker_mounting_gamma",
-            "StarTracker Mounting Transform Gamma Angle",
-            1712,
-            16,
-            "int",
-            unit="deg",
-            physical="star_tracker_mounting_gamma_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "star_tracker_exposure_time",
-            "StarTracker exposure time",
-            1728,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "star_tracker_analog_gain",
-            "StarTracker analog gain",
-            1744,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "star_tracker_detection_threshold",
-            "StarTracker detection threshold",
-            1760,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "star_tracker_star_threshold",
-            "StarTracker star threshold",
-            1768,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo("maximum_star_matched", "Maximum Star Matched", 1776, 8, "uint"),
-        _base.FieldInfo(
-            "detection_timeout_duration",
-            "Detection Timeout duration",
-            1784,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo("maximum_star_pixel", "Maximum Star Pixel", 1800, 8, "uint"),
-        _base.FieldInfo("minimum_star_pixel", "Minimum Star Pixel", 1808, 8, "uint"),
-        _base.FieldInfo(
-            "star_tracker_error_margin",
-            "Star Tracker Error Margin",
-            1816,
-            8,
-            "uint",
-            unit="%",
-            physical="star_tracker_error_margin_percent",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "star_tracker_delay_time",
-            "Star Tracker Delay Time",
-            1824,
-            16,
-            "uint",
-            unit="ms",
-        ),
-        _base.FieldInfo(
-            "star_tracker_centroid_x",
-            "Star Tracker Centroid X",
-            1840,
-            32,
-            "float",
-            unit="pixels",
-        ),
-        _base.FieldInfo(
-            "star_tracker_centroid_y",
-            "Star Tracker Centroid Y",
-            1872,
-            32,
-            "float",
-            unit="pixels",
-        ),
-        _base.FieldInfo(
-            "star_tracker_focal_length",
-            "Star Tracker Focal Length",
-            1904,
-            32,
-            "float",
-            unit="mm",
-        ),
-        _base.FieldInfo(
-            "k1_radial_distortion_coefficient",
-            "K1 radial distortion coefficient",
-            1936,
-            32,
-            "float",
-            unit="gain",
-        ),
-        _base.FieldInfo(
-            "k2_radial_distortion_coefficient",
-            "K2 radial distortion coefficient",
-            1968,
-            32,
-            "float",
-            unit="gain",
-        ),
-        _base.FieldInfo(
-            "p1_tangential_distortion_coefficient",
-            "P1 tangential distortion coefficient",
-            2000,
-            32,
-            "float",
-            unit="gain",
-        ),
-        _base.FieldInfo(
-            "p2_tangential_distortion_coefficient",
-            "P2 tangential distortion coefficient",
-            2032,
-            32,
-            "float",
-            unit="gain",
-        ),
-        _base.FieldInfo(
-            "star_tracking_window_width",
-            "Star tracking window width",
-            2064,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "star_tracking_margin",
-            "Star Tracking Margin",
-            2072,
-            8,
-            "uint",
-            physical="star_tracking_margin_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "star_validation_margin",
-            "Star Validation Margin",
-            2080,
-            8,
-            "uint",
-            physical="star_validation_margin_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "star_tracking_module_enable",
-            "Star Tracking Module Enable",
-            2088,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "star_tracking_location_prediction_enable",
-            "Star Tracking Location Prediction Enable",
-            2089,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "star_tracking_search_width",
-            "Star Tracking Search Width",
-            2096,
-            8,
-            "uint",
-            physical="star_tracking_search_width_physical",
-            scale=(1, 0, 5),
-        ),
-        _base.FieldInfo(
-            "detumbling_spin_gain",
-            "Detumbling Spin Gain",
-            2104,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "detumbling_damping_gain",
-            "Detumbling Damping Gain",
-            2136,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "reference_spin_rate",
-            "Reference spin rate",
-            2168,
-            16,
-            "int",
-            unit="deg/s",
-            physical="reference_spin_rate_deg_per_s",
-            scale=(1, 0, 1000),
-            below=0,
-        ),
-        _base.FieldInfo(
-            "fast_bdot_detumbling_gain",
-            "Fast BDot Detumbling Gain",
-            2184,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "y_momentum_control_gain",
-            "Y-Momentum Control Gain",
-            2216,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "y_momentum_nutation_damping_gain",
-            "Y-momentum Nutation Damping Gain",
-            2248,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "y_momentum_proportional_gain",
-            "Y-momentum Proportional Gain",
-            2280,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "y_momentum_derivative_gain",
-            "Y-momentum Derivative Gain",
-            2312,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "reference_wheel_momentum",
-            "Reference Wheel Momentum",
-            2344,
-            32,
-            "float",
-            unit="Nms",
-            below=0,
-        ),
-        _base.FieldInfo(
-            "rwheel_proportional_gain",
-            "RWheel Proportional Gain",
-            2376,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "rwheel_derivative_gain",
-            "RWheel Derivative Gain",
-            2408,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "y_wheel_bias_momentum",
-            "Y-Wheel Bias Momentum",
-            2440,
-            32,
-            "float",
-            unit="Nms",
-        ),
-        _base.FieldInfo(
-            "sun_pointing_facet",
-            "Sun-pointing Facet",
-            2472,
-            7,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "control_transition_on_wheel_error",
-            "Automatic Control Transition due to Wheel Errors",
-            2479,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "tracking_proportional_gain",
-            "Tracking Proportional Gain",
-            2480,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "tracking_derivative_gain",
-            "Tracking Derivative Gain",
-            2512,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "tracking_integral_gain",
-            "Tracking Integral Gain",
-            2544,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "target_tracking_facet",
-            "Target-tracking Facet",
-            2576,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "moment_of_inertia_ixx",
-            "Moment Of Inertia - Ixx",
-            2584,
-            32,
-            "float",
-            unit="kg.m^2",
-        ),
-        _base.FieldInfo(
-            "moment_of_inertia_iyy",
-            "Moment Of Inertia - Iyy",
-            2616,
-            32,
-            "float",
-            unit="kg.m^2",
-        ),
-        _base.FieldInfo(
-            "moment_of_inertia_izz",
-            "Moment Of Inertia - Izz",
-            2648,
-            32,
-            "float",
-            unit="kg.m^2",
-        ),
-        _base.FieldInfo(
-            "product_of_inertia_ixy",
-            "Product Of Inertia - Ixy",
-            2680,
-            32,
-            "float",
-            unit="kg.m^2",
-        ),
-        _base.FieldInfo(
-            "product_of_inertia_ixz",
-            "Product Of Inertia - Ixz",
-            2712,
-            32,
-            "float",
-            unit="kg.m^2",
-        ),
-        _base.FieldInfo(
-            "product_of_inertia_iyz",
-            "Product Of Inertia - Iyz",
-            2744,
-            32,
-            "float",
-            unit="kg.m^2",
-        ),
-        _base.FieldInfo(
-            "magnetometer_rate_filter_system_noise",
-            "Magnetometer Rate Filter System Noise",
-            2776,
-            32,
-            "float",
-        ),
-        _base.FieldInfo("ekf_system_noise", "EKF System Noise", 2808, 32, "float"),
-        _base.FieldInfo(
-            "css_measurement_noise",
-            "CSS Measurement Noise",
-            2840,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "sun_sensor_measurement_noise",
-            "Sun Sensor Measurement Noise",
-            2872,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "nadir_sensor_measurement_noise",
-            "Nadir Sensor Measurement Noise",
-            2904,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "magnetometer_measurement_noise",
-            "Magnetometer Measurement Noise",
-            2936,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "star_tracker_measurement_noise",
-            "Star Tracker Measurement Noise",
-            2968,
-            32,
-            "float",
-        ),
-        _base.FieldInfo("use_sun_sensor", "Use Sun Sensor", 3000, 1, "bool"),
-        _base.FieldInfo("use_nadir_sensor", "Use Nadir Sensor", 3001, 1, "bool"),
-        _base.FieldInfo("use_css", "Use CSS", 3002, 1, "bool"),
-        _base.FieldInfo("use_star_tracker", "Use Star Tracker", 3003, 1, "bool"),
-        _base.FieldInfo(
-            "nadir_sensor_terminator_test",
-            "Nadir sensor terminator test",
-            3004,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "automatic_magnetometer_recovery",
-            "Automatic Magnetometer Recovery",
-            3005,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "magnetometer_mode",
-            "Magnetometer Mode",
-            3006,
-            2,
-            "enum",
-            enum=MagModeVal,
-        ),
-        _base.FieldInfo(
-            "raw_magnetometer_selection",
-            "Magnetometer Selection for RAW MTM TLM",
-            3008,
-            2,
-            "enum",
-            enum=MagModeVal,
-        ),
-        _base.FieldInfo(
-            "estimation_transition_on_rate_sensor_error",
-            "Automatic Estimation Transition due to Rate Sensor Errors",
-            3010,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("cam1_period", "Cam1 period", 3016, 4, "uint", unit="s"),
-        _base.FieldInfo("cam2_period", "Cam2 period", 3020, 4, "uint", unit="s"),
-        _base.FieldInfo(
-            "incl_coefficient",
-            "Incl. coefficient",
-            3024,
-            16,
-            "uint",
-            physical="incl_coefficient_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "raan_coefficient",
-            "Raan coefficient",
-            3040,
-            16,
-            "uint",
-            physical="raan_coefficient_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "ecc_coefficient",
-            "Ecc coefficient",
-            3056,
-            16,
-            "uint",
-            physical="ecc_coefficient_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "aop_coefficient",
-            "Aop coefficient",
-            3072,
-            16,
-            "uint",
-            physical="aop_coefficient_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "time_coefficient",
-            "Time coefficient",
-            3088,
-            16,
-            "uint",
-            physical="time_coefficient_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "pos_coefficient",
-            "Pos coefficient",
-            3104,
-            16,
-            "uint",
-            physical="pos_coefficient_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "maximum_position_error",
-            "Maximum position error",
-            3120,
-            8,
-            "uint",
-            physical="maximum_position_error_physical",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "asgp4_filter",
-            "ASGP4 filter",
-            3128,
-            8,
-            "enum",
-            enum=AsgpFilter,
-        ),
-        _base.FieldInfo(
-            "xp_coefficient",
-            "xp coefficient",
-            3136,
-            32,
-            "int",
-            physical="xp_coefficient_physical",
-            scale=(1, 0, 10000000),
-        ),
-        _base.FieldInfo(
-            "yp_coefficient",
-            "yp coefficient",
-            3168,
-            32,
-            "int",
-            physical="yp_coefficient_physical",
-            scale=(1, 0, 10000000),
-        ),
-        _base.FieldInfo("gps_roll_over", "GPS roll over", 3200, 8, "uint"),
-        _base.FieldInfo(
-            "position_sd",
-            "Position sd",
-            3208,
-            8,
-            "uint",
-            physical="position_sd_physical",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "velocity_sd",
-            "Velocity sd",
-            3216,
-            8,
-            "uint",
-            physical="velocity_sd_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo("min_satellites", "Min. satellites", 3224, 8, "uint"),
-        _base.FieldInfo(
-            "time_gain",
-            "Time gain",
-            3232,
-            8,
-            "uint",
-            physical="time_gain_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "max_lag",
-            "Max. lag",
-            3240,
-            8,
-            "uint",
-            physical="max_lag_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo("min_samples", "Min. samples", 3248, 16, "uint"),
-        _base.FieldInfo(
-            "user_coded_controller_settings",
-            "User Coded Controller Settings",
-            3264,
-            384,
-            "bytes",
-        ),
-        _base.FieldInfo(
-            "user_coded_estimator_settings",
-            "User Coded Estimator Settings",
-            3648,
-            384,
-            "bytes",
-        ),
-    )
 
-    magnetorquer_1_configuration: AxisSelect
+    magnetorquer_1_configuration: AxisSelect = _base.field(
+        "Magnetorquer 1 Configuration", 0, 8, "enum", default=AxisSelect.POSITIVE_X
+    )
     """Magnetorquer 1 Configuration: bits 0 to 7."""
-    magnetorquer_2_configuration: AxisSelect
+
+    magnetorquer_2_configuration: AxisSelect = _base.field(
+        "Magnetorquer 2 Configuration", 8, 8, "enum", default=AxisSelect.POSITIVE_X
+    )
     """Magnetorquer 2 Configuration: bits 8 to 15."""
-    magnetorquer_3_configuration: AxisSelect
+
+    magnetorquer_3_configuration: AxisSelect = _base.field(
+        "Magnetorquer 3 Configuration", 16, 8, "enum", default=AxisSelect.POSITIVE_X
+    )
     """Magnetorquer 3 Configuration: bits 16 to 23."""
-    rw1_configuration: AxisSelect
+
+    rw1_configuration: AxisSelect = _base.field("RW1 Configuration", 24, 8, "enum", default=AxisSelect.POSITIVE_X)
     """RW1 Configuration: bits 24 to 31."""
-    rw2_configuration: AxisSelect
+
+    rw2_configuration: AxisSelect = _base.field("RW2 Configuration", 32, 8, "enum", default=AxisSelect.POSITIVE_X)
     """RW2 Configuration: bits 32 to 39."""
-    rw3_configuration: AxisSelect
+
+    rw3_configuration: AxisSelect = _base.field("RW3 Configuration", 40, 8, "enum", default=AxisSelect.POSITIVE_X)
     """RW3 Configuration: bits 40 to 47."""
-    rw4_configuration: AxisSelect
+
+    rw4_configuration: AxisSelect = _base.field("RW4 Configuration", 48, 8, "enum", default=AxisSelect.POSITIVE_X)
     """RW4 Configuration: bits 48 to 55.
 
     Wheel 4 or the momentum wheel.
     """
-    gyro1_configuration: AxisSelect
+
+    gyro1_configuration: AxisSelect = _base.field("Gyro1 Configuration", 56, 8, "enum", default=AxisSelect.POSITIVE_X)
     """Gyro1 Configuration: bits 56 to 63."""
-    gyro2_configuration: AxisSelect
+
+    gyro2_configuration: AxisSelect = _base.field("Gyro2 Configuration", 64, 8, "enum", default=AxisSelect.POSITIVE_X)
     """Gyro2 Configuration: bits 64 to 71."""
-    gyro3_configuration: AxisSelect
+
+    gyro3_configuration: AxisSelect = _base.field("Gyro3 Configuration", 72, 8, "enum", default=AxisSelect.POSITIVE_X)
     """Gyro3 Configuration: bits 72 to 79."""
-    x_rate_sensor_offset: int
+
+    x_rate_sensor_offset: int = _base.field("X-Rate Sensor Offset", 80, 16, "int", default=0, unit="deg/s")
     """X-Rate Sensor Offset: bits 80 to 95, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
     """
-    y_rate_sensor_offset: int
+    x_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """X-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    x_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """X-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
+
+    y_rate_sensor_offset: int = _base.field("Y-Rate Sensor Offset", 96, 16, "int", default=0, unit="deg/s")
     """Y-Rate Sensor Offset: bits 96 to 111, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
     """
-    z_rate_sensor_offset: int
+    y_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Y-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    y_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """Y-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
+
+    z_rate_sensor_offset: int = _base.field("Z-Rate Sensor Offset", 112, 16, "int", default=0, unit="deg/s")
     """Z-Rate Sensor Offset: bits 112 to 127, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
     """
-    rate_sensor_mult: int
+    z_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Z-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    z_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """Z-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
+
+    rate_sensor_mult: int = _base.field("RateSensorMult", 128, 8, "uint", default=0)
     """RateSensorMult: bits 128 to 135, raw 0 to 255.
 
     Factor on the rate sensor measurements.
 
-    Note ACP-130 (open): RateSensorMult has no scale and no blanks.
+    Note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8
+    bits; whether it is a whole factor, and of which quantity, is not said.
     """
-    css1_configuration: AxisSelect
+
+    css1_configuration: AxisSelect = _base.field("CSS1 Configuration", 136, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS1 Configuration: bits 136 to 143."""
-    css2_configuration: AxisSelect
+
+    css2_configuration: AxisSelect = _base.field("CSS2 Configuration", 144, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS2 Configuration: bits 144 to 151."""
-    css3_configuration: AxisSelect
+
+    css3_configuration: AxisSelect = _base.field("CSS3 Configuration", 152, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS3 Configuration: bits 152 to 159."""
-    css4_configuration: AxisSelect
+
+    css4_configuration: AxisSelect = _base.field("CSS4 Configuration", 160, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS4 Configuration: bits 160 to 167."""
-    css5_configuration: AxisSelect
+
+    css5_configuration: AxisSelect = _base.field("CSS5 Configuration", 168, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS5 Configuration: bits 168 to 175."""
-    css6_configuration: AxisSelect
+
+    css6_configuration: AxisSelect = _base.field("CSS6 Configuration", 176, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS6 Configuration: bits 176 to 183."""
-    css7_configuration: AxisSelect
+
+    css7_configuration: AxisSelect = _base.field("CSS7 Configuration", 184, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS7 Configuration: bits 184 to 191."""
-    css8_configuration: AxisSelect
+
+    css8_configuration: AxisSelect = _base.field("CSS8 Configuration", 192, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS8 Configuration: bits 192 to 199."""
-    css9_configuration: AxisSelect
+
+    css9_configuration: AxisSelect = _base.field("CSS9 Configuration", 200, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS9 Configuration: bits 200 to 207."""
-    css10_configuration: AxisSelect
+
+    css10_configuration: AxisSelect = _base.field("CSS10 Configuration", 208, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS10 Configuration: bits 208 to 215."""
-    css1_relative_scale: int
+
+    css1_relative_scale: int = _base.field("CSS1 Relative Scale", 216, 8, "uint", default=0)
     """CSS1 Relative Scale: bits 216 to 223, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css2_relative_scale: int
+    css1_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS1 Relative Scale, as a physical value: 0 to 2.55."""
+    css1_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS1 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css2_relative_scale: int = _base.field("CSS2 Relative Scale", 224, 8, "uint", default=0)
     """CSS2 Relative Scale: bits 224 to 231, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css3_relative_scale: int
+    css2_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS2 Relative Scale, as a physical value: 0 to 2.55."""
+    css2_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS2 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css3_relative_scale: int = _base.field("CSS3 Relative Scale", 232, 8, "uint", default=0)
     """CSS3 Relative Scale: bits 232 to 239, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css4_relative_scale: int
+    css3_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS3 Relative Scale, as a physical value: 0 to 2.55."""
+    css3_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS3 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css4_relative_scale: int = _base.field("CSS4 Relative Scale", 240, 8, "uint", default=0)
     """CSS4 Relative Scale: bits 240 to 247, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css5_relative_scale: int
+    css4_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS4 Relative Scale, as a physical value: 0 to 2.55."""
+    css4_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS4 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css5_relative_scale: int = _base.field("CSS5 Relative Scale", 248, 8, "uint", default=0)
     """CSS5 Relative Scale: bits 248 to 255, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css6_relative_scale: int
+    css5_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS5 Relative Scale, as a physical value: 0 to 2.55."""
+    css5_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS5 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css6_relative_scale: int = _base.field("CSS6 Relative Scale", 256, 8, "uint", default=0)
     """CSS6 Relative Scale: bits 256 to 263, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css7_relative_scale: int
+    css6_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS6 Relative Scale, as a physical value: 0 to 2.55."""
+    css6_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS6 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css7_relative_scale: int = _base.field("CSS7 Relative Scale", 264, 8, "uint", default=0)
     """CSS7 Relative Scale: bits 264 to 271, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css8_relative_scale: int
+    css7_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS7 Relative Scale, as a physical value: 0 to 2.55."""
+    css7_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS7 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css8_relative_scale: int = _base.field("CSS8 Relative Scale", 272, 8, "uint", default=0)
     """CSS8 Relative Scale: bits 272 to 279, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css9_relative_scale: int
+    css8_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS8 Relative Scale, as a physical value: 0 to 2.55."""
+    css8_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS8 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css9_relative_scale: int = _base.field("CSS9 Relative Scale", 280, 8, "uint", default=0)
     """CSS9 Relative Scale: bits 280 to 287, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css10_relative_scale: int
+    css9_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS9 Relative Scale, as a physical value: 0 to 2.55."""
+    css9_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS9 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css10_relative_scale: int = _base.field("CSS10 Relative Scale", 288, 8, "uint", default=0)
     """CSS10 Relative Scale: bits 288 to 295, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css_threshold: int
+    css10_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS10 Relative Scale, as a physical value: 0 to 2.55."""
+    css10_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS10 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css_threshold: int = _base.field("CSS Threshold", 296, 8, "uint", default=0)
     """CSS Threshold: bits 296 to 303, raw 0 to 255.
 
-    Note ACP-133 (open): CSS threshold has no description.
+    Note ACP-133 (open): CSS threshold has no description. The name is repeated; neither
+    unit nor what lies below it is said. The message is described as directions and
+    scale factors.
     """
-    cam1_mounting_alpha: int
+
+    cam1_mounting_alpha: int = _base.field(
+        "Cam1 Sensor Mounting Transform Alpha Angle", 304, 16, "int", default=0, unit="deg"
+    )
     """Cam1 Sensor Mounting Transform Alpha Angle: bits 304 to 319, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    cam1_mounting_beta: int
+    cam1_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    cam1_mounting_beta: int = _base.field(
+        "Cam1 Sensor Mounting Transform Beta Angle", 320, 16, "int", default=0, unit="deg"
+    )
     """Cam1 Sensor Mounting Transform Beta Angle: bits 320 to 335, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    cam1_mounting_gamma: int
+    cam1_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    cam1_mounting_gamma: int = _base.field(
+        "Cam1 Sensor Mounting Transform Gamma Angle", 336, 16, "int", default=0, unit="deg"
+    )
     """Cam1 Sensor Mounting Transform Gamma Angle: bits 336 to 351, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    cam1_detection_threshold: int
+    cam1_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    cam1_detection_threshold: int = _base.field("Cam1 detection threshold", 352, 8, "uint", default=0)
     """Cam1 detection threshold: bits 352 to 359, raw 0 to 255."""
-    cam1_sensor_auto_adjust_mode: bool
+
+    cam1_sensor_auto_adjust_mode: bool = _base.field("Cam1 sensor auto adjust mode", 360, 1, "bool", default=False)
     """Cam1 sensor auto adjust mode: bit 360."""
-    cam1_sensor_exposure_time: int
+
+    cam1_sensor_exposure_time: int = _base.field("Cam1 sensor exposure time", 368, 16, "uint", default=0)
     """Cam1 sensor exposure time: bits 368 to 383, raw 0 to 65535.
 
     Register value.
     """
-    cam1_boresight_x: int
+
+    cam1_boresight_x: int = _base.field("Cam1 Boresight X", 384, 16, "uint", default=0, unit="pixels")
     """Cam1 Boresight X: bits 384 to 399, raw 0 to 65535; physical `raw*0.01`, 0 to
     655.35 pixels.
 
     Where the boresight meets the image.
     """
-    cam1_boresight_y: int
+    cam1_boresight_x_pixels: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam1 Boresight X in pixels: 0 to 655.35."""
+    cam1_boresight_x_milli_pixels: int = _base.whole(10, 0)
+    """Cam1 Boresight X in thousandths of pixels, exact: 0 to 655350."""
+
+    cam1_boresight_y: int = _base.field("Cam1 Boresight Y", 400, 16, "uint", default=0, unit="pixels")
     """Cam1 Boresight Y: bits 400 to 415, raw 0 to 65535; physical `raw*0.01`, 0 to
     655.35 pixels.
 
     Where the boresight meets the image.
     """
-    cam2_mounting_alpha: int
+    cam1_boresight_y_pixels: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam1 Boresight Y in pixels: 0 to 655.35."""
+    cam1_boresight_y_milli_pixels: int = _base.whole(10, 0)
+    """Cam1 Boresight Y in thousandths of pixels, exact: 0 to 655350."""
+
+    cam2_mounting_alpha: int = _base.field(
+        "Cam2 Sensor Mounting Transform Alpha Angle", 416, 16, "int", default=0, unit="deg"
+    )
     """Cam2 Sensor Mounting Transform Alpha Angle: bits 416 to 431, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    cam2_mounting_beta: int
+    cam2_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    cam2_mounting_beta: int = _base.field(
+        "Cam2 Sensor Mounting Transform Beta Angle", 432, 16, "int", default=0, unit="deg"
+    )
     """Cam2 Sensor Mounting Transform Beta Angle: bits 432 to 447, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    cam2_mounting_gamma: int
+    cam2_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    cam2_mounting_gamma: int = _base.field(
+        "Cam2 Sensor Mounting Transform Gamma Angle", 448, 16, "int", default=0, unit="deg"
+    )
     """Cam2 Sensor Mounting Transform Gamma Angle: bits 448 to 463, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    cam2_detection_threshold: int
+    cam2_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    cam2_detection_threshold: int = _base.field("Cam2 detection threshold", 464, 8, "uint", default=0)
     """Cam2 detection threshold: bits 464 to 471, raw 0 to 255."""
-    cam2_sensor_auto_adjust_mode: bool
+
+    cam2_sensor_auto_adjust_mode: bool = _base.field("Cam2 sensor auto adjust mode", 472, 1, "bool", default=False)
     """Cam2 sensor auto adjust mode: bit 472."""
-    cam2_sensor_exposure_time: int
+
+    cam2_sensor_exposure_time: int = _base.field("Cam2 sensor exposure time", 480, 16, "uint", default=0)
     """Cam2 sensor exposure time: bits 480 to 495, raw 0 to 65535.
 
     Register value.
     """
-    cam2_boresight_x: int
+
+    cam2_boresight_x: int = _base.field("Cam2 Boresight X", 496, 16, "uint", default=0, unit="pixels")
     """Cam2 Boresight X: bits 496 to 511, raw 0 to 65535; physical `raw*0.01`, 0 to
     655.35 pixels.
 
     Where the boresight meets the image.
     """
-    cam2_boresight_y: int
+    cam2_boresight_x_pixels: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam2 Boresight X in pixels: 0 to 655.35."""
+    cam2_boresight_x_milli_pixels: int = _base.whole(10, 0)
+    """Cam2 Boresight X in thousandths of pixels, exact: 0 to 655350."""
+
+    cam2_boresight_y: int = _base.field("Cam2 Boresight Y", 512, 16, "uint", default=0, unit="pixels")
     """Cam2 Boresight Y: bits 512 to 527, raw 0 to 65535; physical `raw*0.01`, 0 to
     655.35 pixels.
 
     Where the boresight meets the image.
     """
-    nadir_max_deviation_percentage: int
+    cam2_boresight_y_pixels: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam2 Boresight Y in pixels: 0 to 655.35."""
+    cam2_boresight_y_milli_pixels: int = _base.whole(10, 0)
+    """Cam2 Boresight Y in thousandths of pixels, exact: 0 to 655350."""
+
+    nadir_max_deviation_percentage: int = _base.field(
+        "Nadir Max Deviation Percentage", 528, 8, "uint", default=0, unit="%"
+    )
     """Nadir Max Deviation Percentage: bits 528 to 535, raw 0 to 255, in %.
 
     Largest deviation of an edge, of the measured angular radius.
 
-    Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
+    Erratum ACP-151 (certain): Deviation percentage has its unit in words only. A
+    percentage of the measured angular radius by name and description, without the unit
+    of measure.
     """
-    nadir_max_bad_edges: int
+
+    nadir_max_bad_edges: int = _base.field("Nadir Max Bad Edges", 536, 8, "uint", default=0)
     """Nadir Max Bad Edges: bits 536 to 543, raw 0 to 255.
 
     Most edges that may deviate further. Above 50 the test is off.
     """
-    nadir_max_radius: int
+
+    nadir_max_radius: int = _base.field("Nadir Max Radius", 544, 8, "uint", default=0, unit="deg")
     """Nadir Max Radius: bits 544 to 551, raw 0 to 255, in deg.
 
-    Erratum ACP-148 (certain): Degree sign is deg.
+    Erratum ACP-148 (certain): Degree sign is deg. Two fields have the sign, all other
+    angles deg.
     """
-    nadir_min_radius: int
+
+    nadir_min_radius: int = _base.field("Nadir Min Radius", 552, 8, "uint", default=0, unit="deg")
     """Nadir Min Radius: bits 552 to 559, raw 0 to 255, in deg.
 
-    Erratum ACP-148 (certain): Degree sign is deg.
+    Erratum ACP-148 (certain): see Nadir Max Radius.
     """
-    cam_1_minimum_x_of_area_1: int
+
+    cam_1_minimum_x_of_area_1: int = _base.field("Cam 1 Minimum X of area 1", 560, 16, "uint", default=0)
     """Cam 1 Minimum X of area 1: bits 560 to 575, raw 0 to 65535."""
-    cam_1_maximum_x_of_area_1: int
+
+    cam_1_maximum_x_of_area_1: int = _base.field("Cam 1 Maximum X of area 1", 576, 16, "uint", default=0)
     """Cam 1 Maximum X of area 1: bits 576 to 591, raw 0 to 65535."""
-    cam_1_minimum_y_of_area_1: int
+
+    cam_1_minimum_y_of_area_1: int = _base.field("Cam 1 Minimum Y of area 1", 592, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 1: bits 592 to 607, raw 0 to 65535."""
-    cam_1_maximum_y_of_area_1: int
+
+    cam_1_maximum_y_of_area_1: int = _base.field("Cam 1 Maximum Y of area 1", 608, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 1: bits 608 to 623, raw 0 to 65535."""
-    cam_1_minimum_x_of_area_2: int
+
+    cam_1_minimum_x_of_area_2: int = _base.field("Cam 1 Minimum X of area 2", 624, 16, "uint", default=0)
     """Cam 1 Minimum X of area 2: bits 624 to 639, raw 0 to 65535."""
-    cam_1_maximum_x_of_area_2: int
+
+    cam_1_maximum_x_of_area_2: int = _base.field("Cam 1 Maximum X of area 2", 640, 16, "uint", default=0)
     """Cam 1 Maximum X of area 2: bits 640 to 655, raw 0 to 65535."""
-    cam_1_minimum_y_of_area_2: int
+
+    cam_1_minimum_y_of_area_2: int = _base.field("Cam 1 Minimum Y of area 2", 656, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 2: bits 656 to 671, raw 0 to 65535."""
-    cam_1_maximum_y_of_area_2: int
+
+    cam_1_maximum_y_of_area_2: int = _base.field("Cam 1 Maximum Y of area 2", 672, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 2: bits 672 to 687, raw 0 to 65535."""
-    cam_1_minimum_x_of_area_3: int
+
+    cam_1_minimum_x_of_area_3: int = _base.field("Cam 1 Minimum X of area 3", 688, 16, "uint", default=0)
     """Cam 1 Minimum X of area 3: bits 688 to 703, raw 0 to 65535."""
-    cam_1_maximum_x_of_area_3: int
+
+    cam_1_maximum_x_of_area_3: int = _base.field("Cam 1 Maximum X of area 3", 704, 16, "uint", default=0)
     """Cam 1 Maximum X of area 3: bits 704 to 719, raw 0 to 65535."""
-    cam_1_minimum_y_of_area_3: int
+
+    cam_1_minimum_y_of_area_3: int = _base.field("Cam 1 Minimum Y of area 3", 720, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 3: bits 720 to 735, raw 0 to 65535."""
-    cam_1_maximum_y_of_area_3: int
+
+    cam_1_maximum_y_of_area_3: int = _base.field("Cam 1 Maximum Y of area 3", 736, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 3: bits 736 to 751, raw 0 to 65535."""
-    cam_1_minimum_x_of_area_4: int
+
+    cam_1_minimum_x_of_area_4: int = _base.field("Cam 1 Minimum X of area 4", 752, 16, "uint", default=0)
     """Cam 1 Minimum X of area 4: bits 752 to 767, raw 0 to 65535."""
-    cam_1_maximum_x_of_area_4: int
+
+    cam_1_maximum_x_of_area_4: int = _base.field("Cam 1 Maximum X of area 4", 768, 16, "uint", default=0)
     """Cam 1 Maximum X of area 4: bits 768 to 783, raw 0 to 65535."""
-    cam_1_minimum_y_of_area_4: int
+
+    cam_1_minimum_y_of_area_4: int = _base.field("Cam 1 Minimum Y of area 4", 784, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 4: bits 784 to 799, raw 0 to 65535."""
-    cam_1_maximum_y_of_area_4: int
+
+    cam_1_maximum_y_of_area_4: int = _base.field("Cam 1 Maximum Y of area 4", 800, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 4: bits 800 to 815, raw 0 to 65535."""
-    cam_1_minimum_x_of_area_5: int
+
+    cam_1_minimum_x_of_area_5: int = _base.field("Cam 1 Minimum X of area 5", 816, 16, "uint", default=0)
     """Cam 1 Minimum X of area 5: bits 816 to 831, raw 0 to 65535."""
-    cam_1_maximum_x_of_area_5: int
+
+    cam_1_maximum_x_of_area_5: int = _base.field("Cam 1 Maximum X of area 5", 832, 16, "uint", default=0)
     """Cam 1 Maximum X of area 5: bits 832 to 847, raw 0 to 65535."""
-    cam_1_minimum_y_of_area_5: int
+
+    cam_1_minimum_y_of_area_5: int = _base.field("Cam 1 Minimum Y of area 5", 848, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 5: bits 848 to 863, raw 0 to 65535."""
-    cam_1_maximum_y_of_area_5: int
+
+    cam_1_maximum_y_of_area_5: int = _base.field("Cam 1 Maximum Y of area 5", 864, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 5: bits 864 to 879, raw 0 to 65535."""
-    cam_2_minimum_x_of_area_1: int
+
+    cam_2_minimum_x_of_area_1: int = _base.field("Cam 2 Minimum X of area 1", 880, 16, "uint", default=0)
     """Cam 2 Minimum X of area 1: bits 880 to 895, raw 0 to 65535."""
-    cam_2_maximum_x_of_area_1: int
+
+    cam_2_maximum_x_of_area_1: int = _base.field("Cam 2 Maximum X of area 1", 896, 16, "uint", default=0)
     """Cam 2 Maximum X of area 1: bits 896 to 911, raw 0 to 65535."""
-    cam_2_minimum_y_of_area_1: int
+
+    cam_2_minimum_y_of_area_1: int = _base.field("Cam 2 Minimum Y of area 1", 912, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 1: bits 912 to 927, raw 0 to 65535."""
-    cam_2_maximum_y_of_area_1: int
+
+    cam_2_maximum_y_of_area_1: int = _base.field("Cam 2 Maximum Y of area 1", 928, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 1: bits 928 to 943, raw 0 to 65535."""
-    cam_2_minimum_x_of_area_2: int
+
+    cam_2_minimum_x_of_area_2: int = _base.field("Cam 2 Minimum X of area 2", 944, 16, "uint", default=0)
     """Cam 2 Minimum X of area 2: bits 944 to 959, raw 0 to 65535."""
-    cam_2_maximum_x_of_area_2: int
+
+    cam_2_maximum_x_of_area_2: int = _base.field("Cam 2 Maximum X of area 2", 960, 16, "uint", default=0)
     """Cam 2 Maximum X of area 2: bits 960 to 975, raw 0 to 65535."""
-    cam_2_minimum_y_of_area_2: int
+
+    cam_2_minimum_y_of_area_2: int = _base.field("Cam 2 Minimum Y of area 2", 976, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 2: bits 976 to 991, raw 0 to 65535."""
-    cam_2_maximum_y_of_area_2: int
+
+    cam_2_maximum_y_of_area_2: int = _base.field("Cam 2 Maximum Y of area 2", 992, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 2: bits 992 to 1007, raw 0 to 65535."""
-    cam_2_minimum_x_of_area_3: int
+
+    cam_2_minimum_x_of_area_3: int = _base.field("Cam 2 Minimum X of area 3", 1008, 16, "uint", default=0)
     """Cam 2 Minimum X of area 3: bits 1008 to 1023, raw 0 to 65535."""
-    cam_2_maximum_x_of_area_3: int
+
+    cam_2_maximum_x_of_area_3: int = _base.field("Cam 2 Maximum X of area 3", 1024, 16, "uint", default=0)
     """Cam 2 Maximum X of area 3: bits 1024 to 1039, raw 0 to 65535."""
-    cam_2_minimum_y_of_area_3: int
+
+    cam_2_minimum_y_of_area_3: int = _base.field("Cam 2 Minimum Y of area 3", 1040, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 3: bits 1040 to 1055, raw 0 to 65535."""
-    cam_2_maximum_y_of_area_3: int
+
+    cam_2_maximum_y_of_area_3: int = _base.field("Cam 2 Maximum Y of area 3", 1056, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 3: bits 1056 to 1071, raw 0 to 65535."""
-    cam_2_minimum_x_of_area_4: int
+
+    cam_2_minimum_x_of_area_4: int = _base.field("Cam 2 Minimum X of area 4", 1072, 16, "uint", default=0)
     """Cam 2 Minimum X of area 4: bits 1072 to 1087, raw 0 to 65535."""
-    cam_2_maximum_x_of_area_4: int
+
+    cam_2_maximum_x_of_area_4: int = _base.field("Cam 2 Maximum X of area 4", 1088, 16, "uint", default=0)
     """Cam 2 Maximum X of area 4: bits 1088 to 1103, raw 0 to 65535."""
-    cam_2_minimum_y_of_area_4: int
+
+    cam_2_minimum_y_of_area_4: int = _base.field("Cam 2 Minimum Y of area 4", 1104, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 4: bits 1104 to 1119, raw 0 to 65535."""
-    cam_2_maximum_y_of_area_4: int
+
+    cam_2_maximum_y_of_area_4: int = _base.field("Cam 2 Maximum Y of area 4", 1120, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 4: bits 1120 to 1135, raw 0 to 65535."""
-    cam_2_minimum_x_of_area_5: int
+
+    cam_2_minimum_x_of_area_5: int = _base.field("Cam 2 Minimum X of area 5", 1136, 16, "uint", default=0)
     """Cam 2 Minimum X of area 5: bits 1136 to 1151, raw 0 to 65535."""
-    cam_2_maximum_x_of_area_5: int
+
+    cam_2_maximum_x_of_area_5: int = _base.field("Cam 2 Maximum X of area 5", 1152, 16, "uint", default=0)
     """Cam 2 Maximum X of area 5: bits 1152 to 1167, raw 0 to 65535."""
-    cam_2_minimum_y_of_area_5: int
+
+    cam_2_minimum_y_of_area_5: int = _base.field("Cam 2 Minimum Y of area 5", 1168, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 5: bits 1168 to 1183, raw 0 to 65535."""
-    cam_2_maximum_y_of_area_5: int
+
+    cam_2_maximum_y_of_area_5: int = _base.field("Cam 2 Maximum Y of area 5", 1184, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 5: bits 1184 to 1199, raw 0 to 65535."""
-    magnetometer_mounting_alpha: int
+
+    magnetometer_mounting_alpha: int = _base.field(
+        "Magnetometer Mounting Transform Alpha Angle", 1200, 16, "int", default=0, unit="deg"
+    )
     """Magnetometer Mounting Transform Alpha Angle: bits 1200 to 1215, raw -32768 to
     32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    magnetometer_mounting_beta: int
+    magnetometer_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    magnetometer_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Magnetometer Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    magnetometer_mounting_beta: int = _base.field(
+        "Magnetometer Mounting Transform Beta Angle", 1216, 16, "int", default=0, unit="deg"
+    )
     """Magnetometer Mounting Transform Beta Angle: bits 1216 to 1231, raw -32768 to
     32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    magnetometer_mounting_gamma: int
+    magnetometer_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    magnetometer_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Magnetometer Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    magnetometer_mounting_gamma: int = _base.field(
+        "Magnetometer Mounting Transform Gamma Angle", 1232, 16, "int", default=0, unit="deg"
+    )
     """Magnetometer Mounting Transform Gamma Angle: bits 1232 to 1247, raw -32768 to
     32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    magnetometer_channel_1_offset: int
+    magnetometer_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    magnetometer_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Magnetometer Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    magnetometer_channel_1_offset: int = _base.field("Magnetometer Channel 1 Offset", 1248, 16, "int", default=0)
     """Magnetometer Channel 1 Offset: bits 1248 to 1263, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_channel_2_offset: int
+    magnetometer_channel_1_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767."""
+    magnetometer_channel_1_offset_milli: int = _base.whole(1, 0)
+    """Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767."""
+
+    magnetometer_channel_2_offset: int = _base.field("Magnetometer Channel 2 Offset", 1264, 16, "int", default=0)
     """Magnetometer Channel 2 Offset: bits 1264 to 1279, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_channel_3_offset: int
+    magnetometer_channel_2_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767."""
+    magnetometer_channel_2_offset_milli: int = _base.whole(1, 0)
+    """Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767."""
+
+    magnetometer_channel_3_offset: int = _base.field("Magnetometer Channel 3 Offset", 1280, 16, "int", default=0)
     """Magnetometer Channel 3 Offset: bits 1280 to 1295, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_s11: int
+    magnetometer_channel_3_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767."""
+    magnetometer_channel_3_offset_milli: int = _base.whole(1, 0)
+    """Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767."""
+
+    magnetometer_sensitivity_s11: int = _base.field("Magnetometer Sensitivity Matrix S11", 1296, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S11: bits 1296 to 1311, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_s22: int
+    magnetometer_sensitivity_s11_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s11_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to 32767."""
+
+    magnetometer_sensitivity_s22: int = _base.field("Magnetometer Sensitivity Matrix S22", 1312, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S22: bits 1312 to 1327, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_s33: int
+    magnetometer_sensitivity_s22_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s22_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to 32767."""
+
+    magnetometer_sensitivity_s33: int = _base.field("Magnetometer Sensitivity Matrix S33", 1328, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S33: bits 1328 to 1343, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_s12: int
+    magnetometer_sensitivity_s33_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s33_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to 32767."""
+
+    magnetometer_sensitivity_s12: int = _base.field("Magnetometer Sensitivity Matrix S12", 1344, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S12: bits 1344 to 1359, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_s13: int
+    magnetometer_sensitivity_s12_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s12_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to 32767."""
+
+    magnetometer_sensitivity_s13: int = _base.field("Magnetometer Sensitivity Matrix S13", 1360, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S13: bits 1360 to 1375, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_s21: int
+    magnetometer_sensitivity_s13_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s13_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to 32767."""
+
+    magnetometer_sensitivity_s21: int = _base.field("Magnetometer Sensitivity Matrix S21", 1376, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S21: bits 1376 to 1391, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_s23: int
+    magnetometer_sensitivity_s21_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s21_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to 32767."""
+
+    magnetometer_sensitivity_s23: int = _base.field("Magnetometer Sensitivity Matrix S23", 1392, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S23: bits 1392 to 1407, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_s31: int
+    magnetometer_sensitivity_s23_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s23_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to 32767."""
+
+    magnetometer_sensitivity_s31: int = _base.field("Magnetometer Sensitivity Matrix S31", 1408, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S31: bits 1408 to 1423, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_s32: int
+    magnetometer_sensitivity_s31_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s31_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to 32767."""
+
+    magnetometer_sensitivity_s32: int = _base.field("Magnetometer Sensitivity Matrix S32", 1424, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S32: bits 1424 to 1439, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_mag_mounting_alpha: int
+    magnetometer_sensitivity_s32_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s32_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to 32767."""
+
+    redundant_mag_mounting_alpha: int = _base.field(
+        "Redundant Magnetometer Mounting Transform Alpha Angle", 1440, 16, "int", default=0, unit="deg"
+    )
     """Redundant Magnetometer Mounting Transform Alpha Angle: bits 1440 to 1455, raw
     -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    redundant_mag_mounting_beta: int
+    redundant_mag_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
+    """
+    redundant_mag_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg,
+    exact: -327680 to 327670.
+    """
+
+    redundant_mag_mounting_beta: int = _base.field(
+        "Redundant Magnetometer Mounting Transform Beta Angle", 1456, 16, "int", default=0, unit="deg"
+    )
     """Redundant Magnetometer Mounting Transform Beta Angle: bits 1456 to 1471, raw
     -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    redundant_mag_mounting_gamma: int
+    redundant_mag_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
+    """
+    redundant_mag_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg,
+    exact: -327680 to 327670.
+    """
+
+    redundant_mag_mounting_gamma: int = _base.field(
+        "Redundant Magnetometer Mounting Transform Gamma Angle", 1472, 16, "int", default=0, unit="deg"
+    )
     """Redundant Magnetometer Mounting Transform Gamma Angle: bits 1472 to 1487, raw
     -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    redundant_mag_channel_1_offset: int
+    redundant_mag_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
+    """
+    redundant_mag_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg,
+    exact: -327680 to 327670.
+    """
+
+    redundant_mag_channel_1_offset: int = _base.field(
+        "Redundant Magnetometer Channel 1 Offset", 1488, 16, "int", default=0
+    )
     """Redundant Magnetometer Channel 1 Offset: bits 1488 to 1503, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_mag_channel_2_offset: int
+    redundant_mag_channel_1_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767.
+    """
+    redundant_mag_channel_1_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767.
+    """
+
+    redundant_mag_channel_2_offset: int = _base.field(
+        "Redundant Magnetometer Channel 2 Offset", 1504, 16, "int", default=0
+    )
     """Redundant Magnetometer Channel 2 Offset: bits 1504 to 1519, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_mag_channel_3_offset: int
+    redundant_mag_channel_2_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767.
+    """
+    redundant_mag_channel_2_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767.
+    """
+
+    redundant_mag_channel_3_offset: int = _base.field(
+        "Redundant Magnetometer Channel 3 Offset", 1520, 16, "int", default=0
+    )
     """Redundant Magnetometer Channel 3 Offset: bits 1520 to 1535, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_mag_sensitivity_s11: int
+    redundant_mag_channel_3_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767.
+    """
+    redundant_mag_channel_3_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767.
+    """
+
+    redundant_mag_sensitivity_s11: int = _base.field(
+        "Redundant Magnetometer Sensitivity Matrix S11", 1536, 16, "int", default=0
+    )
     """Redundant Magnetometer Sensitivity Matrix S11: bits 1536 to 1551, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_mag_sensitivity_s22: int
+    redundant_mag_sensitivity_s11_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to
+    32.767.
+    """
+    redundant_mag_sensitivity_s11_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    redundant_mag_sensitivity_s22: int = _base.field(
+        "Redundant Magnetometer Sensitivity Matrix S22", 1552, 16, "int", default=0
+    )
     """Redundant Magnetometer Sensitivity Matrix S22: bits 1552 to 1567, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_mag_sensitivity_s33: int
+    redundant_mag_sensitivity_s22_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to
+    32.767.
+    """
+    redundant_mag_sensitivity_s22_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    redundant_mag_sensitivity_s33: int = _base.field(
+        "Redundant Magnetometer Sensitivity Matrix S33", 1568, 16, "int", default=0
+    )
     """Redundant Magnetometer Sensitivity Matrix S33: bits 1568 to 1583, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_mag_sensitivity_s12: int
+    redundant_mag_sensitivity_s33_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to
+    32.767.
+    """
+    redundant_mag_sensitivity_s33_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    redundant_mag_sensitivity_s12: int = _base.field(
+        "Redundant Magnetometer Sensitivity Matrix S12", 1584, 16, "int", default=0
+    )
     """Redundant Magnetometer Sensitivity Matrix S12: bits 1584 to 1599, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_mag_sensitivity_s13: int
+    redundant_mag_sensitivity_s12_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to
+    32.767.
+    """
+    redundant_mag_sensitivity_s12_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    redundant_mag_sensitivity_s13: int = _base.field(
+        "Redundant Magnetometer Sensitivity Matrix S13", 1600, 16, "int", default=0
+    )
     """Redundant Magnetometer Sensitivity Matrix S13: bits 1600 to 1615, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_mag_sensitivity_s21: int
+    redundant_mag_sensitivity_s13_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to
+    32.767.
+    """
+    redundant_mag_sensitivity_s13_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    redundant_mag_sensitivity_s21: int = _base.field(
+        "Redundant Magnetometer Sensitivity Matrix S21", 1616, 16, "int", default=0
+    )
     """Redundant Magnetometer Sensitivity Matrix S21: bits 1616 to 1631, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_mag_sensitivity_s23: int
+    redundant_mag_sensitivity_s21_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to
+    32.767.
+    """
+    redundant_mag_sensitivity_s21_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    redundant_mag_sensitivity_s23: int = _base.field(
+        "Redundant Magnetometer Sensitivity Matrix S23", 1632, 16, "int", default=0
+    )
     """Redundant Magnetometer Sensitivity Matrix S23: bits 1632 to 1647, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_mag_sensitivity_s31: int
+    redundant_mag_sensitivity_s23_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to
+    32.767.
+    """
+    redundant_mag_sensitivity_s23_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    redundant_mag_sensitivity_s31: int = _base.field(
+        "Redundant Magnetometer Sensitivity Matrix S31", 1648, 16, "int", default=0
+    )
     """Redundant Magnetometer Sensitivity Matrix S31: bits 1648 to 1663, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_mag_sensitivity_s32: int
+    redundant_mag_sensitivity_s31_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to
+    32.767.
+    """
+    redundant_mag_sensitivity_s31_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    redundant_mag_sensitivity_s32: int = _base.field(
+        "Redundant Magnetometer Sensitivity Matrix S32", 1664, 16, "int", default=0
+    )
     """Redundant Magnetometer Sensitivity Matrix S32: bits 1664 to 1679, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    star_tracker_mounting_alpha: int
+    redundant_mag_sensitivity_s32_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to
+    32.767.
+    """
+    redundant_mag_sensitivity_s32_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    star_tracker_mounting_alpha: int = _base.field(
+        "StarTracker Mounting Transform Alpha Angle", 1680, 16, "int", default=0, unit="deg"
+    )
     """StarTracker Mounting Transform Alpha Angle: bits 1680 to 1695, raw -32768 to
     32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    star_tracker_mounting_beta: int
+    star_tracker_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    star_tracker_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    star_tracker_mounting_beta: int = _base.field(
+        "StarTracker Mounting Transform Beta Angle", 1696, 16, "int", default=0, unit="deg"
+    )
     """StarTracker Mounting Transform Beta Angle: bits 1696 to 1711, raw -32768 to
     32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    star_tracker_mounting_gamma: int
+    star_tracker_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    star_tracker_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    star_tracker_mounting_gamma: int = _base.field(
+        "StarTracker Mounting Transform Gamma Angle", 1712, 16, "int", default=0, unit="deg"
+    )
     """StarTracker Mounting Transform Gamma Angle: bits 1712 to 1727, raw -32768 to
     32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    star_tracker_exposure_time: int
+    star_tracker_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    star_tracker_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    star_tracker_exposure_time: int = _base.field("StarTracker exposure time", 1728, 16, "uint", default=0)
     """StarTracker exposure time: bits 1728 to 1743, raw 0 to 65535.
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): Exposure and gain are register values. Neither the register nor
+    its scale is given, so times and gains cannot be told from them.
     """
-    star_tracker_analog_gain: int
+
+    star_tracker_analog_gain: int = _base.field("StarTracker analog gain", 1744, 16, "uint", default=0)
     """StarTracker analog gain: bits 1744 to 1759, raw 0 to 65535.
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): see StarTracker exposure time.
     """
-    star_tracker_detection_threshold: int
+
+    star_tracker_detection_threshold: int = _base.field("StarTracker detection threshold", 1760, 8, "uint", default=0)
     """StarTracker detection threshold: bits 1760 to 1767, raw 0 to 255.
 
     Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Names are repeated or a noun is missing, as in maximum of stars.
     """
-    star_tracker_star_threshold: int
+
+    star_tracker_star_threshold: int = _base.field("StarTracker star threshold", 1768, 8, "uint", default=0)
     """StarTracker star threshold: bits 1768 to 1775, raw 0 to 255.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
     """
-    maximum_star_matched: int
+
+    maximum_star_matched: int = _base.field("Maximum Star Matched", 1776, 8, "uint", default=0)
     """Maximum Star Matched: bits 1776 to 1783, raw 0 to 255.
 
     Most stars that are matched.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
     """
-    detection_timeout_duration: int
+
+    detection_timeout_duration: int = _base.field("Detection Timeout duration", 1784, 16, "uint", default=0)
     """Detection Timeout duration: bits 1784 to 1799, raw 0 to 65535.
 
-    Note ACP-141 (open): Detection timeout has no unit.
+    Note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in
+    milliseconds; registers and pixels stand in between.
     """
-    maximum_star_pixel: int
+
+    maximum_star_pixel: int = _base.field("Maximum Star Pixel", 1800, 8, "uint", default=0)
     """Maximum Star Pixel: bits 1800 to 1807, raw 0 to 255.
 
     Most pixels of a star.
     """
-    minimum_star_pixel: int
+
+    minimum_star_pixel: int = _base.field("Minimum Star Pixel", 1808, 8, "uint", default=0)
     """Minimum Star Pixel: bits 1808 to 1815, raw 0 to 255.
 
     Fewest pixels of a star.
     """
-    star_tracker_error_margin: int
+
+    star_tracker_error_margin: int = _base.field("Star Tracker Error Margin", 1816, 8, "uint", default=0, unit="%")
     """Star Tracker Error Margin: bits 1816 to 1823, raw 0 to 255; physical `raw*0.01`,
     0 to 2.55 %.
 
     Of the star identification.
 
-    Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
+    Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit
+    % and a factor of 0.01 give steps of 0.01 % in 8 bits. If the factor already makes a
+    fraction, as in the margins that follow without a unit, the range is 255 %.
     """
-    star_tracker_delay_time: int
+    star_tracker_error_margin_percent: float = _base.scaled(1, 0, 100, default=0.0)
+    """Star Tracker Error Margin in %: 0 to 2.55."""
+    star_tracker_error_margin_milli_percent: int = _base.whole(10, 0)
+    """Star Tracker Error Margin in thousandths of %, exact: 0 to 2550."""
+
+    star_tracker_delay_time: int = _base.field("Star Tracker Delay Time", 1824, 16, "uint", default=0, unit="ms")
     """Star Tracker Delay Time: bits 1824 to 1839, raw 0 to 65535, in ms.
 
-    Erratum ACP-140 (certain): milliseconds is ms.
+    Erratum ACP-140 (certain): milliseconds is ms. The unit is spelt out in one field.
     """
-    star_tracker_centroid_x: float
+
+    star_tracker_centroid_x: float = _base.field(
+        "Star Tracker Centroid X", 1840, 32, "float", default=0.0, unit="pixels"
+    )
     """Star Tracker Centroid X: bits 1840 to 1871, 32-bit float, in pixels.
 
     Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words
-    only.
+    only. The fields are described as pixel centroids, without the unit of measure that
+    the boresights of the cameras have.
     """
-    star_tracker_centroid_y: float
+
+    star_tracker_centroid_y: float = _base.field(
+        "Star Tracker Centroid Y", 1872, 32, "float", default=0.0, unit="pixels"
+    )
     """Star Tracker Centroid Y: bits 1872 to 1903, 32-bit float, in pixels.
 
-    Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words
-    only.
+    Erratum ACP-202 (likely): see Star Tracker Centroid X.
     """
-    star_tracker_focal_length: float
+
+    star_tracker_focal_length: float = _base.field(
+        "Star Tracker Focal Length", 1904, 32, "float", default=0.0, unit="mm"
+    )
     """Star Tracker Focal Length: bits 1904 to 1935, 32-bit float, in mm."""
-    k1_radial_distortion_coefficient: float
+
+    k1_radial_distortion_coefficient: float = _base.field(
+        "K1 radial distortion coefficient", 1936, 32, "float", default=0.0, unit="gain"
+    )
     """K1 radial distortion coefficient: bits 1936 to 1967, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain.
+    It is kept as a plain factor; which lens model and which normalisation they belong
+    to is not said.
     """
-    k2_radial_distortion_coefficient: float
+
+    k2_radial_distortion_coefficient: float = _base.field(
+        "K2 radial distortion coefficient", 1968, 32, "float", default=0.0, unit="gain"
+    )
     """K2 radial distortion coefficient: bits 1968 to 1999, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
-    p1_tangential_distortion_coefficient: float
+
+    p1_tangential_distortion_coefficient: float = _base.field(
+        "P1 tangential distortion coefficient", 2000, 32, "float", default=0.0, unit="gain"
+    )
     """P1 tangential distortion coefficient: bits 2000 to 2031, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
-    p2_tangential_distortion_coefficient: float
+
+    p2_tangential_distortion_coefficient: float = _base.field(
+        "P2 tangential distortion coefficient", 2032, 32, "float", default=0.0, unit="gain"
+    )
     """P2 tangential distortion coefficient: bits 2032 to 2063, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
-    star_tracking_window_width: int
+
+    star_tracking_window_width: int = _base.field("Star tracking window width", 2064, 8, "uint", default=0)
     """Star tracking window width: bits 2064 to 2071, raw 0 to 255.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
     """
-    star_tracking_margin: int
+
+    star_tracking_margin: int = _base.field("Star Tracking Margin", 2072, 8, "uint", default=0)
     """Star Tracking Margin: bits 2072 to 2079, raw 0 to 255; physical `raw/100.0`, 0 to
     2.55.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): Margins and search width have no unit. Factors are given, units
+    are not; pixels, fractions and degrees are all possible.
     """
-    star_validation_margin: int
+    star_tracking_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """Star Tracking Margin, as a physical value: 0 to 2.55."""
+    star_tracking_margin_milli: int = _base.whole(10, 0)
+    """Star Tracking Margin in thousandths, exact: 0 to 2550."""
+
+    star_validation_margin: int = _base.field("Star Validation Margin", 2080, 8, "uint", default=0)
     """Star Validation Margin: bits 2080 to 2087, raw 0 to 255; physical `raw/100.0`, 0
     to 2.55.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): see Star Tracking Margin.
     """
-    star_tracking_module_enable: bool
+    star_validation_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """Star Validation Margin, as a physical value: 0 to 2.55."""
+    star_validation_margin_milli: int = _base.whole(10, 0)
+    """Star Validation Margin in thousandths, exact: 0 to 2550."""
+
+    star_tracking_module_enable: bool = _base.field("Star Tracking Module Enable", 2088, 1, "bool", default=False)
     """Star Tracking Module Enable: bit 2088."""
-    star_tracking_location_prediction_enable: bool
+
+    star_tracking_location_prediction_enable: bool = _base.field(
+        "Star Tracking Location Prediction Enable", 2089, 1, "bool", default=False
+    )
     """Star Tracking Location Prediction Enable: bit 2089."""
-    star_tracking_search_width: int
+
+    star_tracking_search_width: int = _base.field("Star Tracking Search Width", 2096, 8, "uint", default=0)
     """Star Tracking Search Width: bits 2096 to 2103, raw 0 to 255; physical `raw/5.0`,
     0 to 51.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): see Star Tracking Margin.
     """
-    detumbling_spin_gain: float
+    star_tracking_search_width_physical: float = _base.scaled(1, 0, 5, default=0.0)
+    """Star Tracking Search Width, as a physical value: 0 to 51."""
+    star_tracking_search_width_milli: int = _base.whole(200, 0)
+    """Star Tracking Search Width in thousandths, exact: 0 to 51000."""
+
+    detumbling_spin_gain: float = _base.field("Detumbling Spin Gain", 2104, 32, "float", default=0.0)
     """Detumbling Spin Gain: bits 2104 to 2135, 32-bit float.
 
     Ks.
     """
-    detumbling_damping_gain: float
+
+    detumbling_damping_gain: float = _base.field("Detumbling Damping Gain", 2136, 32, "float", default=0.0)
     """Detumbling Damping Gain: bits 2136 to 2167, 32-bit float.
 
     Kd.
     """
-    reference_spin_rate: int
+
+    reference_spin_rate: int = _base.field("Reference spin rate", 2168, 16, "int", default=0, unit="deg/s", below=0)
     """Reference spin rate: bits 2168 to 2183, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767 deg/s.
 
@@ -2441,2849 +1152,449 @@ class AdcsConfiguration(_base.Message):
 
     Must be below 0 deg/s.
 
-    Note ACP-162 (certain): Limits of a sign in words only.
+    Note ACP-162 (certain): Limits of a sign in words only. Two references must always
+    be smaller than 0; the types allow the opposite, and what the program does with it
+    is not said.
     """
-    fast_bdot_detumbling_gain: float
+    reference_spin_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s."""
+    reference_spin_rate_mdeg_per_s: int = _base.whole(1, 0)
+    """Reference spin rate in thousandths of deg/s, exact: -32768 to 32767."""
+
+    fast_bdot_detumbling_gain: float = _base.field("Fast BDot Detumbling Gain", 2184, 32, "float", default=0.0)
     """Fast BDot Detumbling Gain: bits 2184 to 2215, 32-bit float.
 
     Kdf.
     """
-    y_momentum_control_gain: float
+
+    y_momentum_control_gain: float = _base.field("Y-Momentum Control Gain", 2216, 32, "float", default=0.0)
     """Y-Momentum Control Gain: bits 2216 to 2247, 32-bit float.
 
     Kh.
     """
-    y_momentum_nutation_damping_gain: float
+
+    y_momentum_nutation_damping_gain: float = _base.field(
+        "Y-momentum Nutation Damping Gain", 2248, 32, "float", default=0.0
+    )
     """Y-momentum Nutation Damping Gain: bits 2248 to 2279, 32-bit float.
 
     Kn.
     """
-    y_momentum_proportional_gain: float
+
+    y_momentum_proportional_gain: float = _base.field("Y-momentum Proportional Gain", 2280, 32, "float", default=0.0)
     """Y-momentum Proportional Gain: bits 2280 to 2311, 32-bit float.
 
     Kp1.
     """
-    y_momentum_derivative_gain: float
+
+    y_momentum_derivative_gain: float = _base.field("Y-momentum Derivative Gain", 2312, 32, "float", default=0.0)
     """Y-momentum Derivative Gain: bits 2312 to 2343, 32-bit float.
 
     Kd1.
     """
-    reference_wheel_momentum: float
+
+    reference_wheel_momentum: float = _base.field(
+        "Reference Wheel Momentum", 2344, 32, "float", default=0.0, unit="Nms", below=0
+    )
     """Reference Wheel Momentum: bits 2344 to 2375, 32-bit float, in Nms.
 
     H-ref.
 
     Must be below 0 Nms.
 
-    Note ACP-162 (certain): Limits of a sign in words only.
+    Note ACP-162 (certain): see Reference spin rate.
     """
-    rwheel_proportional_gain: float
+
+    rwheel_proportional_gain: float = _base.field("RWheel Proportional Gain", 2376, 32, "float", default=0.0)
     """RWheel Proportional Gain: bits 2376 to 2407, 32-bit float.
 
     Kp2.
     """
-    rwheel_derivative_gain: float
+
+    rwheel_derivative_gain: float = _base.field("RWheel Derivative Gain", 2408, 32, "float", default=0.0)
     """RWheel Derivative Gain: bits 2408 to 2439, 32-bit float.
 
     Kd2.
     """
-    y_wheel_bias_momentum: float
+
+    y_wheel_bias_momentum: float = _base.field("Y-Wheel Bias Momentum", 2440, 32, "float", default=0.0, unit="Nms")
     """Y-Wheel Bias Momentum: bits 2440 to 2471, 32-bit float, in Nms.
 
     H-bias.
     """
-    sun_pointing_facet: AxisSelect
+
+    sun_pointing_facet: AxisSelect = _base.field("Sun-pointing Facet", 2472, 7, "enum", default=AxisSelect.POSITIVE_X)
     """Sun-pointing Facet: bits 2472 to 2478.
 
     Body axis that is turned towards the sun.
     """
-    control_transition_on_wheel_error: bool
+
+    control_transition_on_wheel_error: bool = _base.field(
+        "Automatic Control Transition due to Wheel Errors", 2479, 1, "bool", default=False
+    )
     """Automatic Control Transition due to Wheel Errors: bit 2479.
 
     From the wheel modes to Y-Thomson on a wheel error.
     """
-    tracking_proportional_gain: float
+
+    tracking_proportional_gain: float = _base.field("Tracking Proportional Gain", 2480, 32, "float", default=0.0)
     """Tracking Proportional Gain: bits 2480 to 2511, 32-bit float.
 
     Kp3.
     """
-    tracking_derivative_gain: float
+
+    tracking_derivative_gain: float = _base.field("Tracking Derivative Gain", 2512, 32, "float", default=0.0)
     """Tracking Derivative Gain: bits 2512 to 2543, 32-bit float.
 
     Kd3.
     """
-    tracking_integral_gain: float
+
+    tracking_integral_gain: float = _base.field("Tracking Integral Gain", 2544, 32, "float", default=0.0)
     """Tracking Integral Gain: bits 2544 to 2575, 32-bit float.
 
     Ki3.
     """
-    target_tracking_facet: AxisSelect
+
+    target_tracking_facet: AxisSelect = _base.field(
+        "Target-tracking Facet", 2576, 8, "enum", default=AxisSelect.POSITIVE_X
+    )
     """Target-tracking Facet: bits 2576 to 2583.
 
     Body axis that is pointed at the target.
     """
-    moment_of_inertia_ixx: float
+
+    moment_of_inertia_ixx: float = _base.field("Moment Of Inertia - Ixx", 2584, 32, "float", default=0.0, unit="kg.m^2")
     """Moment Of Inertia - Ixx: bits 2584 to 2615, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2. The same fields
+    have the unit in two spellings. Held as kg.m^2.
     """
-    moment_of_inertia_iyy: float
+
+    moment_of_inertia_iyy: float = _base.field("Moment Of Inertia - Iyy", 2616, 32, "float", default=0.0, unit="kg.m^2")
     """Moment Of Inertia - Iyy: bits 2616 to 2647, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
     """
-    moment_of_inertia_izz: float
+
+    moment_of_inertia_izz: float = _base.field("Moment Of Inertia - Izz", 2648, 32, "float", default=0.0, unit="kg.m^2")
     """Moment Of Inertia - Izz: bits 2648 to 2679, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
     """
-    product_of_inertia_ixy: float
+
+    product_of_inertia_ixy: float = _base.field(
+        "Product Of Inertia - Ixy", 2680, 32, "float", default=0.0, unit="kg.m^2"
+    )
     """Product Of Inertia - Ixy: bits 2680 to 2711, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): Products of inertia: the sign is not given. The products are
+    elements of a matrix by the message and products of inertia by their names, which
+    differ in sign by the usual definitions. Neither is defined.
     """
-    product_of_inertia_ixz: float
+
+    product_of_inertia_ixz: float = _base.field(
+        "Product Of Inertia - Ixz", 2712, 32, "float", default=0.0, unit="kg.m^2"
+    )
     """Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): see Product Of Inertia - Ixy.
     """
-    product_of_inertia_iyz: float
+
+    product_of_inertia_iyz: float = _base.field(
+        "Product Of Inertia - Iyz", 2744, 32, "float", default=0.0, unit="kg.m^2"
+    )
     """Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): see Product Of Inertia - Ixy.
     """
-    magnetometer_rate_filter_system_noise: float
+
+    magnetometer_rate_filter_system_noise: float = _base.field(
+        "Magnetometer Rate Filter System Noise", 2776, 32, "float", default=0.0
+    )
     """Magnetometer Rate Filter System Noise: bits 2776 to 2807, 32-bit float."""
-    ekf_system_noise: float
+
+    ekf_system_noise: float = _base.field("EKF System Noise", 2808, 32, "float", default=0.0)
     """EKF System Noise: bits 2808 to 2839, 32-bit float."""
-    css_measurement_noise: float
+
+    css_measurement_noise: float = _base.field("CSS Measurement Noise", 2840, 32, "float", default=0.0)
     """CSS Measurement Noise: bits 2840 to 2871, 32-bit float."""
-    sun_sensor_measurement_noise: float
+
+    sun_sensor_measurement_noise: float = _base.field("Sun Sensor Measurement Noise", 2872, 32, "float", default=0.0)
     """Sun Sensor Measurement Noise: bits 2872 to 2903, 32-bit float."""
-    nadir_sensor_measurement_noise: float
+
+    nadir_sensor_measurement_noise: float = _base.field(
+        "Nadir Sensor Measurement Noise", 2904, 32, "float", default=0.0
+    )
     """Nadir Sensor Measurement Noise: bits 2904 to 2935, 32-bit float."""
-    magnetometer_measurement_noise: float
+
+    magnetometer_measurement_noise: float = _base.field(
+        "Magnetometer Measurement Noise", 2936, 32, "float", default=0.0
+    )
     """Magnetometer Measurement Noise: bits 2936 to 2967, 32-bit float."""
-    star_tracker_measurement_noise: float
+
+    star_tracker_measurement_noise: float = _base.field(
+        "Star Tracker Measurement Noise", 2968, 32, "float", default=0.0
+    )
     """Star Tracker Measurement Noise: bits 2968 to 2999, 32-bit float."""
-    use_sun_sensor: bool
+
+    use_sun_sensor: bool = _base.field("Use Sun Sensor", 3000, 1, "bool", default=False)
     """Use Sun Sensor: bit 3000.
 
     In the EKF.
     """
-    use_nadir_sensor: bool
+
+    use_nadir_sensor: bool = _base.field("Use Nadir Sensor", 3001, 1, "bool", default=False)
     """Use Nadir Sensor: bit 3001.
 
     In the EKF.
     """
-    use_css: bool
+
+    use_css: bool = _base.field("Use CSS", 3002, 1, "bool", default=False)
     """Use CSS: bit 3002.
 
     In the EKF.
     """
-    use_star_tracker: bool
+
+    use_star_tracker: bool = _base.field("Use Star Tracker", 3003, 1, "bool", default=False)
     """Use Star Tracker: bit 3003.
 
     In the EKF.
     """
-    nadir_sensor_terminator_test: bool
+
+    nadir_sensor_terminator_test: bool = _base.field("Nadir sensor terminator test", 3004, 1, "bool", default=False)
     """Nadir sensor terminator test: bit 3004.
 
     Ignores the nadir sensor while the terminator is in view.
     """
-    automatic_magnetometer_recovery: bool
+
+    automatic_magnetometer_recovery: bool = _base.field(
+        "Automatic Magnetometer Recovery", 3005, 1, "bool", default=False
+    )
     """Automatic Magnetometer Recovery: bit 3005.
 
     Switches to the redundant magnetometer on a failure.
     """
-    magnetometer_mode: MagModeVal
+
+    magnetometer_mode: MagModeVal = _base.field(
+        "Magnetometer Mode", 3006, 2, "enum", default=MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL
+    )
     """Magnetometer Mode: bits 3006 to 3007.
 
     The magnetometer that estimation and control use.
 
-    Note ACP-049 (open): Magnetometer mode can be set in two places.
+    Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a
+    configuration message set the same mode. Which wins after a restart, and whether the
+    telecommand changes what the configuration returns, is not said.
     """
-    raw_magnetometer_selection: MagModeVal
+
+    raw_magnetometer_selection: MagModeVal = _base.field(
+        "Magnetometer Selection for RAW MTM TLM", 3008, 2, "enum", default=MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL
+    )
     """Magnetometer Selection for RAW MTM TLM: bits 3008 to 3009.
 
     Magnetometer and sampling path for the second raw magnetometer frame.
     """
-    estimation_transition_on_rate_sensor_error: bool
+
+    estimation_transition_on_rate_sensor_error: bool = _base.field(
+        "Automatic Estimation Transition due to Rate Sensor Errors", 3010, 1, "bool", default=False
+    )
     """Automatic Estimation Transition due to Rate Sensor Errors: bit 3010.
 
     From MEMS rate estimation to RKF on a rate sensor error.
     """
-    cam1_period: int
+
+    cam1_period: int = _base.field("Cam1 period", 3016, 4, "uint", default=0, unit="s")
     """Cam1 period: bits 3016 to 3019, raw 0 to 15, in s.
 
     Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
     that camera.
 
-    Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    Erratum ACP-169 (certain): Two sampling periods in one field with a unit. Two
+    periods of four bits share a byte that has the unit s. The value of the byte is no
+    time; each half is, up to 15 s, and is held as a field of its own.
     """
-    cam2_period: int
+
+    cam2_period: int = _base.field("Cam2 period", 3020, 4, "uint", default=0, unit="s")
     """Cam2 period: bits 3020 to 3023, raw 0 to 15, in s.
 
     Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
     that camera.
 
-    Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    Erratum ACP-169 (certain): see Cam1 period.
     """
-    incl_coefficient: int
+
+    incl_coefficient: int = _base.field("Incl. coefficient", 3024, 16, "uint", default=0)
     """Incl. coefficient: bits 3024 to 3039, raw 0 to 65535; physical `raw*0.001`, 0 to
     65.535.
 
     Of the filter of the inclination.
     """
-    raan_coefficient: int
+    incl_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Incl. coefficient, as a physical value: 0 to 65.535."""
+    incl_coefficient_milli: int = _base.whole(1, 0)
+    """Incl. coefficient in thousandths, exact: 0 to 65535."""
+
+    raan_coefficient: int = _base.field("Raan coefficient", 3040, 16, "uint", default=0)
     """Raan coefficient: bits 3040 to 3055, raw 0 to 65535; physical `raw*0.001`, 0 to
     65.535.
 
     Of the filter of the RAAN.
     """
-    ecc_coefficient: int
+    raan_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Raan coefficient, as a physical value: 0 to 65.535."""
+    raan_coefficient_milli: int = _base.whole(1, 0)
+    """Raan coefficient in thousandths, exact: 0 to 65535."""
+
+    ecc_coefficient: int = _base.field("Ecc coefficient", 3056, 16, "uint", default=0)
     """Ecc coefficient: bits 3056 to 3071, raw 0 to 65535; physical `raw*0.001`, 0 to
     65.535.
 
     Of the filter of the eccentricity.
     """
-    aop_coefficient: int
+    ecc_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Ecc coefficient, as a physical value: 0 to 65.535."""
+    ecc_coefficient_milli: int = _base.whole(1, 0)
+    """Ecc coefficient in thousandths, exact: 0 to 65535."""
+
+    aop_coefficient: int = _base.field("Aop coefficient", 3072, 16, "uint", default=0)
     """Aop coefficient: bits 3072 to 3087, raw 0 to 65535; physical `raw*0.001`, 0 to
     65.535.
 
     Of the filter of the argument of perigee.
     """
-    time_coefficient: int
+    aop_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Aop coefficient, as a physical value: 0 to 65.535."""
+    aop_coefficient_milli: int = _base.whole(1, 0)
+    """Aop coefficient in thousandths, exact: 0 to 65535."""
+
+    time_coefficient: int = _base.field("Time coefficient", 3088, 16, "uint", default=0)
     """Time coefficient: bits 3088 to 3103, raw 0 to 65535; physical `raw*0.001`, 0 to
     65.535.
 
     Of the filter of the time.
     """
-    pos_coefficient: int
+    time_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Time coefficient, as a physical value: 0 to 65.535."""
+    time_coefficient_milli: int = _base.whole(1, 0)
+    """Time coefficient in thousandths, exact: 0 to 65535."""
+
+    pos_coefficient: int = _base.field("Pos coefficient", 3104, 16, "uint", default=0)
     """Pos coefficient: bits 3104 to 3119, raw 0 to 65535; physical `raw*0.001`, 0 to
     65.535.
 
     Of the filter of the position.
     """
-    maximum_position_error: int
+    pos_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Pos coefficient, as a physical value: 0 to 65.535."""
+    pos_coefficient_milli: int = _base.whole(1, 0)
+    """Pos coefficient in thousandths, exact: 0 to 65535."""
+
+    maximum_position_error: int = _base.field("Maximum position error", 3120, 8, "uint", default=0)
     """Maximum position error: bits 3120 to 3127, raw 0 to 255; physical `raw*0.1`, 0 to
     25.5.
 
     ASGP4 stops working beyond it.
     """
-    asgp4_filter: AsgpFilter
+    maximum_position_error_physical: float = _base.scaled(1, 0, 10, default=0.0)
+    """Maximum position error, as a physical value: 0 to 25.5."""
+    maximum_position_error_milli: int = _base.whole(100, 0)
+    """Maximum position error in thousandths, exact: 0 to 25500."""
+
+    asgp4_filter: AsgpFilter = _base.field("ASGP4 filter", 3128, 8, "enum", default=AsgpFilter.LPF)
     """ASGP4 filter: bits 3128 to 3135."""
-    xp_coefficient: int
+
+    xp_coefficient: int = _base.field("xp coefficient", 3136, 32, "int", default=0)
     """xp coefficient: bits 3136 to 3167, raw -2147483648 to 2147483647; physical
     `raw*0.0000001`, -214.7483648 to 214.7483647.
 
     Polar coefficient.
     """
-    yp_coefficient: int
+    xp_coefficient_physical: float = _base.scaled(1, 0, 10000000, default=0.0)
+    """xp coefficient, as a physical value: -214.7483648 to 214.7483647."""
+
+    yp_coefficient: int = _base.field("yp coefficient", 3168, 32, "int", default=0)
     """yp coefficient: bits 3168 to 3199, raw -2147483648 to 2147483647; physical
     `raw*0.0000001`, -214.7483648 to 214.7483647.
 
     Polar coefficient.
     """
-    gps_roll_over: int
+    yp_coefficient_physical: float = _base.scaled(1, 0, 10000000, default=0.0)
+    """yp coefficient, as a physical value: -214.7483648 to 214.7483647."""
+
+    gps_roll_over: int = _base.field("GPS roll over", 3200, 8, "uint", default=0)
     """GPS roll over: bits 3200 to 3207, raw 0 to 255."""
-    position_sd: int
+
+    position_sd: int = _base.field("Position sd", 3208, 8, "uint", default=0)
     """Position sd: bits 3208 to 3215, raw 0 to 255; physical `raw*0.1`, 0 to 25.5.
 
     Largest standard deviation with which ASGP4 works.
     """
-    velocity_sd: int
+    position_sd_physical: float = _base.scaled(1, 0, 10, default=0.0)
+    """Position sd, as a physical value: 0 to 25.5."""
+    position_sd_milli: int = _base.whole(100, 0)
+    """Position sd in thousandths, exact: 0 to 25500."""
+
+    velocity_sd: int = _base.field("Velocity sd", 3216, 8, "uint", default=0)
     """Velocity sd: bits 3216 to 3223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
 
     Largest standard deviation with which ASGP4 works.
     """
-    min_satellites: int
+    velocity_sd_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """Velocity sd, as a physical value: 0 to 2.55."""
+    velocity_sd_milli: int = _base.whole(10, 0)
+    """Velocity sd in thousandths, exact: 0 to 2550."""
+
+    min_satellites: int = _base.field("Min. satellites", 3224, 8, "uint", default=0)
     """Min. satellites: bits 3224 to 3231, raw 0 to 255.
 
     Fewest satellites with which ASGP4 works.
     """
-    time_gain: int
+
+    time_gain: int = _base.field("Time gain", 3232, 8, "uint", default=0)
     """Time gain: bits 3232 to 3239, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
 
     Of the compensation of the time offset.
     """
-    max_lag: int
+    time_gain_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """Time gain, as a physical value: 0 to 2.55."""
+    time_gain_milli: int = _base.whole(10, 0)
+    """Time gain in thousandths, exact: 0 to 2550."""
+
+    max_lag: int = _base.field("Max. lag", 3240, 8, "uint", default=0)
     """Max. lag: bits 3240 to 3247, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
 
     Largest lag of the time stamps that are still used.
     """
-    min_samples: int
+    max_lag_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """Max. lag, as a physical value: 0 to 2.55."""
+    max_lag_milli: int = _base.whole(10, 0)
+    """Max. lag in thousandths, exact: 0 to 2550."""
+
+    min_samples: int = _base.field("Min. samples", 3248, 16, "uint", default=0)
     """Min. samples: bits 3248 to 3263, raw 0 to 65535.
 
     Fewest samples for an ASGP4 run.
     """
-    user_coded_controller_settings: bytes
+
+    user_coded_controller_settings: bytes = _base.field(
+        "User Coded Controller Settings", 3264, 384, "bytes", default=bytes(48)
+    )
     """User Coded Controller Settings: bytes 408 to 455.
 
-    Note ACP-178 (open): User coded settings: content of the arrays.
+    Note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes
+    without types; what they hold depends on code that the user supplies.
     """
-    user_coded_estimator_settings: bytes
+
+    user_coded_estimator_settings: bytes = _base.field(
+        "User Coded Estimator Settings", 3648, 384, "bytes", default=bytes(48)
+    )
     """User Coded Estimator Settings: bytes 456 to 503.
 
-    Note ACP-178 (open): User coded settings: content of the arrays.
+    Note ACP-178 (open): see User Coded Controller Settings.
     """
-
-    def __init__(
-        self,
-        *,
-        magnetorquer_1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        magnetorquer_2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        magnetorquer_3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        rw1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        rw2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        rw3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        rw4_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        gyro1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        gyro2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        gyro3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        x_rate_sensor_offset: int = 0,
-        y_rate_sensor_offset: int = 0,
-        z_rate_sensor_offset: int = 0,
-        rate_sensor_mult: int = 0,
-        css1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css4_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css5_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css6_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css7_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css8_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css9_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css10_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css1_relative_scale: int = 0,
-        css2_relative_scale: int = 0,
-        css3_relative_scale: int = 0,
-        css4_relative_scale: int = 0,
-        css5_relative_scale: int = 0,
-        css6_relative_scale: int = 0,
-        css7_relative_scale: int = 0,
-        css8_relative_scale: int = 0,
-        css9_relative_scale: int = 0,
-        css10_relative_scale: int = 0,
-        css_threshold: int = 0,
-        cam1_mounting_alpha: int = 0,
-        cam1_mounting_beta: int = 0,
-        cam1_mounting_gamma: int = 0,
-        cam1_detection_threshold: int = 0,
-        cam1_sensor_auto_adjust_mode: bool = False,
-        cam1_sensor_exposure_time: int = 0,
-        cam1_boresight_x: int = 0,
-        cam1_boresight_y: int = 0,
-        cam2_mounting_alpha: int = 0,
-        cam2_mounting_beta: int = 0,
-        cam2_mounting_gamma: int = 0,
-        cam2_detection_threshold: int = 0,
-        cam2_sensor_auto_adjust_mode: bool = False,
-        cam2_sensor_exposure_time: int = 0,
-        cam2_boresight_x: int = 0,
-        cam2_boresight_y: int = 0,
-        nadir_max_deviation_percentage: int = 0,
-        nadir_max_bad_edges: int = 0,
-        nadir_max_radius: int = 0,
-        nadir_min_radius: int = 0,
-        cam_1_minimum_x_of_area_1: int = 0,
-        cam_1_maximum_x_of_area_1: int = 0,
-        cam_1_minimum_y_of_area_1: int = 0,
-        cam_1_maximum_y_of_area_1: int = 0,
-        cam_1_minimum_x_of_area_2: int = 0,
-        cam_1_maximum_x_of_area_2: int = 0,
-        cam_1_minimum_y_of_area_2: int = 0,
-        cam_1_maximum_y_of_area_2: int = 0,
-        cam_1_minimum_x_of_area_3: int = 0,
-        cam_1_maximum_x_of_area_3: int = 0,
-        cam_1_minimum_y_of_area_3: int = 0,
-        cam_1_maximum_y_of_area_3: int = 0,
-        cam_1_minimum_x_of_area_4: int = 0,
-        cam_1_maximum_x_of_area_4: int = 0,
-        cam_1_minimum_y_of_area_4: int = 0,
-        cam_1_maximum_y_of_area_4: int = 0,
-        cam_1_minimum_x_of_area_5: int = 0,
-        cam_1_maximum_x_of_area_5: int = 0,
-        cam_1_minimum_y_of_area_5: int = 0,
-        cam_1_maximum_y_of_area_5: int = 0,
-        cam_2_minimum_x_of_area_1: int = 0,
-        cam_2_maximum_x_of_area_1: int = 0,
-        cam_2_minimum_y_of_area_1: int = 0,
-        cam_2_maximum_y_of_area_1: int = 0,
-        cam_2_minimum_x_of_area_2: int = 0,
-        cam_2_maximum_x_of_area_2: int = 0,
-        cam_2_minimum_y_of_area_2: int = 0,
-        cam_2_maximum_y_of_area_2: int = 0,
-        cam_2_minimum_x_of_area_3: int = 0,
-        cam_2_maximum_x_of_area_3: int = 0,
-        cam_2_minimum_y_of_area_3: int = 0,
-        cam_2_maximum_y_of_area_3: int = 0,
-        cam_2_minimum_x_of_area_4: int = 0,
-        cam_2_maximum_x_of_area_4: int = 0,
-        cam_2_minimum_y_of_area_4: int = 0,
-        cam_2_maximum_y_of_area_4: int = 0,
-        cam_2_minimum_x_of_area_5: int = 0,
-        cam_2_maximum_x_of_area_5: int = 0,
-        cam_2_minimum_y_of_area_5: int = 0,
-        cam_2_maximum_y_of_area_5: int = 0,
-        magnetometer_mounting_alpha: int = 0,
-        magnetometer_mounting_beta: int = 0,
-        magnetometer_mounting_gamma: int = 0,
-        magnetometer_channel_1_offset: int = 0,
-        magnetometer_channel_2_offset: int = 0,
-        magnetometer_channel_3_offset: int = 0,
-        magnetometer_sensitivity_s11: int = 0,
-        magnetometer_sensitivity_s22: int = 0,
-        magnetometer_sensitivity_s33: int = 0,
-        magnetometer_sensitivity_s12: int = 0,
-        magnetometer_sensitivity_s13: int = 0,
-        magnetometer_sensitivity_s21: int = 0,
-        magnetometer_sensitivity_s23: int = 0,
-        magnetometer_sensitivity_s31: int = 0,
-        magnetometer_sensitivity_s32: int = 0,
-        redundant_mag_mounting_alpha: int = 0,
-        redundant_mag_mounting_beta: int = 0,
-        redundant_mag_mounting_gamma: int = 0,
-        redundant_mag_channel_1_offset: int = 0,
-        redundant_mag_channel_2_offset: int = 0,
-        redundant_mag_channel_3_offset: int = 0,
-        redundant_mag_sensitivity_s11: int = 0,
-        redundant_mag_sensitivity_s22: int = 0,
-        redundant_mag_sensitivity_s33: int = 0,
-        redundant_mag_sensitivity_s12: int = 0,
-        redundant_mag_sensitivity_s13: int = 0,
-        redundant_mag_sensitivity_s21: int = 0,
-        redundant_mag_sensitivity_s23: int = 0,
-        redundant_mag_sensitivity_s31: int = 0,
-        redundant_mag_sensitivity_s32: int = 0,
-        star_tracker_mounting_alpha: int = 0,
-        star_tracker_mounting_beta: int = 0,
-        star_tracker_mounting_gamma: int = 0,
-        star_tracker_exposure_time: int = 0,
-        star_tracker_analog_gain: int = 0,
-        star_tracker_detection_threshold: int = 0,
-        star_tracker_star_threshold: int = 0,
-        maximum_star_matched: int = 0,
-        detection_timeout_duration: int = 0,
-        maximum_star_pixel: int = 0,
-        minimum_star_pixel: int = 0,
-        star_tracker_error_margin: int = 0,
-        star_tracker_delay_time: int = 0,
-        star_tracker_centroid_x: float = 0.0,
-        star_tracker_centroid_y: float = 0.0,
-        star_tracker_focal_length: float = 0.0,
-        k1_radial_distortion_coefficient: float = 0.0,
-        k2_radial_distortion_coefficient: float = 0.0,
-        p1_tangential_distortion_coefficient: float = 0.0,
-        p2_tangential_distortion_coefficient: float = 0.0,
-        star_tracking_window_width: int = 0,
-        star_tracking_margin: int = 0,
-        star_validation_margin: int = 0,
-        star_tracking_module_enable: bool = False,
-        star_tracking_location_prediction_enable: bool = False,
-        star_tracking_search_width: int = 0,
-        detumbling_spin_gain: float = 0.0,
-        detumbling_damping_gain: float = 0.0,
-        reference_spin_rate: int = 0,
-        fast_bdot_detumbling_gain: float = 0.0,
-        y_momentum_control_gain: float = 0.0,
-        y_momentum_nutation_damping_gain: float = 0.0,
-        y_momentum_proportional_gain: float = 0.0,
-        y_momentum_derivative_gain: float = 0.0,
-        reference_wheel_momentum: float = 0.0,
-        rwheel_proportional_gain: float = 0.0,
-        rwheel_derivative_gain: float = 0.0,
-        y_wheel_bias_momentum: float = 0.0,
-        sun_pointing_facet: AxisSelect = AxisSelect.POSITIVE_X,
-        control_transition_on_wheel_error: bool = False,
-        tracking_proportional_gain: float = 0.0,
-        tracking_derivative_gain: float = 0.0,
-        tracking_integral_gain: float = 0.0,
-        target_tracking_facet: AxisSelect = AxisSelect.POSITIVE_X,
-        moment_of_inertia_ixx: float = 0.0,
-        moment_of_inertia_iyy: float = 0.0,
-        moment_of_inertia_izz: float = 0.0,
-        product_of_inertia_ixy: float = 0.0,
-        product_of_inertia_ixz: float = 0.0,
-        product_of_inertia_iyz: float = 0.0,
-        magnetometer_rate_filter_system_noise: float = 0.0,
-        ekf_system_noise: float = 0.0,
-        css_measurement_noise: float = 0.0,
-        sun_sensor_measurement_noise: float = 0.0,
-        nadir_sensor_measurement_noise: float = 0.0,
-        magnetometer_measurement_noise: float = 0.0,
-        star_tracker_measurement_noise: float = 0.0,
-        use_sun_sensor: bool = False,
-        use_nadir_sensor: bool = False,
-        use_css: bool = False,
-        use_star_tracker: bool = False,
-        nadir_sensor_terminator_test: bool = False,
-        automatic_magnetometer_recovery: bool = False,
-        magnetometer_mode: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
-        raw_magnetometer_selection: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
-        estimation_transition_on_rate_sensor_error: bool = False,
-        cam1_period: int = 0,
-        cam2_period: int = 0,
-        incl_coefficient: int = 0,
-        raan_coefficient: int = 0,
-        ecc_coefficient: int = 0,
-        aop_coefficient: int = 0,
-        time_coefficient: int = 0,
-        pos_coefficient: int = 0,
-        maximum_position_error: int = 0,
-        asgp4_filter: AsgpFilter = AsgpFilter.LPF,
-        xp_coefficient: int = 0,
-        yp_coefficient: int = 0,
-        gps_roll_over: int = 0,
-        position_sd: int = 0,
-        velocity_sd: int = 0,
-        min_satellites: int = 0,
-        time_gain: int = 0,
-        max_lag: int = 0,
-        min_samples: int = 0,
-        user_coded_controller_settings: bytes = _DEFAULT_0,
-        user_coded_estimator_settings: bytes = _DEFAULT_0,
-    ) -> None:
-        self.magnetorquer_1_configuration = magnetorquer_1_configuration
-        self.magnetorquer_2_configuration = magnetorquer_2_configuration
-        self.magnetorquer_3_configuration = magnetorquer_3_configuration
-        self.rw1_configuration = rw1_configuration
-        self.rw2_configuration = rw2_configuration
-        self.rw3_configuration = rw3_configuration
-        self.rw4_configuration = rw4_configuration
-        self.gyro1_configuration = gyro1_configuration
-        self.gyro2_configuration = gyro2_configuration
-        self.gyro3_configuration = gyro3_configuration
-        self.x_rate_sensor_offset = x_rate_sensor_offset
-        self.y_rate_sensor_offset = y_rate_sensor_offset
-        self.z_rate_sensor_offset = z_rate_sensor_offset
-        self.rate_sensor_mult = rate_sensor_mult
-        self.css1_configuration = css1_configuration
-        self.css2_configuration = css2_configuration
-        self.css3_configuration = css3_configuration
-        self.css4_configuration = css4_configuration
-        self.css5_configuration = css5_configuration
-        self.css6_configuration = css6_configuration
-        self.css7_configuration = css7_configuration
-        self.css8_configuration = css8_configuration
-        self.css9_configuration = css9_configuration
-        self.css10_configuration = css10_configuration
-        self.css1_relative_scale = css1_relative_scale
-        self.css2_relative_scale = css2_relative_scale
-        self.css3_relative_scale = css3_relative_scale
-        self.css4_relative_scale = css4_relative_scale
-        self.css5_relative_scale = css5_relative_scale
-        self.css6_relative_scale = css6_relative_scale
-        self.css7_relative_scale = css7_relative_scale
-        self.css8_relative_scale = css8_relative_scale
-        self.css9_relative_scale = css9_relative_scale
-        self.css10_relative_scale = css10_relative_scale
-        self.css_threshold = css_threshold
-        self.cam1_mounting_alpha = cam1_mounting_alpha
-        self.cam1_mounting_beta = cam1_mounting_beta
-        self.cam1_mounting_gamma = cam1_mounting_gamma
-        self.cam1_detection_threshold = cam1_detection_threshold
-        self.cam1_sensor_auto_adjust_mode = cam1_sensor_auto_adjust_mode
-        self.cam1_sensor_exposure_time = cam1_sensor_exposure_time
-        self.cam1_boresight_x = cam1_boresight_x
-        self.cam1_boresight_y = cam1_boresight_y
-        self.cam2_mounting_alpha = cam2_mounting_alpha
-        self.cam2_mounting_beta = cam2_mounting_beta
-        self.cam2_mounting_gamma = cam2_mounting_gamma
-        self.cam2_detection_threshold = cam2_detection_threshold
-        self.cam2_sensor_auto_adjust_mode = cam2_sensor_auto_adjust_mode
-        self.cam2_sensor_exposure_time = cam2_sensor_exposure_time
-        self.cam2_boresight_x = cam2_boresight_x
-        self.cam2_boresight_y = cam2_boresight_y
-        self.nadir_max_deviation_percentage = nadir_max_deviation_percentage
-        self.nadir_max_bad_edges = nadir_max_bad_edges
-        self.nadir_max_radius = nadir_max_radius
-        self.nadir_min_radius = nadir_min_radius
-        self.cam_1_minimum_x_of_area_1 = cam_1_minimum_x_of_area_1
-        self.cam_1_maximum_x_of_area_1 = cam_1_maximum_x_of_area_1
-        self.cam_1_minimum_y_of_area_1 = cam_1_minimum_y_of_area_1
-        self.cam_1_maximum_y_of_area_1 = cam_1_maximum_y_of_area_1
-        self.cam_1_minimum_x_of_area_2 = cam_1_minimum_x_of_area_2
-        self.cam_1_maximum_x_of_area_2 = cam_1_maximum_x_of_area_2
-        self.cam_1_minimum_y_of_area_2 = cam_1_minimum_y_of_area_2
-        self.cam_1_maximum_y_of_area_2 = cam_1_maximum_y_of_area_2
-        self.cam_1_minimum_x_of_area_3 = cam_1_minimum_x_of_area_3
-        self.cam_1_maximum_x_of_area_3 = cam_1_maximum_x_of_area_3
-        self.cam_1_minimum_y_of_area_3 = cam_1_minimum_y_of_area_3
-        self.cam_1_maximum_y_of_area_3 = cam_1_maximum_y_of_area_3
-        self.cam_1_minimum_x_of_area_4 = cam_1_minimum_x_of_area_4
-        self.cam_1_maximum_x_of_area_4 = cam_1_maximum_x_of_area_4
-        self.cam_1_minimum_y_of_area_4 = cam_1_minimum_y_of_area_4
-        self.cam_1_maximum_y_of_area_4 = cam_1_maximum_y_of_area_4
-        self.cam_1_minimum_x_of_area_5 = cam_1_minimum_x_of_area_5
-        self.cam_1_maximum_x_of_area_5 = cam_1_maximum_x_of_area_5
-        self.cam_1_minimum_y_of_area_5 = cam_1_minimum_y_of_area_5
-        self.cam_1_maximum_y_of_area_5 = cam_1_maximum_y_of_area_5
-        self.cam_2_minimum_x_of_area_1 = cam_2_minimum_x_of_area_1
-        self.cam_2_maximum_x_of_area_1 = cam_2_maximum_x_of_area_1
-        self.cam_2_minimum_y_of_area_1 = cam_2_minimum_y_of_area_1
-        self.cam_2_maximum_y_of_area_1 = cam_2_maximum_y_of_area_1
-        self.cam_2_minimum_x_of_area_2 = cam_2_minimum_x_of_area_2
-        self.cam_2_maximum_x_of_area_2 = cam_2_maximum_x_of_area_2
-        self.cam_2_minimum_y_of_area_2 = cam_2_minimum_y_of_area_2
-        self.cam_2_maximum_y_of_area_2 = cam_2_maximum_y_of_area_2
-        self.cam_2_minimum_x_of_area_3 = cam_2_minimum_x_of_area_3
-        self.cam_2_maximum_x_of_area_3 = cam_2_maximum_x_of_area_3
-        self.cam_2_minimum_y_of_area_3 = cam_2_minimum_y_of_area_3
-        self.cam_2_maximum_y_of_area_3 = cam_2_maximum_y_of_area_3
-        self.cam_2_minimum_x_of_area_4 = cam_2_minimum_x_of_area_4
-        self.cam_2_maximum_x_of_area_4 = cam_2_maximum_x_of_area_4
-        self.cam_2_minimum_y_of_area_4 = cam_2_minimum_y_of_area_4
-        self.cam_2_maximum_y_of_area_4 = cam_2_maximum_y_of_area_4
-        self.cam_2_minimum_x_of_area_5 = cam_2_minimum_x_of_area_5
-        self.cam_2_maximum_x_of_area_5 = cam_2_maximum_x_of_area_5
-        self.cam_2_minimum_y_of_area_5 = cam_2_minimum_y_of_area_5
-        self.cam_2_maximum_y_of_area_5 = cam_2_maximum_y_of_area_5
-        self.magnetometer_mounting_alpha = magnetometer_mounting_alpha
-        self.magnetometer_mounting_beta = magnetometer_mounting_beta
-        self.magnetometer_mounting_gamma = magnetometer_mounting_gamma
-        self.magnetometer_channel_1_offset = magnetometer_channel_1_offset
-        self.magnetometer_channel_2_offset = magnetometer_channel_2_offset
-        self.magnetometer_channel_3_offset = magnetometer_channel_3_offset
-        self.magnetometer_sensitivity_s11 = magnetometer_sensitivity_s11
-        self.magnetometer_sensitivity_s22 = magnetometer_sensitivity_s22
-        self.magnetometer_sensitivity_s33 = magnetometer_sensitivity_s33
-        self.magnetometer_sensitivity_s12 = magnetometer_sensitivity_s12
-        self.magnetometer_sensitivity_s13 = magnetometer_sensitivity_s13
-        self.magnetometer_sensitivity_s21 = magnetometer_sensitivity_s21
-        self.magnetometer_sensitivity_s23 = magnetometer_sensitivity_s23
-        self.magnetometer_sensitivity_s31 = magnetometer_sensitivity_s31
-        self.magnetometer_sensitivity_s32 = magnetometer_sensitivity_s32
-        self.redundant_mag_mounting_alpha = redundant_mag_mounting_alpha
-        self.redundant_mag_mounting_beta = redundant_mag_mounting_beta
-        self.redundant_mag_mounting_gamma = redundant_mag_mounting_gamma
-        self.redundant_mag_channel_1_offset = redundant_mag_channel_1_offset
-        self.redundant_mag_channel_2_offset = redundant_mag_channel_2_offset
-        self.redundant_mag_channel_3_offset = redundant_mag_channel_3_offset
-        self.redundant_mag_sensitivity_s11 = redundant_mag_sensitivity_s11
-        self.redundant_mag_sensitivity_s22 = redundant_mag_sensitivity_s22
-        self.redundant_mag_sensitivity_s33 = redundant_mag_sensitivity_s33
-        self.redundant_mag_sensitivity_s12 = redundant_mag_sensitivity_s12
-        self.redundant_mag_sensitivity_s13 = redundant_mag_sensitivity_s13
-        self.redundant_mag_sensitivity_s21 = redundant_mag_sensitivity_s21
-        self.redundant_mag_sensitivity_s23 = redundant_mag_sensitivity_s23
-        self.redundant_mag_sensitivity_s31 = redundant_mag_sensitivity_s31
-        self.redundant_mag_sensitivity_s32 = redundant_mag_sensitivity_s32
-        self.star_tracker_mounting_alpha = star_tracker_mounting_alpha
-        self.star_tracker_mounting_beta = star_tracker_mounting_beta
-        self.star_tracker_mounting_gamma = star_tracker_mounting_gamma
-        self.star_tracker_exposure_time = star_tracker_exposure_time
-        self.star_tracker_analog_gain = star_tracker_analog_gain
-        self.star_tracker_detection_threshold = star_tracker_detection_threshold
-        self.star_tracker_star_threshold = star_tracker_star_threshold
-        self.maximum_star_matched = maximum_star_matched
-        self.detection_timeout_duration = detection_timeout_duration
-        self.maximum_star_pixel = maximum_star_pixel
-        self.minimum_star_pixel = minimum_star_pixel
-        self.star_tracker_error_margin = star_tracker_error_margin
-        self.star_tracker_delay_time = star_tracker_delay_time
-        self.star_tracker_centroid_x = star_tracker_centroid_x
-        self.star_tracker_centroid_y = star_tracker_centroid_y
-        self.star_tracker_focal_length = star_tracker_focal_length
-        self.k1_radial_distortion_coefficient = k1_radial_distortion_coefficient
-        self.k2_radial_distortion_coefficient = k2_radial_distortion_coefficient
-        self.p1_tangential_distortion_coefficient = p1_tangential_distortion_coefficient
-        self.p2_tangential_distortion_coefficient = p2_tangential_distortion_coefficient
-        self.star_tracking_window_width = star_tracking_window_width
-        self.star_tracking_margin = star_tracking_margin
-        self.star_validation_margin = star_validation_margin
-        self.star_tracking_module_enable = star_tracking_module_enable
-        self.star_tracking_location_prediction_enable = star_tracking_location_prediction_enable
-        self.star_tracking_search_width = star_tracking_search_width
-        self.detumbling_spin_gain = detumbling_spin_gain
-        self.detumbling_damping_gain = detumbling_damping_gain
-        self.reference_spin_rate = reference_spin_rate
-        self.fast_bdot_detumbling_gain = fast_bdot_detumbling_gain
-        self.y_momentum_control_gain = y_momentum_control_gain
-        self.y_momentum_nutation_damping_gain = y_momentum_nutation_damping_gain
-        self.y_momentum_proportional_gain = y_momentum_proportional_gain
-        self.y_momentum_derivative_gain = y_momentum_derivative_gain
-        self.reference_wheel_momentum = reference_wheel_momentum
-        self.rwheel_proportional_gain = rwheel_proportional_gain
-        self.rwheel_derivative_gain = rwheel_derivative_gain
-        self.y_wheel_bias_momentum = y_wheel_bias_momentum
-        self.sun_pointing_facet = sun_pointing_facet
-        self.control_transition_on_wheel_error = control_transition_on_wheel_error
-        self.tracking_proportional_gain = tracking_proportional_gain
-        self.tracking_derivative_gain = tracking_derivative_gain
-        self.tracking_integral_gain = tracking_integral_gain
-        self.target_tracking_facet = target_tracking_facet
-        self.moment_of_inertia_ixx = moment_of_inertia_ixx
-        self.moment_of_inertia_iyy = moment_of_inertia_iyy
-        self.moment_of_inertia_izz = moment_of_inertia_izz
-        self.product_of_inertia_ixy = product_of_inertia_ixy
-        self.product_of_inertia_ixz = product_of_inertia_ixz
-        self.product_of_inertia_iyz = product_of_inertia_iyz
-        self.magnetometer_rate_filter_system_noise = magnetometer_rate_filter_system_noise
-        self.ekf_system_noise = ekf_system_noise
-        self.css_measurement_noise = css_measurement_noise
-        self.sun_sensor_measurement_noise = sun_sensor_measurement_noise
-        self.nadir_sensor_measurement_noise = nadir_sensor_measurement_noise
-        self.magnetometer_measurement_noise = magnetometer_measurement_noise
-        self.star_tracker_measurement_noise = star_tracker_measurement_noise
-        self.use_sun_sensor = use_sun_sensor
-        self.use_nadir_sensor = use_nadir_sensor
-        self.use_css = use_css
-        self.use_star_tracker = use_star_tracker
-        self.nadir_sensor_terminator_test = nadir_sensor_terminator_test
-        self.automatic_magnetometer_recovery = automatic_magnetometer_recovery
-        self.magnetometer_mode = magnetometer_mode
-        self.raw_magnetometer_selection = raw_magnetometer_selection
-        self.estimation_transition_on_rate_sensor_error = estimation_transition_on_rate_sensor_error
-        self.cam1_period = cam1_period
-        self.cam2_period = cam2_period
-        self.incl_coefficient = incl_coefficient
-        self.raan_coefficient = raan_coefficient
-        self.ecc_coefficient = ecc_coefficient
-        self.aop_coefficient = aop_coefficient
-        self.time_coefficient = time_coefficient
-        self.pos_coefficient = pos_coefficient
-        self.maximum_position_error = maximum_position_error
-        self.asgp4_filter = asgp4_filter
-        self.xp_coefficient = xp_coefficient
-        self.yp_coefficient = yp_coefficient
-        self.gps_roll_over = gps_roll_over
-        self.position_sd = position_sd
-        self.velocity_sd = velocity_sd
-        self.min_satellites = min_satellites
-        self.time_gain = time_gain
-        self.max_lag = max_lag
-        self.min_samples = min_samples
-        self.user_coded_controller_settings = user_coded_controller_settings
-        self.user_coded_estimator_settings = user_coded_estimator_settings
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        magnetorquer_1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        magnetorquer_2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        magnetorquer_3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        rw1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        rw2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        rw3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        rw4_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        gyro1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        gyro2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        gyro3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        x_rate_sensor_offset_deg_per_s: float = 0.0,
-        y_rate_sensor_offset_deg_per_s: float = 0.0,
-        z_rate_sensor_offset_deg_per_s: float = 0.0,
-        rate_sensor_mult: int = 0,
-        css1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css4_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css5_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css6_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css7_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css8_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css9_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css10_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css1_relative_scale_physical: float = 0.0,
-        css2_relative_scale_physical: float = 0.0,
-        css3_relative_scale_physical: float = 0.0,
-        css4_relative_scale_physical: float = 0.0,
-        css5_relative_scale_physical: float = 0.0,
-        css6_relative_scale_physical: float = 0.0,
-        css7_relative_scale_physical: float = 0.0,
-        css8_relative_scale_physical: float = 0.0,
-        css9_relative_scale_physical: float = 0.0,
-        css10_relative_scale_physical: float = 0.0,
-        css_threshold: int = 0,
-        cam1_mounting_alpha_deg: float = 0.0,
-        cam1_mounting_beta_deg: float = 0.0,
-        cam1_mounting_gamma_deg: float = 0.0,
-        cam1_detection_threshold: int = 0,
-        cam1_sensor_auto_adjust_mode: bool = False,
-        cam1_sensor_exposure_time: int = 0,
-        cam1_boresight_x_pixels: float = 0.0,
-        cam1_boresight_y_pixels: float = 0.0,
-        cam2_mounting_alpha_deg: float = 0.0,
-        cam2_mounting_beta_deg: float = 0.0,
-        cam2_mounting_gamma_deg: float = 0.0,
-        cam2_detection_threshold: int = 0,
-        cam2_sensor_auto_adjust_mode: bool = False,
-        cam2_sensor_exposure_time: int = 0,
-        cam2_boresight_x_pixels: float = 0.0,
-        cam2_boresight_y_pixels: float = 0.0,
-        nadir_max_deviation_percentage: int = 0,
-        nadir_max_bad_edges: int = 0,
-        nadir_max_radius: int = 0,
-        nadir_min_radius: int = 0,
-        cam_1_minimum_x_of_area_1: int = 0,
-        cam_1_maximum_x_of_area_1: int = 0,
-        cam_1_minimum_y_of_area_1: int = 0,
-        cam_1_maximum_y_of_area_1: int = 0,
-        cam_1_minimum_x_of_area_2: int = 0,
-        cam_1_maximum_x_of_area_2: int = 0,
-        cam_1_minimum_y_of_area_2: int = 0,
-        cam_1_maximum_y_of_area_2: int = 0,
-        cam_1_minimum_x_of_area_3: int = 0,
-        cam_1_maximum_x_of_area_3: int = 0,
-        cam_1_minimum_y_of_area_3: int = 0,
-        cam_1_maximum_y_of_area_3: int = 0,
-        cam_1_minimum_x_of_area_4: int = 0,
-        cam_1_maximum_x_of_area_4: int = 0,
-        cam_1_minimum_y_of_area_4: int = 0,
-        cam_1_maximum_y_of_area_4: int = 0,
-        cam_1_minimum_x_of_area_5: int = 0,
-        cam_1_maximum_x_of_area_5: int = 0,
-        cam_1_minimum_y_of_area_5: int = 0,
-        cam_1_maximum_y_of_area_5: int = 0,
-        cam_2_minimum_x_of_area_1: int = 0,
-        cam_2_maximum_x_of_area_1: int = 0,
-        cam_2_minimum_y_of_area_1: int = 0,
-        cam_2_maximum_y_of_area_1: int = 0,
-        cam_2_minimum_x_of_area_2: int = 0,
-        cam_2_maximum_x_of_area_2: int = 0,
-        cam_2_minimum_y_of_area_2: int = 0,
-        cam_2_maximum_y_of_area_2: int = 0,
-        cam_2_minimum_x_of_area_3: int = 0,
-        cam_2_maximum_x_of_area_3: int = 0,
-        cam_2_minimum_y_of_area_3: int = 0,
-        cam_2_maximum_y_of_area_3: int = 0,
-        cam_2_minimum_x_of_area_4: int = 0,
-        cam_2_maximum_x_of_area_4: int = 0,
-        cam_2_minimum_y_of_area_4: int = 0,
-        cam_2_maximum_y_of_area_4: int = 0,
-        cam_2_minimum_x_of_area_5: int = 0,
-        cam_2_maximum_x_of_area_5: int = 0,
-        cam_2_minimum_y_of_area_5: int = 0,
-        cam_2_maximum_y_of_area_5: int = 0,
-        magnetometer_mounting_alpha_deg: float = 0.0,
-        magnetometer_mounting_beta_deg: float = 0.0,
-        magnetometer_mounting_gamma_deg: float = 0.0,
-        magnetometer_channel_1_offset_physical: float = 0.0,
-        magnetometer_channel_2_offset_physical: float = 0.0,
-        magnetometer_channel_3_offset_physical: float = 0.0,
-        magnetometer_sensitivity_s11_physical: float = 0.0,
-        magnetometer_sensitivity_s22_physical: float = 0.0,
-        magnetometer_sensitivity_s33_physical: float = 0.0,
-        magnetometer_sensitivity_s12_physical: float = 0.0,
-        magnetometer_sensitivity_s13_physical: float = 0.0,
-        magnetometer_sensitivity_s21_physical: float = 0.0,
-        magnetometer_sensitivity_s23_physical: float = 0.0,
-        magnetometer_sensitivity_s31_physical: float = 0.0,
-        magnetometer_sensitivity_s32_physical: float = 0.0,
-        redundant_mag_mounting_alpha_deg: float = 0.0,
-        redundant_mag_mounting_beta_deg: float = 0.0,
-        redundant_mag_mounting_gamma_deg: float = 0.0,
-        redundant_mag_channel_1_offset_physical: float = 0.0,
-        redundant_mag_channel_2_offset_physical: float = 0.0,
-        redundant_mag_channel_3_offset_physical: float = 0.0,
-        redundant_mag_sensitivity_s11_physical: float = 0.0,
-        redundant_mag_sensitivity_s22_physical: float = 0.0,
-        redundant_mag_sensitivity_s33_physical: float = 0.0,
-        redundant_mag_sensitivity_s12_physical: float = 0.0,
-        redundant_mag_sensitivity_s13_physical: float = 0.0,
-        redundant_mag_sensitivity_s21_physical: float = 0.0,
-        redundant_mag_sensitivity_s23_physical: float = 0.0,
-        redundant_mag_sensitivity_s31_physical: float = 0.0,
-        redundant_mag_sensitivity_s32_physical: float = 0.0,
-        star_tracker_mounting_alpha_deg: float = 0.0,
-        star_tracker_mounting_beta_deg: float = 0.0,
-        star_tracker_mounting_gamma_deg: float = 0.0,
-        star_tracker_exposure_time: int = 0,
-        star_tracker_analog_gain: int = 0,
-        star_tracker_detection_threshold: int = 0,
-        star_tracker_star_threshold: int = 0,
-        maximum_star_matched: int = 0,
-        detection_timeout_duration: int = 0,
-        maximum_star_pixel: int = 0,
-        minimum_star_pixel: int = 0,
-        star_tracker_error_margin_percent: float = 0.0,
-        star_tracker_delay_time: int = 0,
-        star_tracker_centroid_x: float = 0.0,
-        star_tracker_centroid_y: float = 0.0,
-        star_tracker_focal_length: float = 0.0,
-        k1_radial_distortion_coefficient: float = 0.0,
-        k2_radial_distortion_coefficient: float = 0.0,
-        p1_tangential_distortion_coefficient: float = 0.0,
-        p2_tangential_distortion_coefficient: float = 0.0,
-        star_tracking_window_width: int = 0,
-        star_tracking_margin_physical: float = 0.0,
-        star_validation_margin_physical: float = 0.0,
-        star_tracking_module_enable: bool = False,
-        star_tracking_location_prediction_enable: bool = False,
-        star_tracking_search_width_physical: float = 0.0,
-        detumbling_spin_gain: float = 0.0,
-        detumbling_damping_gain: float = 0.0,
-        reference_spin_rate_deg_per_s: float = 0.0,
-        fast_bdot_detumbling_gain: float = 0.0,
-        y_momentum_control_gain: float = 0.0,
-        y_momentum_nutation_damping_gain: float = 0.0,
-        y_momentum_proportional_gain: float = 0.0,
-        y_momentum_derivative_gain: float = 0.0,
-        reference_wheel_momentum: float = 0.0,
-        rwheel_proportional_gain: float = 0.0,
-        rwheel_derivative_gain: float = 0.0,
-        y_wheel_bias_momentum: float = 0.0,
-        sun_pointing_facet: AxisSelect = AxisSelect.POSITIVE_X,
-        control_transition_on_wheel_error: bool = False,
-        tracking_proportional_gain: float = 0.0,
-        tracking_derivative_gain: float = 0.0,
-        tracking_integral_gain: float = 0.0,
-        target_tracking_facet: AxisSelect = AxisSelect.POSITIVE_X,
-        moment_of_inertia_ixx: float = 0.0,
-        moment_of_inertia_iyy: float = 0.0,
-        moment_of_inertia_izz: float = 0.0,
-        product_of_inertia_ixy: float = 0.0,
-        product_of_inertia_ixz: float = 0.0,
-        product_of_inertia_iyz: float = 0.0,
-        magnetometer_rate_filter_system_noise: float = 0.0,
-        ekf_system_noise: float = 0.0,
-        css_measurement_noise: float = 0.0,
-        sun_sensor_measurement_noise: float = 0.0,
-        nadir_sensor_measurement_noise: float = 0.0,
-        magnetometer_measurement_noise: float = 0.0,
-        star_tracker_measurement_noise: float = 0.0,
-        use_sun_sensor: bool = False,
-        use_nadir_sensor: bool = False,
-        use_css: bool = False,
-        use_star_tracker: bool = False,
-        nadir_sensor_terminator_test: bool = False,
-        automatic_magnetometer_recovery: bool = False,
-        magnetometer_mode: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
-        raw_magnetometer_selection: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
-        estimation_transition_on_rate_sensor_error: bool = False,
-        cam1_period: int = 0,
-        cam2_period: int = 0,
-        incl_coefficient_physical: float = 0.0,
-        raan_coefficient_physical: float = 0.0,
-        ecc_coefficient_physical: float = 0.0,
-        aop_coefficient_physical: float = 0.0,
-        time_coefficient_physical: float = 0.0,
-        pos_coefficient_physical: float = 0.0,
-        maximum_position_error_physical: float = 0.0,
-        asgp4_filter: AsgpFilter = AsgpFilter.LPF,
-        xp_coefficient_physical: float = 0.0,
-        yp_coefficient_physical: float = 0.0,
-        gps_roll_over: int = 0,
-        position_sd_physical: float = 0.0,
-        velocity_sd_physical: float = 0.0,
-        min_satellites: int = 0,
-        time_gain_physical: float = 0.0,
-        max_lag_physical: float = 0.0,
-        min_samples: int = 0,
-        user_coded_controller_settings: bytes = _DEFAULT_0,
-        user_coded_estimator_settings: bytes = _DEFAULT_0,
-    ) -> AdcsConfiguration:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.magnetorquer_1_configuration = magnetorquer_1_configuration
-        self.magnetorquer_2_configuration = magnetorquer_2_configuration
-        self.magnetorquer_3_configuration = magnetorquer_3_configuration
-        self.rw1_configuration = rw1_configuration
-        self.rw2_configuration = rw2_configuration
-        self.rw3_configuration = rw3_configuration
-        self.rw4_configuration = rw4_configuration
-        self.gyro1_configuration = gyro1_configuration
-        self.gyro2_configuration = gyro2_configuration
-        self.gyro3_configuration = gyro3_configuration
-        self.x_rate_sensor_offset_deg_per_s = x_rate_sensor_offset_deg_per_s
-        self.y_rate_sensor_offset_deg_per_s = y_rate_sensor_offset_deg_per_s
-        self.z_rate_sensor_offset_deg_per_s = z_rate_sensor_offset_deg_per_s
-        self.rate_sensor_mult = rate_sensor_mult
-        self.css1_configuration = css1_configuration
-        self.css2_configuration = css2_configuration
-        self.css3_configuration = css3_configuration
-        self.css4_configuration = css4_configuration
-        self.css5_configuration = css5_configuration
-        self.css6_configuration = css6_configuration
-        self.css7_configuration = css7_configuration
-        self.css8_configuration = css8_configuration
-        self.css9_configuration = css9_configuration
-        self.css10_configuration = css10_configuration
-        self.css1_relative_scale_physical = css1_relative_scale_physical
-        self.css2_relative_scale_physical = css2_relative_scale_physical
-        self.css3_relative_scale_physical = css3_relative_scale_physical
-        self.css4_relative_scale_physical = css4_relative_scale_physical
-        self.css5_relative_scale_physical = css5_relative_scale_physical
-        self.css6_relative_scale_physical = css6_relative_scale_physical
-        self.css7_relative_scale_physical = css7_relative_scale_physical
-        self.css8_relative_scale_physical = css8_relative_scale_physical
-        self.css9_relative_scale_physical = css9_relative_scale_physical
-        self.css10_relative_scale_physical = css10_relative_scale_physical
-        self.css_threshold = css_threshold
-        self.cam1_mounting_alpha_deg = cam1_mounting_alpha_deg
-        self.cam1_mounting_beta_deg = cam1_mounting_beta_deg
-        self.cam1_mounting_gamma_deg = cam1_mounting_gamma_deg
-        self.cam1_detection_threshold = cam1_detection_threshold
-        self.cam1_sensor_auto_adjust_mode = cam1_sensor_auto_adjust_mode
-        self.cam1_sensor_exposure_time = cam1_sensor_exposure_time
-        self.cam1_boresight_x_pixels = cam1_boresight_x_pixels
-        self.cam1_boresight_y_pixels = cam1_boresight_y_pixels
-        self.cam2_mounting_alpha_deg = cam2_mounting_alpha_deg
-        self.cam2_mounting_beta_deg = cam2_mounting_beta_deg
-        self.cam2_mounting_gamma_deg = cam2_mounting_gamma_deg
-        self.cam2_detection_threshold = cam2_detection_threshold
-        self.cam2_sensor_auto_adjust_mode = cam2_sensor_auto_adjust_mode
-        self.cam2_sensor_exposure_time = cam2_sensor_exposure_time
-        self.cam2_boresight_x_pixels = cam2_boresight_x_pixels
-        self.cam2_boresight_y_pixels = cam2_boresight_y_pixels
-        self.nadir_max_deviation_percentage = nadir_max_deviation_percentage
-        self.nadir_max_bad_edges = nadir_max_bad_edges
-        self.nadir_max_radius = nadir_max_radius
-        self.nadir_min_radius = nadir_min_radius
-        self.cam_1_minimum_x_of_area_1 = cam_1_minimum_x_of_area_1
-        self.cam_1_maximum_x_of_area_1 = cam_1_maximum_x_of_area_1
-        self.cam_1_minimum_y_of_area_1 = cam_1_minimum_y_of_area_1
-        self.cam_1_maximum_y_of_area_1 = cam_1_maximum_y_of_area_1
-        self.cam_1_minimum_x_of_area_2 = cam_1_minimum_x_of_area_2
-        self.cam_1_maximum_x_of_area_2 = cam_1_maximum_x_of_area_2
-        self.cam_1_minimum_y_of_area_2 = cam_1_minimum_y_of_area_2
-        self.cam_1_maximum_y_of_area_2 = cam_1_maximum_y_of_area_2
-        self.cam_1_minimum_x_of_area_3 = cam_1_minimum_x_of_area_3
-        self.cam_1_maximum_x_of_area_3 = cam_1_maximum_x_of_area_3
-        self.cam_1_minimum_y_of_area_3 = cam_1_minimum_y_of_area_3
-        self.cam_1_maximum_y_of_area_3 = cam_1_maximum_y_of_area_3
-        self.cam_1_minimum_x_of_area_4 = cam_1_minimum_x_of_area_4
-        self.cam_1_maximum_x_of_area_4 = cam_1_maximum_x_of_area_4
-        self.cam_1_minimum_y_of_area_4 = cam_1_minimum_y_of_area_4
-        self.cam_1_maximum_y_of_area_4 = cam_1_maximum_y_of_area_4
-        self.cam_1_minimum_x_of_area_5 = cam_1_minimum_x_of_area_5
-        self.cam_1_maximum_x_of_area_5 = cam_1_maximum_x_of_area_5
-        self.cam_1_minimum_y_of_area_5 = cam_1_minimum_y_of_area_5
-        self.cam_1_maximum_y_of_area_5 = cam_1_maximum_y_of_area_5
-        self.cam_2_minimum_x_of_area_1 = cam_2_minimum_x_of_area_1
-        self.cam_2_maximum_x_of_area_1 = cam_2_maximum_x_of_area_1
-        self.cam_2_minimum_y_of_area_1 = cam_2_minimum_y_of_area_1
-        self.cam_2_maximum_y_of_area_1 = cam_2_maximum_y_of_area_1
-        self.cam_2_minimum_x_of_area_2 = cam_2_minimum_x_of_area_2
-        self.cam_2_maximum_x_of_area_2 = cam_2_maximum_x_of_area_2
-        self.cam_2_minimum_y_of_area_2 = cam_2_minimum_y_of_area_2
-        self.cam_2_maximum_y_of_area_2 = cam_2_maximum_y_of_area_2
-        self.cam_2_minimum_x_of_area_3 = cam_2_minimum_x_of_area_3
-        self.cam_2_maximum_x_of_area_3 = cam_2_maximum_x_of_area_3
-        self.cam_2_minimum_y_of_area_3 = cam_2_minimum_y_of_area_3
-        self.cam_2_maximum_y_of_area_3 = cam_2_maximum_y_of_area_3
-        self.cam_2_minimum_x_of_area_4 = cam_2_minimum_x_of_area_4
-        self.cam_2_maximum_x_of_area_4 = cam_2_maximum_x_of_area_4
-        self.cam_2_minimum_y_of_area_4 = cam_2_minimum_y_of_area_4
-        self.cam_2_maximum_y_of_area_4 = cam_2_maximum_y_of_area_4
-        self.cam_2_minimum_x_of_area_5 = cam_2_minimum_x_of_area_5
-        self.cam_2_maximum_x_of_area_5 = cam_2_maximum_x_of_area_5
-        self.cam_2_minimum_y_of_area_5 = cam_2_minimum_y_of_area_5
-        self.cam_2_maximum_y_of_area_5 = cam_2_maximum_y_of_area_5
-        self.magnetometer_mounting_alpha_deg = magnetometer_mounting_alpha_deg
-        self.magnetometer_mounting_beta_deg = magnetometer_mounting_beta_deg
-        self.magnetometer_mounting_gamma_deg = magnetometer_mounting_gamma_deg
-        self.magnetometer_channel_1_offset_physical = magnetometer_channel_1_offset_physical
-        self.magnetometer_channel_2_offset_physical = magnetometer_channel_2_offset_physical
-        self.magnetometer_channel_3_offset_physical = magnetometer_channel_3_offset_physical
-        self.magnetometer_sensitivity_s11_physical = magnetometer_sensitivity_s11_physical
-        self.magnetometer_sensitivity_s22_physical = magnetometer_sensitivity_s22_physical
-        self.magnetometer_sensitivity_s33_physical = magnetometer_sensitivity_s33_physical
-        self.magnetometer_sensitivity_s12_physical = magnetometer_sensitivity_s12_physical
-        self.magnetometer_sensitivity_s13_physical = magnetometer_sensitivity_s13_physical
-        self.magnetometer_sensitivity_s21_physical = magnetometer_sensitivity_s21_physical
-        self.magnetometer_sensitivity_s23_physical = magnetometer_sensitivity_s23_physical
-        self.magnetometer_sensitivity_s31_physical = magnetometer_sensitivity_s31_physical
-        self.magnetometer_sensitivity_s32_physical = magnetometer_sensitivity_s32_physical
-        self.redundant_mag_mounting_alpha_deg = redundant_mag_mounting_alpha_deg
-        self.redundant_mag_mounting_beta_deg = redundant_mag_mounting_beta_deg
-        self.redundant_mag_mounting_gamma_deg = redundant_mag_mounting_gamma_deg
-        self.redundant_mag_channel_1_offset_physical = redundant_mag_channel_1_offset_physical
-        self.redundant_mag_channel_2_offset_physical = redundant_mag_channel_2_offset_physical
-        self.redundant_mag_channel_3_offset_physical = redundant_mag_channel_3_offset_physical
-        self.redundant_mag_sensitivity_s11_physical = redundant_mag_sensitivity_s11_physical
-        self.redundant_mag_sensitivity_s22_physical = redundant_mag_sensitivity_s22_physical
-        self.redundant_mag_sensitivity_s33_physical = redundant_mag_sensitivity_s33_physical
-        self.redundant_mag_sensitivity_s12_physical = redundant_mag_sensitivity_s12_physical
-        self.redundant_mag_sensitivity_s13_physical = redundant_mag_sensitivity_s13_physical
-        self.redundant_mag_sensitivity_s21_physical = redundant_mag_sensitivity_s21_physical
-        self.redundant_mag_sensitivity_s23_physical = redundant_mag_sensitivity_s23_physical
-        self.redundant_mag_sensitivity_s31_physical = redundant_mag_sensitivity_s31_physical
-        self.redundant_mag_sensitivity_s32_physical = redundant_mag_sensitivity_s32_physical
-        self.star_tracker_mounting_alpha_deg = star_tracker_mounting_alpha_deg
-        self.star_tracker_mounting_beta_deg = star_tracker_mounting_beta_deg
-        self.star_tracker_mounting_gamma_deg = star_tracker_mounting_gamma_deg
-        self.star_tracker_exposure_time = star_tracker_exposure_time
-        self.star_tracker_analog_gain = star_tracker_analog_gain
-        self.star_tracker_detection_threshold = star_tracker_detection_threshold
-        self.star_tracker_star_threshold = star_tracker_star_threshold
-        self.maximum_star_matched = maximum_star_matched
-        self.detection_timeout_duration = detection_timeout_duration
-        self.maximum_star_pixel = maximum_star_pixel
-        self.minimum_star_pixel = minimum_star_pixel
-        self.star_tracker_error_margin_percent = star_tracker_error_margin_percent
-        self.star_tracker_delay_time = star_tracker_delay_time
-        self.star_tracker_centroid_x = star_tracker_centroid_x
-        self.star_tracker_centroid_y = star_tracker_centroid_y
-        self.star_tracker_focal_length = star_tracker_focal_length
-        self.k1_radial_distortion_coefficient = k1_radial_distortion_coefficient
-        self.k2_radial_distortion_coefficient = k2_radial_distortion_coefficient
-        self.p1_tangential_distortion_coefficient = p1_tangential_distortion_coefficient
-        self.p2_tangential_distortion_coefficient = p2_tangential_distortion_coefficient
-        self.star_tracking_window_width = star_tracking_window_width
-        self.star_tracking_margin_physical = star_tracking_margin_physical
-        self.star_validation_margin_physical = star_validation_margin_physical
-        self.star_tracking_module_enable = star_tracking_module_enable
-        self.star_tracking_location_prediction_enable = star_tracking_location_prediction_enable
-        self.star_tracking_search_width_physical = star_tracking_search_width_physical
-        self.detumbling_spin_gain = detumbling_spin_gain
-        self.detumbling_damping_gain = detumbling_damping_gain
-        self.reference_spin_rate_deg_per_s = reference_spin_rate_deg_per_s
-        self.fast_bdot_detumbling_gain = fast_bdot_detumbling_gain
-        self.y_momentum_control_gain = y_momentum_control_gain
-        self.y_momentum_nutation_damping_gain = y_momentum_nutation_damping_gain
-        self.y_momentum_proportional_gain = y_momentum_proportional_gain
-        self.y_momentum_derivative_gain = y_momentum_derivative_gain
-        self.reference_wheel_momentum = reference_wheel_momentum
-        self.rwheel_proportional_gain = rwheel_proportional_gain
-        self.rwheel_derivative_gain = rwheel_derivative_gain
-        self.y_wheel_bias_momentum = y_wheel_bias_momentum
-        self.sun_pointing_facet = sun_pointing_facet
-        self.control_transition_on_wheel_error = control_transition_on_wheel_error
-        self.tracking_proportional_gain = tracking_proportional_gain
-        self.tracking_derivative_gain = tracking_derivative_gain
-        self.tracking_integral_gain = tracking_integral_gain
-        self.target_tracking_facet = target_tracking_facet
-        self.moment_of_inertia_ixx = moment_of_inertia_ixx
-        self.moment_of_inertia_iyy = moment_of_inertia_iyy
-        self.moment_of_inertia_izz = moment_of_inertia_izz
-        self.product_of_inertia_ixy = product_of_inertia_ixy
-        self.product_of_inertia_ixz = product_of_inertia_ixz
-        self.product_of_inertia_iyz = product_of_inertia_iyz
-        self.magnetometer_rate_filter_system_noise = magnetometer_rate_filter_system_noise
-        self.ekf_system_noise = ekf_system_noise
-        self.css_measurement_noise = css_measurement_noise
-        self.sun_sensor_measurement_noise = sun_sensor_measurement_noise
-        self.nadir_sensor_measurement_noise = nadir_sensor_measurement_noise
-        self.magnetometer_measurement_noise = magnetometer_measurement_noise
-        self.star_tracker_measurement_noise = star_tracker_measurement_noise
-        self.use_sun_sensor = use_sun_sensor
-        self.use_nadir_sensor = use_nadir_sensor
-        self.use_css = use_css
-        self.use_star_tracker = use_star_tracker
-        self.nadir_sensor_terminator_test = nadir_sensor_terminator_test
-        self.automatic_magnetometer_recovery = automatic_magnetometer_recovery
-        self.magnetometer_mode = magnetometer_mode
-        self.raw_magnetometer_selection = raw_magnetometer_selection
-        self.estimation_transition_on_rate_sensor_error = estimation_transition_on_rate_sensor_error
-        self.cam1_period = cam1_period
-        self.cam2_period = cam2_period
-        self.incl_coefficient_physical = incl_coefficient_physical
-        self.raan_coefficient_physical = raan_coefficient_physical
-        self.ecc_coefficient_physical = ecc_coefficient_physical
-        self.aop_coefficient_physical = aop_coefficient_physical
-        self.time_coefficient_physical = time_coefficient_physical
-        self.pos_coefficient_physical = pos_coefficient_physical
-        self.maximum_position_error_physical = maximum_position_error_physical
-        self.asgp4_filter = asgp4_filter
-        self.xp_coefficient_physical = xp_coefficient_physical
-        self.yp_coefficient_physical = yp_coefficient_physical
-        self.gps_roll_over = gps_roll_over
-        self.position_sd_physical = position_sd_physical
-        self.velocity_sd_physical = velocity_sd_physical
-        self.min_satellites = min_satellites
-        self.time_gain_physical = time_gain_physical
-        self.max_lag_physical = max_lag_physical
-        self.min_samples = min_samples
-        self.user_coded_controller_settings = user_coded_controller_settings
-        self.user_coded_estimator_settings = user_coded_estimator_settings
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> AdcsConfiguration:
-        """The message in a frame of exactly 504 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                v0,
-                v1,
-                v2,
-                v3,
-                v4,
-                v5,
-                v6,
-                v7,
-                v8,
-                v9,
-                self.x_rate_sensor_offset,
-                self.y_rate_sensor_offset,
-                self.z_rate_sensor_offset,
-                self.rate_sensor_mult,
-                v17,
-                v18,
-                v19,
-                v20,
-                v21,
-                v22,
-                v23,
-                v24,
-                v25,
-                v26,
-                self.css1_relative_scale,
-                self.css2_relative_scale,
-                self.css3_relative_scale,
-                self.css4_relative_scale,
-                self.css5_relative_scale,
-                self.css6_relative_scale,
-                self.css7_relative_scale,
-                self.css8_relative_scale,
-                self.css9_relative_scale,
-                self.css10_relative_scale,
-                self.css_threshold,
-                self.cam1_mounting_alpha,
-                self.cam1_mounting_beta,
-                self.cam1_mounting_gamma,
-                self.cam1_detection_threshold,
-                v45,
-                self.cam1_sensor_exposure_time,
-                self.cam1_boresight_x,
-                self.cam1_boresight_y,
-                self.cam2_mounting_alpha,
-                self.cam2_mounting_beta,
-                self.cam2_mounting_gamma,
-                self.cam2_detection_threshold,
-                v59,
-                self.cam2_sensor_exposure_time,
-                self.cam2_boresight_x,
-                self.cam2_boresight_y,
-                self.nadir_max_deviation_percentage,
-                self.nadir_max_bad_edges,
-                self.nadir_max_radius,
-                self.nadir_min_radius,
-                self.cam_1_minimum_x_of_area_1,
-                self.cam_1_maximum_x_of_area_1,
-                self.cam_1_minimum_y_of_area_1,
-                self.cam_1_maximum_y_of_area_1,
-                self.cam_1_minimum_x_of_area_2,
-                self.cam_1_maximum_x_of_area_2,
-                self.cam_1_minimum_y_of_area_2,
-                self.cam_1_maximum_y_of_area_2,
-                self.cam_1_minimum_x_of_area_3,
-                self.cam_1_maximum_x_of_area_3,
-                self.cam_1_minimum_y_of_area_3,
-                self.cam_1_maximum_y_of_area_3,
-                self.cam_1_minimum_x_of_area_4,
-                self.cam_1_maximum_x_of_area_4,
-                self.cam_1_minimum_y_of_area_4,
-                self.cam_1_maximum_y_of_area_4,
-                self.cam_1_minimum_x_of_area_5,
-                self.cam_1_maximum_x_of_area_5,
-                self.cam_1_minimum_y_of_area_5,
-                self.cam_1_maximum_y_of_area_5,
-                self.cam_2_minimum_x_of_area_1,
-                self.cam_2_maximum_x_of_area_1,
-                self.cam_2_minimum_y_of_area_1,
-                self.cam_2_maximum_y_of_area_1,
-                self.cam_2_minimum_x_of_area_2,
-                self.cam_2_maximum_x_of_area_2,
-                self.cam_2_minimum_y_of_area_2,
-                self.cam_2_maximum_y_of_area_2,
-                self.cam_2_minimum_x_of_area_3,
-                self.cam_2_maximum_x_of_area_3,
-                self.cam_2_minimum_y_of_area_3,
-                self.cam_2_maximum_y_of_area_3,
-                self.cam_2_minimum_x_of_area_4,
-                self.cam_2_maximum_x_of_area_4,
-                self.cam_2_minimum_y_of_area_4,
-                self.cam_2_maximum_y_of_area_4,
-                self.cam_2_minimum_x_of_area_5,
-                self.cam_2_maximum_x_of_area_5,
-                self.cam_2_minimum_y_of_area_5,
-                self.cam_2_maximum_y_of_area_5,
-                self.magnetometer_mounting_alpha,
-                self.magnetometer_mounting_beta,
-                self.magnetometer_mounting_gamma,
-                self.magnetometer_channel_1_offset,
-                self.magnetometer_channel_2_offset,
-                self.magnetometer_channel_3_offset,
-                self.magnetometer_sensitivity_s11,
-                self.magnetometer_sensitivity_s22,
-                self.magnetometer_sensitivity_s33,
-                self.magnetometer_sensitivity_s12,
-                self.magnetometer_sensitivity_s13,
-                self.magnetometer_sensitivity_s21,
-                self.magnetometer_sensitivity_s23,
-                self.magnetometer_sensitivity_s31,
-                self.magnetometer_sensitivity_s32,
-                self.redundant_mag_mounting_alpha,
-                self.redundant_mag_mounting_beta,
-                self.redundant_mag_mounting_gamma,
-                self.redundant_mag_channel_1_offset,
-                self.redundant_mag_channel_2_offset,
-                self.redundant_mag_channel_3_offset,
-                self.redundant_mag_sensitivity_s11,
-                self.redundant_mag_sensitivity_s22,
-                self.redundant_mag_sensitivity_s33,
-                self.redundant_mag_sensitivity_s12,
-                self.redundant_mag_sensitivity_s13,
-                self.redundant_mag_sensitivity_s21,
-                self.redundant_mag_sensitivity_s23,
-                self.redundant_mag_sensitivity_s31,
-                self.redundant_mag_sensitivity_s32,
-                self.star_tracker_mounting_alpha,
-                self.star_tracker_mounting_beta,
-                self.star_tracker_mounting_gamma,
-                self.star_tracker_exposure_time,
-                self.star_tracker_analog_gain,
-                self.star_tracker_detection_threshold,
-                self.star_tracker_star_threshold,
-                self.maximum_star_matched,
-                self.detection_timeout_duration,
-                self.maximum_star_pixel,
-                self.minimum_star_pixel,
-                self.star_tracker_error_margin,
-                self.star_tracker_delay_time,
-                self.star_tracker_centroid_x,
-                self.star_tracker_centroid_y,
-                self.star_tracker_focal_length,
-                self.k1_radial_distortion_coefficient,
-                self.k2_radial_distortion_coefficient,
-                self.p1_tangential_distortion_coefficient,
-                self.p2_tangential_distortion_coefficient,
-                self.star_tracking_window_width,
-                self.star_tracking_margin,
-                self.star_validation_margin,
-                v261,
-                self.star_tracking_search_width,
-                self.detumbling_spin_gain,
-                self.detumbling_damping_gain,
-                self.reference_spin_rate,
-                self.fast_bdot_detumbling_gain,
-                self.y_momentum_control_gain,
-                self.y_momentum_nutation_damping_gain,
-                self.y_momentum_proportional_gain,
-                self.y_momentum_derivative_gain,
-                self.reference_wheel_momentum,
-                self.rwheel_proportional_gain,
-                self.rwheel_derivative_gain,
-                self.y_wheel_bias_momentum,
-                v309,
-                self.tracking_proportional_gain,
-                self.tracking_derivative_gain,
-                self.tracking_integral_gain,
-                v322,
-                self.moment_of_inertia_ixx,
-                self.moment_of_inertia_iyy,
-                self.moment_of_inertia_izz,
-                self.product_of_inertia_ixy,
-                self.product_of_inertia_ixz,
-                self.product_of_inertia_iyz,
-                self.magnetometer_rate_filter_system_noise,
-                self.ekf_system_noise,
-                self.css_measurement_noise,
-                self.sun_sensor_measurement_noise,
-                self.nadir_sensor_measurement_noise,
-                self.magnetometer_measurement_noise,
-                self.star_tracker_measurement_noise,
-                v375,
-                v376,
-                v377,
-                self.incl_coefficient,
-                self.raan_coefficient,
-                self.ecc_coefficient,
-                self.aop_coefficient,
-                self.time_coefficient,
-                self.pos_coefficient,
-                self.maximum_position_error,
-                v391,
-                self.xp_coefficient,
-                self.yp_coefficient,
-                self.gps_roll_over,
-                self.position_sd,
-                self.velocity_sd,
-                self.min_satellites,
-                self.time_gain,
-                self.max_lag,
-                self.min_samples,
-                self.user_coded_controller_settings,
-                self.user_coded_estimator_settings,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.magnetorquer_1_configuration = _BITS_0[v0]
-        self.magnetorquer_2_configuration = _BITS_0[v1]
-        self.magnetorquer_3_configuration = _BITS_0[v2]
-        self.rw1_configuration = _BITS_0[v3]
-        self.rw2_configuration = _BITS_0[v4]
-        self.rw3_configuration = _BITS_0[v5]
-        self.rw4_configuration = _BITS_0[v6]
-        self.gyro1_configuration = _BITS_0[v7]
-        self.gyro2_configuration = _BITS_0[v8]
-        self.gyro3_configuration = _BITS_0[v9]
-        self.css1_configuration = _BITS_0[v17]
-        self.css2_configuration = _BITS_0[v18]
-        self.css3_configuration = _BITS_0[v19]
-        self.css4_configuration = _BITS_0[v20]
-        self.css5_configuration = _BITS_0[v21]
-        self.css6_configuration = _BITS_0[v22]
-        self.css7_configuration = _BITS_0[v23]
-        self.css8_configuration = _BITS_0[v24]
-        self.css9_configuration = _BITS_0[v25]
-        self.css10_configuration = _BITS_0[v26]
-        self.target_tracking_facet = _BITS_0[v322]
-        self.asgp4_filter = _BITS_1[v391]
-        self.cam1_sensor_auto_adjust_mode = _BITS_2[v45]
-        self.cam2_sensor_auto_adjust_mode = _BITS_2[v59]
-        (
-            self.star_tracking_module_enable,
-            self.star_tracking_location_prediction_enable,
-        ) = _BITS_3[v261]
-        self.sun_pointing_facet, self.control_transition_on_wheel_error = _BITS_4[v309]
-        (
-            self.use_sun_sensor,
-            self.use_nadir_sensor,
-            self.use_css,
-            self.use_star_tracker,
-            self.nadir_sensor_terminator_test,
-            self.automatic_magnetometer_recovery,
-            self.magnetometer_mode,
-        ) = _BITS_5[v375]
-        (
-            self.raw_magnetometer_selection,
-            self.estimation_transition_on_rate_sensor_error,
-        ) = _BITS_6[v376]
-        self.cam1_period, self.cam2_period = _BITS_7[v377]
-        total = (
-            self.star_tracker_centroid_x
-            + self.star_tracker_centroid_y
-            + self.star_tracker_focal_length
-            + self.k1_radial_distortion_coefficient
-            + self.k2_radial_distortion_coefficient
-            + self.p1_tangential_distortion_coefficient
-            + self.p2_tangential_distortion_coefficient
-            + self.detumbling_spin_gain
-            + self.detumbling_damping_gain
-            + self.fast_bdot_detumbling_gain
-            + self.y_momentum_control_gain
-            + self.y_momentum_nutation_damping_gain
-            + self.y_momentum_proportional_gain
-            + self.y_momentum_derivative_gain
-            + self.reference_wheel_momentum
-            + self.rwheel_proportional_gain
-            + self.rwheel_derivative_gain
-            + self.y_wheel_bias_momentum
-            + self.tracking_proportional_gain
-            + self.tracking_derivative_gain
-            + self.tracking_integral_gain
-            + self.moment_of_inertia_ixx
-            + self.moment_of_inertia_iyy
-            + self.moment_of_inertia_izz
-            + self.product_of_inertia_ixy
-            + self.product_of_inertia_ixz
-            + self.product_of_inertia_iyz
-            + self.magnetometer_rate_filter_system_noise
-            + self.ekf_system_noise
-            + self.css_measurement_noise
-            + self.sun_sensor_measurement_noise
-            + self.nadir_sensor_measurement_noise
-            + self.magnetometer_measurement_noise
-            + self.star_tracker_measurement_noise
-        )
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v408 = _codec.sized(self.user_coded_controller_settings, 48)
-            v456 = _codec.sized(self.user_coded_estimator_settings, 48)
-            v45 = _BYTES_2[self.cam1_sensor_auto_adjust_mode]
-            v59 = _BYTES_2[self.cam2_sensor_auto_adjust_mode]
-            v261 = _BYTES_3[
-                self.star_tracking_module_enable,
-                self.star_tracking_location_prediction_enable,
-            ]
-            v309 = _BYTES_4[
-                self.sun_pointing_facet,
-                self.control_transition_on_wheel_error,
-            ]
-            v375 = _BYTES_5[
-                self.use_sun_sensor,
-                self.use_nadir_sensor,
-                self.use_css,
-                self.use_star_tracker,
-                self.nadir_sensor_terminator_test,
-                self.automatic_magnetometer_recovery,
-                self.magnetometer_mode,
-            ]
-            v376 = _BYTES_6[
-                self.raw_magnetometer_selection,
-                self.estimation_transition_on_rate_sensor_error,
-            ]
-            v377 = _BYTES_7[self.cam1_period, self.cam2_period]
-            frame = _pack(
-                self.magnetorquer_1_configuration,
-                self.magnetorquer_2_configuration,
-                self.magnetorquer_3_configuration,
-                self.rw1_configuration,
-                self.rw2_configuration,
-                self.rw3_configuration,
-                self.rw4_configuration,
-                self.gyro1_configuration,
-                self.gyro2_configuration,
-                self.gyro3_configuration,
-                self.x_rate_sensor_offset,
-                self.y_rate_sensor_offset,
-                self.z_rate_sensor_offset,
-                self.rate_sensor_mult,
-                self.css1_configuration,
-                self.css2_configuration,
-                self.css3_configuration,
-                self.css4_configuration,
-                self.css5_configuration,
-                self.css6_configuration,
-                self.css7_configuration,
-                self.css8_configuration,
-                self.css9_configuration,
-                self.css10_configuration,
-                self.css1_relative_scale,
-                self.css2_relative_scale,
-                self.css3_relative_scale,
-                self.css4_relative_scale,
-                self.css5_relative_scale,
-                self.css6_relative_scale,
-                self.css7_relative_scale,
-                self.css8_relative_scale,
-                self.css9_relative_scale,
-                self.css10_relative_scale,
-                self.css_threshold,
-                self.cam1_mounting_alpha,
-                self.cam1_mounting_beta,
-                self.cam1_mounting_gamma,
-                self.cam1_detection_threshold,
-                v45,
-                self.cam1_sensor_exposure_time,
-                self.cam1_boresight_x,
-                self.cam1_boresight_y,
-                self.cam2_mounting_alpha,
-                self.cam2_mounting_beta,
-                self.cam2_mounting_gamma,
-                self.cam2_detection_threshold,
-                v59,
-                self.cam2_sensor_exposure_time,
-                self.cam2_boresight_x,
-                self.cam2_boresight_y,
-                self.nadir_max_deviation_percentage,
-                self.nadir_max_bad_edges,
-                self.nadir_max_radius,
-                self.nadir_min_radius,
-                self.cam_1_minimum_x_of_area_1,
-                self.cam_1_maximum_x_of_area_1,
-                self.cam_1_minimum_y_of_area_1,
-                self.cam_1_maximum_y_of_area_1,
-                self.cam_1_minimum_x_of_area_2,
-                self.cam_1_maximum_x_of_area_2,
-                self.cam_1_minimum_y_of_area_2,
-                self.cam_1_maximum_y_of_area_2,
-                self.cam_1_minimum_x_of_area_3,
-                self.cam_1_maximum_x_of_area_3,
-                self.cam_1_minimum_y_of_area_3,
-                self.cam_1_maximum_y_of_area_3,
-                self.cam_1_minimum_x_of_area_4,
-                self.cam_1_maximum_x_of_area_4,
-                self.cam_1_minimum_y_of_area_4,
-                self.cam_1_maximum_y_of_area_4,
-                self.cam_1_minimum_x_of_area_5,
-                self.cam_1_maximum_x_of_area_5,
-                self.cam_1_minimum_y_of_area_5,
-                self.cam_1_maximum_y_of_area_5,
-                self.cam_2_minimum_x_of_area_1,
-                self.cam_2_maximum_x_of_area_1,
-                self.cam_2_minimum_y_of_area_1,
-                self.cam_2_maximum_y_of_area_1,
-                self.cam_2_minimum_x_of_area_2,
-                self.cam_2_maximum_x_of_area_2,
-                self.cam_2_minimum_y_of_area_2,
-                self.cam_2_maximum_y_of_area_2,
-                self.cam_2_minimum_x_of_area_3,
-                self.cam_2_maximum_x_of_area_3,
-                self.cam_2_minimum_y_of_area_3,
-                self.cam_2_maximum_y_of_area_3,
-                self.cam_2_minimum_x_of_area_4,
-                self.cam_2_maximum_x_of_area_4,
-                self.cam_2_minimum_y_of_area_4,
-                self.cam_2_maximum_y_of_area_4,
-                self.cam_2_minimum_x_of_area_5,
-                self.cam_2_maximum_x_of_area_5,
-                self.cam_2_minimum_y_of_area_5,
-                self.cam_2_maximum_y_of_area_5,
-                self.magnetometer_mounting_alpha,
-                self.magnetometer_mounting_beta,
-                self.magnetometer_mounting_gamma,
-                self.magnetometer_channel_1_offset,
-                self.magnetometer_channel_2_offset,
-                self.magnetometer_channel_3_offset,
-                self.magnetometer_sensitivity_s11,
-                self.magnetometer_sensitivity_s22,
-                self.magnetometer_sensitivity_s33,
-                self.magnetometer_sensitivity_s12,
-                self.magnetometer_sensitivity_s13,
-                self.magnetometer_sensitivity_s21,
-                self.magnetometer_sensitivity_s23,
-                self.magnetometer_sensitivity_s31,
-                self.magnetometer_sensitivity_s32,
-                self.redundant_mag_mounting_alpha,
-                self.redundant_mag_mounting_beta,
-                self.redundant_mag_mounting_gamma,
-                self.redundant_mag_channel_1_offset,
-                self.redundant_mag_channel_2_offset,
-                self.redundant_mag_channel_3_offset,
-                self.redundant_mag_sensitivity_s11,
-                self.redundant_mag_sensitivity_s22,
-                self.redundant_mag_sensitivity_s33,
-                self.redundant_mag_sensitivity_s12,
-                self.redundant_mag_sensitivity_s13,
-                self.redundant_mag_sensitivity_s21,
-                self.redundant_mag_sensitivity_s23,
-                self.redundant_mag_sensitivity_s31,
-                self.redundant_mag_sensitivity_s32,
-                self.star_tracker_mounting_alpha,
-                self.star_tracker_mounting_beta,
-                self.star_tracker_mounting_gamma,
-                self.star_tracker_exposure_time,
-                self.star_tracker_analog_gain,
-                self.star_tracker_detection_threshold,
-                self.star_tracker_star_threshold,
-                self.maximum_star_matched,
-                self.detection_timeout_duration,
-                self.maximum_star_pixel,
-                self.minimum_star_pixel,
-                self.star_tracker_error_margin,
-                self.star_tracker_delay_time,
-                self.star_tracker_centroid_x,
-                self.star_tracker_centroid_y,
-                self.star_tracker_focal_length,
-                self.k1_radial_distortion_coefficient,
-                self.k2_radial_distortion_coefficient,
-                self.p1_tangential_distortion_coefficient,
-                self.p2_tangential_distortion_coefficient,
-                self.star_tracking_window_width,
-                self.star_tracking_margin,
-                self.star_validation_margin,
-                v261,
-                self.star_tracking_search_width,
-                self.detumbling_spin_gain,
-                self.detumbling_damping_gain,
-                self.reference_spin_rate,
-                self.fast_bdot_detumbling_gain,
-                self.y_momentum_control_gain,
-                self.y_momentum_nutation_damping_gain,
-                self.y_momentum_proportional_gain,
-                self.y_momentum_derivative_gain,
-                self.reference_wheel_momentum,
-                self.rwheel_proportional_gain,
-                self.rwheel_derivative_gain,
-                self.y_wheel_bias_momentum,
-                v309,
-                self.tracking_proportional_gain,
-                self.tracking_derivative_gain,
-                self.tracking_integral_gain,
-                self.target_tracking_facet,
-                self.moment_of_inertia_ixx,
-                self.moment_of_inertia_iyy,
-                self.moment_of_inertia_izz,
-                self.product_of_inertia_ixy,
-                self.product_of_inertia_ixz,
-                self.product_of_inertia_iyz,
-                self.magnetometer_rate_filter_system_noise,
-                self.ekf_system_noise,
-                self.css_measurement_noise,
-                self.sun_sensor_measurement_noise,
-                self.nadir_sensor_measurement_noise,
-                self.magnetometer_measurement_noise,
-                self.star_tracker_measurement_noise,
-                v375,
-                v376,
-                v377,
-                self.incl_coefficient,
-                self.raan_coefficient,
-                self.ecc_coefficient,
-                self.aop_coefficient,
-                self.time_coefficient,
-                self.pos_coefficient,
-                self.maximum_position_error,
-                self.asgp4_filter,
-                self.xp_coefficient,
-                self.yp_coefficient,
-                self.gps_roll_over,
-                self.position_sd,
-                self.velocity_sd,
-                self.min_satellites,
-                self.time_gain,
-                self.max_lag,
-                self.min_samples,
-                v408,
-                v456,
-            )
-            total = (
-                self.star_tracker_centroid_x
-                + self.star_tracker_centroid_y
-                + self.star_tracker_focal_length
-                + self.k1_radial_distortion_coefficient
-                + self.k2_radial_distortion_coefficient
-                + self.p1_tangential_distortion_coefficient
-                + self.p2_tangential_distortion_coefficient
-                + self.detumbling_spin_gain
-                + self.detumbling_damping_gain
-                + self.fast_bdot_detumbling_gain
-                + self.y_momentum_control_gain
-                + self.y_momentum_nutation_damping_gain
-                + self.y_momentum_proportional_gain
-                + self.y_momentum_derivative_gain
-                + self.reference_wheel_momentum
-                + self.rwheel_proportional_gain
-                + self.rwheel_derivative_gain
-                + self.y_wheel_bias_momentum
-                + self.tracking_proportional_gain
-                + self.tracking_derivative_gain
-                + self.tracking_integral_gain
-                + self.moment_of_inertia_ixx
-                + self.moment_of_inertia_iyy
-                + self.moment_of_inertia_izz
-                + self.product_of_inertia_ixy
-                + self.product_of_inertia_ixz
-                + self.product_of_inertia_iyz
-                + self.magnetometer_rate_filter_system_noise
-                + self.ekf_system_noise
-                + self.css_measurement_noise
-                + self.sun_sensor_measurement_noise
-                + self.nadir_sensor_measurement_noise
-                + self.magnetometer_measurement_noise
-                + self.star_tracker_measurement_noise
-            )
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def x_rate_sensor_offset_deg_per_s(self) -> float:
-        """X-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
-        return self.x_rate_sensor_offset / 1000
-
-    @x_rate_sensor_offset_deg_per_s.setter
-    def x_rate_sensor_offset_deg_per_s(self, value: float) -> None:
-        self.x_rate_sensor_offset = _codec.raw_value(
-            value,
-            "x_rate_sensor_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def y_rate_sensor_offset_deg_per_s(self) -> float:
-        """Y-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
-        return self.y_rate_sensor_offset / 1000
-
-    @y_rate_sensor_offset_deg_per_s.setter
-    def y_rate_sensor_offset_deg_per_s(self, value: float) -> None:
-        self.y_rate_sensor_offset = _codec.raw_value(
-            value,
-            "y_rate_sensor_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def z_rate_sensor_offset_deg_per_s(self) -> float:
-        """Z-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
-        return self.z_rate_sensor_offset / 1000
-
-    @z_rate_sensor_offset_deg_per_s.setter
-    def z_rate_sensor_offset_deg_per_s(self, value: float) -> None:
-        self.z_rate_sensor_offset = _codec.raw_value(
-            value,
-            "z_rate_sensor_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def css1_relative_scale_physical(self) -> float:
-        """CSS1 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css1_relative_scale / 100
-
-    @css1_relative_scale_physical.setter
-    def css1_relative_scale_physical(self, value: float) -> None:
-        self.css1_relative_scale = _codec.raw_value(
-            value,
-            "css1_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css2_relative_scale_physical(self) -> float:
-        """CSS2 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css2_relative_scale / 100
-
-    @css2_relative_scale_physical.setter
-    def css2_relative_scale_physical(self, value: float) -> None:
-        self.css2_relative_scale = _codec.raw_value(
-            value,
-            "css2_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css3_relative_scale_physical(self) -> float:
-        """CSS3 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css3_relative_scale / 100
-
-    @css3_relative_scale_physical.setter
-    def css3_relative_scale_physical(self, value: float) -> None:
-        self.css3_relative_scale = _codec.raw_value(
-            value,
-            "css3_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css4_relative_scale_physical(self) -> float:
-        """CSS4 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css4_relative_scale / 100
-
-    @css4_relative_scale_physical.setter
-    def css4_relative_scale_physical(self, value: float) -> None:
-        self.css4_relative_scale = _codec.raw_value(
-            value,
-            "css4_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css5_relative_scale_physical(self) -> float:
-        """CSS5 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css5_relative_scale / 100
-
-    @css5_relative_scale_physical.setter
-    def css5_relative_scale_physical(self, value: float) -> None:
-        self.css5_relative_scale = _codec.raw_value(
-            value,
-            "css5_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css6_relative_scale_physical(self) -> float:
-        """CSS6 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css6_relative_scale / 100
-
-    @css6_relative_scale_physical.setter
-    def css6_relative_scale_physical(self, value: float) -> None:
-        self.css6_relative_scale = _codec.raw_value(
-            value,
-            "css6_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css7_relative_scale_physical(self) -> float:
-        """CSS7 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css7_relative_scale / 100
-
-    @css7_relative_scale_physical.setter
-    def css7_relative_scale_physical(self, value: float) -> None:
-        self.css7_relative_scale = _codec.raw_value(
-            value,
-            "css7_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css8_relative_scale_physical(self) -> float:
-        """CSS8 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css8_relative_scale / 100
-
-    @css8_relative_scale_physical.setter
-    def css8_relative_scale_physical(self, value: float) -> None:
-        self.css8_relative_scale = _codec.raw_value(
-            value,
-            "css8_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css9_relative_scale_physical(self) -> float:
-        """CSS9 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css9_relative_scale / 100
-
-    @css9_relative_scale_physical.setter
-    def css9_relative_scale_physical(self, value: float) -> None:
-        self.css9_relative_scale = _codec.raw_value(
-            value,
-            "css9_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css10_relative_scale_physical(self) -> float:
-        """CSS10 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css10_relative_scale / 100
-
-    @css10_relative_scale_physical.setter
-    def css10_relative_scale_physical(self, value: float) -> None:
-        self.css10_relative_scale = _codec.raw_value(
-            value,
-            "css10_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def cam1_mounting_alpha_deg(self) -> float:
-        """Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.cam1_mounting_alpha / 100
-
-    @cam1_mounting_alpha_deg.setter
-    def cam1_mounting_alpha_deg(self, value: float) -> None:
-        self.cam1_mounting_alpha = _codec.raw_value(
-            value,
-            "cam1_mounting_alpha",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def cam1_mounting_beta_deg(self) -> float:
-        """Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.cam1_mounting_beta / 100
-
-    @cam1_mounting_beta_deg.setter
-    def cam1_mounting_beta_deg(self, value: float) -> None:
-        self.cam1_mounting_beta = _codec.raw_value(
-            value,
-            "cam1_mounting_beta",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def cam1_mounting_gamma_deg(self) -> float:
-        """Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.cam1_mounting_gamma / 100
-
-    @cam1_mounting_gamma_deg.setter
-    def cam1_mounting_gamma_deg(self, value: float) -> None:
-        self.cam1_mounting_gamma = _codec.raw_value(
-            value,
-            "cam1_mounting_gamma",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def cam1_boresight_x_pixels(self) -> float:
-        """Cam1 Boresight X in pixels: 0 to 655.35."""
-        return self.cam1_boresight_x / 100
-
-    @cam1_boresight_x_pixels.setter
-    def cam1_boresight_x_pixels(self, value: float) -> None:
-        self.cam1_boresight_x = _codec.raw_value(
-            value,
-            "cam1_boresight_x",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def cam1_boresight_y_pixels(self) -> float:
-        """Cam1 Boresight Y in pixels: 0 to 655.35."""
-        return self.cam1_boresight_y / 100
-
-    @cam1_boresight_y_pixels.setter
-    def cam1_boresight_y_pixels(self, value: float) -> None:
-        self.cam1_boresight_y = _codec.raw_value(
-            value,
-            "cam1_boresight_y",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def cam2_mounting_alpha_deg(self) -> float:
-        """Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.cam2_mounting_alpha / 100
-
-    @cam2_mounting_alpha_deg.setter
-    def cam2_mounting_alpha_deg(self, value: float) -> None:
-        self.cam2_mounting_alpha = _codec.raw_value(
-            value,
-            "cam2_mounting_alpha",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def cam2_mounting_beta_deg(self) -> float:
-        """Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.cam2_mounting_beta / 100
-
-    @cam2_mounting_beta_deg.setter
-    def cam2_mounting_beta_deg(self, value: float) -> None:
-        self.cam2_mounting_beta = _codec.raw_value(
-            value,
-            "cam2_mounting_beta",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def cam2_mounting_gamma_deg(self) -> float:
-        """Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.cam2_mounting_gamma / 100
-
-    @cam2_mounting_gamma_deg.setter
-    def cam2_mounting_gamma_deg(self, value: float) -> None:
-        self.cam2_mounting_gamma = _codec.raw_value(
-            value,
-            "cam2_mounting_gamma",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def cam2_boresight_x_pixels(self) -> float:
-        """Cam2 Boresight X in pixels: 0 to 655.35."""
-        return self.cam2_boresight_x / 100
-
-    @cam2_boresight_x_pixels.setter
-    def cam2_boresight_x_pixels(self, value: float) -> None:
-        self.cam2_boresight_x = _codec.raw_value(
-            value,
-            "cam2_boresight_x",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def cam2_boresight_y_pixels(self) -> float:
-        """Cam2 Boresight Y in pixels: 0 to 655.35."""
-        return self.cam2_boresight_y / 100
-
-    @cam2_boresight_y_pixels.setter
-    def cam2_boresight_y_pixels(self, value: float) -> None:
-        self.cam2_boresight_y = _codec.raw_value(
-            value,
-            "cam2_boresight_y",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def magnetometer_mounting_alpha_deg(self) -> float:
-        """Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.magnetometer_mounting_alpha / 100
-
-    @magnetometer_mounting_alpha_deg.setter
-    def magnetometer_mounting_alpha_deg(self, value: float) -> None:
-        self.magnetometer_mounting_alpha = _codec.raw_value(
-            value,
-            "magnetometer_mounting_alpha",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_mounting_beta_deg(self) -> float:
-        """Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.magnetometer_mounting_beta / 100
-
-    @magnetometer_mounting_beta_deg.setter
-    def magnetometer_mounting_beta_deg(self, value: float) -> None:
-        self.magnetometer_mounting_beta = _codec.raw_value(
-            value,
-            "magnetometer_mounting_beta",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_mounting_gamma_deg(self) -> float:
-        """Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.magnetometer_mounting_gamma / 100
-
-    @magnetometer_mounting_gamma_deg.setter
-    def magnetometer_mounting_gamma_deg(self, value: float) -> None:
-        self.magnetometer_mounting_gamma = _codec.raw_value(
-            value,
-            "magnetometer_mounting_gamma",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_channel_1_offset_physical(self) -> float:
-        """Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767."""
-        return self.magnetometer_channel_1_offset / 1000
-
-    @magnetometer_channel_1_offset_physical.setter
-    def magnetometer_channel_1_offset_physical(self, value: float) -> None:
-        self.magnetometer_channel_1_offset = _codec.raw_value(
-            value,
-            "magnetometer_channel_1_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_channel_2_offset_physical(self) -> float:
-        """Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767."""
-        return self.magnetometer_channel_2_offset / 1000
-
-    @magnetometer_channel_2_offset_physical.setter
-    def magnetometer_channel_2_offset_physical(self, value: float) -> None:
-        self.magnetometer_channel_2_offset = _codec.raw_value(
-            value,
-            "magnetometer_channel_2_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_channel_3_offset_physical(self) -> float:
-        """Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767."""
-        return self.magnetometer_channel_3_offset / 1000
-
-    @magnetometer_channel_3_offset_physical.setter
-    def magnetometer_channel_3_offset_physical(self, value: float) -> None:
-        self.magnetometer_channel_3_offset = _codec.raw_value(
-            value,
-            "magnetometer_channel_3_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_sensitivity_s11_physical(self) -> float:
-        """Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767.
-        """
-        return self.magnetometer_sensitivity_s11 / 1000
-
-    @magnetometer_sensitivity_s11_physical.setter
-    def magnetometer_sensitivity_s11_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_s11 = _codec.raw_value(
-            value,
-            "magnetometer_sensitivity_s11",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_sensitivity_s22_physical(self) -> float:
-        """Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767.
-        """
-        return self.magnetometer_sensitivity_s22 / 1000
-
-    @magnetometer_sensitivity_s22_physical.setter
-    def magnetometer_sensitivity_s22_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_s22 = _codec.raw_value(
-            value,
-            "magnetometer_sensitivity_s22",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_sensitivity_s33_physical(self) -> float:
-        """Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767.
-        """
-        return self.magnetometer_sensitivity_s33 / 1000
-
-    @magnetometer_sensitivity_s33_physical.setter
-    def magnetometer_sensitivity_s33_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_s33 = _codec.raw_value(
-            value,
-            "magnetometer_sensitivity_s33",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_sensitivity_s12_physical(self) -> float:
-        """Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767.
-        """
-        return self.magnetometer_sensitivity_s12 / 1000
-
-    @magnetometer_sensitivity_s12_physical.setter
-    def magnetometer_sensitivity_s12_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_s12 = _codec.raw_value(
-            value,
-            "magnetometer_sensitivity_s12",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_sensitivity_s13_physical(self) -> float:
-        """Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767.
-        """
-        return self.magnetometer_sensitivity_s13 / 1000
-
-    @magnetometer_sensitivity_s13_physical.setter
-    def magnetometer_sensitivity_s13_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_s13 = _codec.raw_value(
-            value,
-            "magnetometer_sensitivity_s13",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_sensitivity_s21_physical(self) -> float:
-        """Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767.
-        """
-        return self.magnetometer_sensitivity_s21 / 1000
-
-    @magnetometer_sensitivity_s21_physical.setter
-    def magnetometer_sensitivity_s21_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_s21 = _codec.raw_value(
-            value,
-            "magnetometer_sensitivity_s21",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_sensitivity_s23_physical(self) -> float:
-        """Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767.
-        """
-        return self.magnetometer_sensitivity_s23 / 1000
-
-    @magnetometer_sensitivity_s23_physical.setter
-    def magnetometer_sensitivity_s23_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_s23 = _codec.raw_value(
-            value,
-            "magnetometer_sensitivity_s23",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_sensitivity_s31_physical(self) -> float:
-        """Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767.
-        """
-        return self.magnetometer_sensitivity_s31 / 1000
-
-    @magnetometer_sensitivity_s31_physical.setter
-    def magnetometer_sensitivity_s31_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_s31 = _codec.raw_value(
-            value,
-            "magnetometer_sensitivity_s31",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_sensitivity_s32_physical(self) -> float:
-        """Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767.
-        """
-        return self.magnetometer_sensitivity_s32 / 1000
-
-    @magnetometer_sensitivity_s32_physical.setter
-    def magnetometer_sensitivity_s32_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_s32 = _codec.raw_value(
-            value,
-            "magnetometer_sensitivity_s32",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_mounting_alpha_deg(self) -> float:
-        """Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to
-        327.67.
-        """
-        return self.redundant_mag_mounting_alpha / 100
-
-    @redundant_mag_mounting_alpha_deg.setter
-    def redundant_mag_mounting_alpha_deg(self, value: float) -> None:
-        self.redundant_mag_mounting_alpha = _codec.raw_value(
-            value,
-            "redundant_mag_mounting_alpha",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_mounting_beta_deg(self) -> float:
-        """Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to
-        327.67.
-        """
-        return self.redundant_mag_mounting_beta / 100
-
-    @redundant_mag_mounting_beta_deg.setter
-    def redundant_mag_mounting_beta_deg(self, value: float) -> None:
-        self.redundant_mag_mounting_beta = _codec.raw_value(
-            value,
-            "redundant_mag_mounting_beta",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_mounting_gamma_deg(self) -> float:
-        """Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to
-        327.67.
-        """
-        return self.redundant_mag_mounting_gamma / 100
-
-    @redundant_mag_mounting_gamma_deg.setter
-    def redundant_mag_mounting_gamma_deg(self, value: float) -> None:
-        self.redundant_mag_mounting_gamma = _codec.raw_value(
-            value,
-            "redundant_mag_mounting_gamma",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_channel_1_offset_physical(self) -> float:
-        """Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to
-        32.767.
-        """
-        return self.redundant_mag_channel_1_offset / 1000
-
-    @redundant_mag_channel_1_offset_physical.setter
-    def redundant_mag_channel_1_offset_physical(self, value: float) -> None:
-        self.redundant_mag_channel_1_offset = _codec.raw_value(
-            value,
-            "redundant_mag_channel_1_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_channel_2_offset_physical(self) -> float:
-        """Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to
-        32.767.
-        """
-        return self.redundant_mag_channel_2_offset / 1000
-
-    @redundant_mag_channel_2_offset_physical.setter
-    def redundant_mag_channel_2_offset_physical(self, value: float) -> None:
-        self.redundant_mag_channel_2_offset = _codec.raw_value(
-            value,
-            "redundant_mag_channel_2_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_channel_3_offset_physical(self) -> float:
-        """Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to
-        32.767.
-        """
-        return self.redundant_mag_channel_3_offset / 1000
-
-    @redundant_mag_channel_3_offset_physical.setter
-    def redundant_mag_channel_3_offset_physical(self, value: float) -> None:
-        self.redundant_mag_channel_3_offset = _codec.raw_value(
-            value,
-            "redundant_mag_channel_3_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_sensitivity_s11_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S11, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.redundant_mag_sensitivity_s11 / 1000
-
-    @redundant_mag_sensitivity_s11_physical.setter
-    def redundant_mag_sensitivity_s11_physical(self, value: float) -> None:
-        self.redundant_mag_sensitivity_s11 = _codec.raw_value(
-            value,
-            "redundant_mag_sensitivity_s11",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_sensitivity_s22_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S22, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.redundant_mag_sensitivity_s22 / 1000
-
-    @redundant_mag_sensitivity_s22_physical.setter
-    def redundant_mag_sensitivity_s22_physical(self, value: float) -> None:
-        self.redundant_mag_sensitivity_s22 = _codec.raw_value(
-            value,
-            "redundant_mag_sensitivity_s22",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_sensitivity_s33_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S33, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.redundant_mag_sensitivity_s33 / 1000
-
-    @redundant_mag_sensitivity_s33_physical.setter
-    def redundant_mag_sensitivity_s33_physical(self, value: float) -> None:
-        self.redundant_mag_sensitivity_s33 = _codec.raw_value(
-            value,
-            "redundant_mag_sensitivity_s33",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_sensitivity_s12_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S12, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.redundant_mag_sensitivity_s12 / 1000
-
-    @redundant_mag_sensitivity_s12_physical.setter
-    def redundant_mag_sensitivity_s12_physical(self, value: float) -> None:
-        self.redundant_mag_sensitivity_s12 = _codec.raw_value(
-            value,
-            "redundant_mag_sensitivity_s12",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_sensitivity_s13_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S13, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.redundant_mag_sensitivity_s13 / 1000
-
-    @redundant_mag_sensitivity_s13_physical.setter
-    def redundant_mag_sensitivity_s13_physical(self, value: float) -> None:
-        self.redundant_mag_sensitivity_s13 = _codec.raw_value(
-            value,
-            "redundant_mag_sensitivity_s13",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_sensitivity_s21_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S21, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.redundant_mag_sensitivity_s21 / 1000
-
-    @redundant_mag_sensitivity_s21_physical.setter
-    def redundant_mag_sensitivity_s21_physical(self, value: float) -> None:
-        self.redundant_mag_sensitivity_s21 = _codec.raw_value(
-            value,
-            "redundant_mag_sensitivity_s21",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_sensitivity_s23_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S23, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.redundant_mag_sensitivity_s23 / 1000
-
-    @redundant_mag_sensitivity_s23_physical.setter
-    def redundant_mag_sensitivity_s23_physical(self, value: float) -> None:
-        self.redundant_mag_sensitivity_s23 = _codec.raw_value(
-            value,
-            "redundant_mag_sensitivity_s23",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_sensitivity_s31_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S31, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.redundant_mag_sensitivity_s31 / 1000
-
-    @redundant_mag_sensitivity_s31_physical.setter
-    def redundant_mag_sensitivity_s31_physical(self, value: float) -> None:
-        self.redundant_mag_sensitivity_s31 = _codec.raw_value(
-            value,
-            "redundant_mag_sensitivity_s31",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_sensitivity_s32_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S32, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.redundant_mag_sensitivity_s32 / 1000
-
-    @redundant_mag_sensitivity_s32_physical.setter
-    def redundant_mag_sensitivity_s32_physical(self, value: float) -> None:
-        self.redundant_mag_sensitivity_s32 = _codec.raw_value(
-            value,
-            "redundant_mag_sensitivity_s32",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star_tracker_mounting_alpha_deg(self) -> float:
-        """StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.star_tracker_mounting_alpha / 100
-
-    @star_tracker_mounting_alpha_deg.setter
-    def star_tracker_mounting_alpha_deg(self, value: float) -> None:
-        self.star_tracker_mounting_alpha = _codec.raw_value(
-            value,
-            "star_tracker_mounting_alpha",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star_tracker_mounting_beta_deg(self) -> float:
-        """StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.star_tracker_mounting_beta / 100
-
-    @star_tracker_mounting_beta_deg.setter
-    def star_tracker_mounting_beta_deg(self, value: float) -> None:
-        self.star_tracker_mounting_beta = _codec.raw_value(
-            value,
-            "star_tracker_mounting_beta",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star_tracker_mounting_gamma_deg(self) -> float:
-        """StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.star_tracker_mounting_gamma / 100
-
-    @star_tracker_mounting_gamma_deg.setter
-    def star_tracker_mounting_gamma_deg(self, value: float) -> None:
-        self.star_tracker_mounting_gamma = _codec.raw_value(
-            value,
-            "star_tracker_mounting_gamma",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star_tracker_error_margin_percent(self) -> float:
-        """Star Tracker Error Margin in %: 0 to 2.55."""
-        return self.star_tracker_error_margin / 100
-
-    @star_tracker_error_margin_percent.setter
-    def star_tracker_error_margin_percent(self, value: float) -> None:
-        self.star_tracker_error_margin = _codec.raw_value(
-            value,
-            "star_tracker_error_margin",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def star_tracking_margin_physical(self) -> float:
-        """Star Tracking Margin, as a physical value: 0 to 2.55."""
-        return self.star_tracking_margin / 100
-
-    @star_tracking_margin_physical.setter
-    def star_tracking_margin_physical(self, value: float) -> None:
-        self.star_tracking_margin = _codec.raw_value(
-            value,
-            "star_tracking_margin",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def star_validation_margin_physical(self) -> float:
-        """Star Validation Margin, as a physical value: 0 to 2.55."""
-        return self.star_validation_margin / 100
-
-    @star_validation_margin_physical.setter
-    def star_validation_margin_physical(self, value: float) -> None:
-        self.star_validation_margin = _codec.raw_value(
-            value,
-            "star_validation_margin",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def star_tracking_search_width_physical(self) -> float:
-        """Star Tracking Search Width, as a physical value: 0 to 51."""
-        return self.star_tracking_search_width / 5
-
-    @star_tracking_search_width_physical.setter
-    def star_tracking_search_width_physical(self, value: float) -> None:
-        self.star_tracking_search_width = _codec.raw_value(
-            value,
-            "star_tracking_search_width",
-            (1, 0, 5),
-            0,
-            255,
-        )
-
-    @property
-    def reference_spin_rate_deg_per_s(self) -> float:
-        """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s."""
-        return self.reference_spin_rate / 1000
-
-    @reference_spin_rate_deg_per_s.setter
-    def reference_spin_rate_deg_per_s(self, value: float) -> None:
-        self.reference_spin_rate = _codec.raw_value(
-            value,
-            "reference_spin_rate",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def incl_coefficient_physical(self) -> float:
-        """Incl. coefficient, as a physical value: 0 to 65.535."""
-        return self.incl_coefficient / 1000
-
-    @incl_coefficient_physical.setter
-    def incl_coefficient_physical(self, value: float) -> None:
-        self.incl_coefficient = _codec.raw_value(
-            value,
-            "incl_coefficient",
-            (1, 0, 1000),
-            0,
-            65535,
-        )
-
-    @property
-    def raan_coefficient_physical(self) -> float:
-        """Raan coefficient, as a physical value: 0 to 65.535."""
-        return self.raan_coefficient / 1000
-
-    @raan_coefficient_physical.setter
-    def raan_coefficient_physical(self, value: float) -> None:
-        self.raan_coefficient = _codec.raw_value(
-            value,
-            "raan_coefficient",
-            (1, 0, 1000),
-            0,
-            65535,
-        )
-
-    @property
-    def ecc_coefficient_physical(self) -> float:
-        """Ecc coefficient, as a physical value: 0 to 65.535."""
-        return self.ecc_coefficient / 1000
-
-    @ecc_coefficient_physical.setter
-    def ecc_coefficient_physical(self, value: float) -> None:
-        self.ecc_coefficient = _codec.raw_value(
-            value,
-            "ecc_coefficient",
-            (1, 0, 1000),
-            0,
-            65535,
-        )
-
-    @property
-    def aop_coefficient_physical(self) -> float:
-        """Aop coefficient, as a physical value: 0 to 65.535."""
-        return self.aop_coefficient / 1000
-
-    @aop_coefficient_physical.setter
-    def aop_coefficient_physical(self, value: float) -> None:
-        self.aop_coefficient = _codec.raw_value(
-            value,
-            "aop_coefficient",
-            (1, 0, 1000),
-            0,
-            65535,
-        )
-
-    @property
-    def time_coefficient_physical(self) -> float:
-        """Time coefficient, as a physical value: 0 to 65.535."""
-        return self.time_coefficient / 1000
-
-    @time_coefficient_physical.setter
-    def time_coefficient_physical(self, value: float) -> None:
-        self.time_coefficient = _codec.raw_value(
-            value,
-            "time_coefficient",
-            (1, 0, 1000),
-            0,
-            65535,
-        )
-
-    @property
-    def pos_coefficient_physical(self) -> float:
-        """Pos coefficient, as a physical value: 0 to 65.535."""
-        return self.pos_coefficient / 1000
-
-    @pos_coefficient_physical.setter
-    def pos_coefficient_physical(self, value: float) -> None:
-        self.pos_coefficient = _codec.raw_value(
-            value,
-            "pos_coefficient",
-            (1, 0, 1000),
-            0,
-            65535,
-        )
-
-    @property
-    def maximum_position_error_physical(self) -> float:
-        """Maximum position error, as a physical value: 0 to 25.5."""
-        return self.maximum_position_error / 10
-
-    @maximum_position_error_physical.setter
-    def maximum_position_error_physical(self, value: float) -> None:
-        self.maximum_position_error = _codec.raw_value(
-            value,
-            "maximum_position_error",
-            (1, 0, 10),
-            0,
-            255,
-        )
-
-    @property
-    def xp_coefficient_physical(self) -> float:
-        """xp coefficient, as a physical value: -214.7483648 to 214.7483647."""
-        return self.xp_coefficient / 10000000
-
-    @xp_coefficient_physical.setter
-    def xp_coefficient_physical(self, value: float) -> None:
-        self.xp_coefficient = _codec.raw_value(
-            value,
-            "xp_coefficient",
-            (1, 0, 10000000),
-            -2147483648,
-            2147483647,
-        )
-
-    @property
-    def yp_coefficient_physical(self) -> float:
-        """yp coefficient, as a physical value: -214.7483648 to 214.7483647."""
-        return self.yp_coefficient / 10000000
-
-    @yp_coefficient_physical.setter
-    def yp_coefficient_physical(self, value: float) -> None:
-        self.yp_coefficient = _codec.raw_value(
-            value,
-            "yp_coefficient",
-            (1, 0, 10000000),
-            -2147483648,
-            2147483647,
-        )
-
-    @property
-    def position_sd_physical(self) -> float:
-        """Position sd, as a physical value: 0 to 25.5."""
-        return self.position_sd / 10
-
-    @position_sd_physical.setter
-    def position_sd_physical(self, value: float) -> None:
-        self.position_sd = _codec.raw_value(value, "position_sd", (1, 0, 10), 0, 255)
-
-    @property
-    def velocity_sd_physical(self) -> float:
-        """Velocity sd, as a physical value: 0 to 2.55."""
-        return self.velocity_sd / 100
-
-    @velocity_sd_physical.setter
-    def velocity_sd_physical(self, value: float) -> None:
-        self.velocity_sd = _codec.raw_value(value, "velocity_sd", (1, 0, 100), 0, 255)
-
-    @property
-    def time_gain_physical(self) -> float:
-        """Time gain, as a physical value: 0 to 2.55."""
-        return self.time_gain / 100
-
-    @time_gain_physical.setter
-    def time_gain_physical(self, value: float) -> None:
-        self.time_gain = _codec.raw_value(value, "time_gain", (1, 0, 100), 0, 255)
-
-    @property
-    def max_lag_physical(self) -> float:
-        """Max. lag, as a physical value: 0 to 2.55."""
-        return self.max_lag / 100
-
-    @max_lag_physical.setter
-    def max_lag_physical(self, value: float) -> None:
-        self.max_lag = _codec.raw_value(value, "max_lag", (1, 0, 100), 0, 255)

@@ -5,30 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<4H")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class AdcsExecutionTimes(_base.Message):
     """Adcs Execution Times: telemetry 196, 8 bytes. Table 155.
 
     How long the parts of the control program take.
 
-    Note ACP-107 (certain): ADCS is Adcs in one message, a model a computation.
+    Note ACP-107 (certain): ADCS is Adcs in one message, a model a computation. Adcs
+    Execution Times stands alone in its spelling, and its last field names a model where
+    the description has a computation.
     """
-
-    __slots__ = (
-        "time_to_perform_adcs_update",
-        "time_to_perform_sensor_actuator_communications",
-        "time_to_execute_sgp4_propagator",
-        "time_to_execute_igrf_model",
-    )
 
     NODE = "cubeacp"
     NAME = "Adcs Execution Times"
@@ -37,88 +25,21 @@ class AdcsExecutionTimes(_base.Message):
     IDS = (ID,)
     LENGTH = 8
     TABLE = 155
-    FIELDS = (
-        _base.FieldInfo(
-            "time_to_perform_adcs_update",
-            "Time to Perform ADCS Update",
-            0,
-            16,
-            "uint",
-            unit="ms",
-        ),
-        _base.FieldInfo(
-            "time_to_perform_sensor_actuator_communications",
-            "Time to Perform Sensor/Actuator Communications",
-            16,
-            16,
-            "uint",
-            unit="ms",
-        ),
-        _base.FieldInfo(
-            "time_to_execute_sgp4_propagator",
-            "Time to Execute SGP4 Propagator",
-            32,
-            16,
-            "uint",
-            unit="ms",
-        ),
-        _base.FieldInfo(
-            "time_to_execute_igrf_model",
-            "Time to Execute IGRF Model",
-            48,
-            16,
-            "uint",
-            unit="ms",
-        ),
-    )
 
-    time_to_perform_adcs_update: int
+    time_to_perform_adcs_update: int = _base.field("Time to Perform ADCS Update", 0, 16, "uint", default=0, unit="ms")
     """Time to Perform ADCS Update: bits 0 to 15, raw 0 to 65535, in ms."""
-    time_to_perform_sensor_actuator_communications: int
+
+    time_to_perform_sensor_actuator_communications: int = _base.field(
+        "Time to Perform Sensor/Actuator Communications", 16, 16, "uint", default=0, unit="ms"
+    )
     """Time to Perform Sensor/Actuator Communications: bits 16 to 31, raw 0 to 65535, in
     ms.
     """
-    time_to_execute_sgp4_propagator: int
+
+    time_to_execute_sgp4_propagator: int = _base.field(
+        "Time to Execute SGP4 Propagator", 32, 16, "uint", default=0, unit="ms"
+    )
     """Time to Execute SGP4 Propagator: bits 32 to 47, raw 0 to 65535, in ms."""
-    time_to_execute_igrf_model: int
+
+    time_to_execute_igrf_model: int = _base.field("Time to Execute IGRF Model", 48, 16, "uint", default=0, unit="ms")
     """Time to Execute IGRF Model: bits 48 to 63, raw 0 to 65535, in ms."""
-
-    def __init__(
-        self,
-        *,
-        time_to_perform_adcs_update: int = 0,
-        time_to_perform_sensor_actuator_communications: int = 0,
-        time_to_execute_sgp4_propagator: int = 0,
-        time_to_execute_igrf_model: int = 0,
-    ) -> None:
-        self.time_to_perform_adcs_update = time_to_perform_adcs_update
-        self.time_to_perform_sensor_actuator_communications = time_to_perform_sensor_actuator_communications
-        self.time_to_execute_sgp4_propagator = time_to_execute_sgp4_propagator
-        self.time_to_execute_igrf_model = time_to_execute_igrf_model
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> AdcsExecutionTimes:
-        """The message in a frame of exactly 8 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.time_to_perform_adcs_update,
-                self.time_to_perform_sensor_actuator_communications,
-                self.time_to_execute_sgp4_propagator,
-                self.time_to_execute_igrf_model,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.time_to_perform_adcs_update,
-                self.time_to_perform_sensor_actuator_communications,
-                self.time_to_execute_sgp4_propagator,
-                self.time_to_execute_igrf_model,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

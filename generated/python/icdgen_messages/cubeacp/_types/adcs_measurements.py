@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<36h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class AdcsMeasurements(_base.Message):
     """ADCS Measurements: telemetry 191, 72 bytes. Table 150.
 
@@ -28,45 +21,6 @@ class AdcsMeasurements(_base.Message):
     Body Vector from byte 60. Repeats Star 3 Orbit Vector from byte 66.
     """
 
-    __slots__ = (
-        "magnetic_field_x",
-        "magnetic_field_y",
-        "magnetic_field_z",
-        "coarse_sun_x",
-        "coarse_sun_y",
-        "coarse_sun_z",
-        "sun_x",
-        "sun_y",
-        "sun_z",
-        "nadir_x",
-        "nadir_y",
-        "nadir_z",
-        "x_angular_rate",
-        "y_angular_rate",
-        "z_angular_rate",
-        "x_wheel_speed",
-        "y_wheel_speed",
-        "z_wheel_speed",
-        "star1_body_x",
-        "star1_body_y",
-        "star1_body_z",
-        "star1_orbit_x",
-        "star1_orbit_y",
-        "star1_orbit_z",
-        "star2_body_x",
-        "star2_body_y",
-        "star2_body_z",
-        "star2_orbit_x",
-        "star2_orbit_y",
-        "star2_orbit_z",
-        "star3_body_x",
-        "star3_body_y",
-        "star3_body_z",
-        "star3_orbit_x",
-        "star3_orbit_y",
-        "star3_orbit_z",
-    )
-
     NODE = "cubeacp"
     NAME = "ADCS Measurements"
     KIND = "telemetry"
@@ -74,1194 +28,345 @@ class AdcsMeasurements(_base.Message):
     IDS = (ID,)
     LENGTH = 72
     TABLE = 150
-    FIELDS = (
-        _base.FieldInfo(
-            "magnetic_field_x",
-            "Magnetic Field X",
-            0,
-            16,
-            "int",
-            unit="uT",
-            physical="magnetic_field_x_ut",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "magnetic_field_y",
-            "Magnetic Field Y",
-            16,
-            16,
-            "int",
-            unit="uT",
-            physical="magnetic_field_y_ut",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "magnetic_field_z",
-            "Magnetic Field Z",
-            32,
-            16,
-            "int",
-            unit="uT",
-            physical="magnetic_field_z_ut",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "coarse_sun_x",
-            "Coarse Sun X",
-            48,
-            16,
-            "int",
-            physical="coarse_sun_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "coarse_sun_y",
-            "Coarse Sun Y",
-            64,
-            16,
-            "int",
-            physical="coarse_sun_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "coarse_sun_z",
-            "Coarse Sun Z",
-            80,
-            16,
-            "int",
-            physical="coarse_sun_z_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "sun_x",
-            "Sun X",
-            96,
-            16,
-            "int",
-            physical="sun_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "sun_y",
-            "Sun Y",
-            112,
-            16,
-            "int",
-            physical="sun_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "sun_z",
-            "Sun Z",
-            128,
-            16,
-            "int",
-            physical="sun_z_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "nadir_x",
-            "Nadir X",
-            144,
-            16,
-            "int",
-            physical="nadir_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "nadir_y",
-            "Nadir Y",
-            160,
-            16,
-            "int",
-            physical="nadir_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "nadir_z",
-            "Nadir Z",
-            176,
-            16,
-            "int",
-            physical="nadir_z_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "x_angular_rate",
-            "X Angular Rate",
-            192,
-            16,
-            "int",
-            unit="deg/s",
-            physical="x_angular_rate_deg_per_s",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "y_angular_rate",
-            "Y Angular Rate",
-            208,
-            16,
-            "int",
-            unit="deg/s",
-            physical="y_angular_rate_deg_per_s",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "z_angular_rate",
-            "Z Angular Rate",
-            224,
-            16,
-            "int",
-            unit="deg/s",
-            physical="z_angular_rate_deg_per_s",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo("x_wheel_speed", "X Wheel Speed", 240, 16, "int", unit="rpm"),
-        _base.FieldInfo("y_wheel_speed", "Y Wheel Speed", 256, 16, "int", unit="rpm"),
-        _base.FieldInfo("z_wheel_speed", "Z Wheel Speed", 272, 16, "int", unit="rpm"),
-        _base.FieldInfo(
-            "star1_body_x",
-            "Star1BX",
-            288,
-            16,
-            "int",
-            physical="star1_body_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star1_body_y",
-            "Star1BY",
-            304,
-            16,
-            "int",
-            physical="star1_body_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star1_body_z",
-            "Star1BZ",
-            320,
-            16,
-            "int",
-            physical="star1_body_z_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star1_orbit_x",
-            "Star1OX",
-            336,
-            16,
-            "int",
-            physical="star1_orbit_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star1_orbit_y",
-            "Star1OY",
-            352,
-            16,
-            "int",
-            physical="star1_orbit_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star1_orbit_z",
-            "Star1OZ",
-            368,
-            16,
-            "int",
-            physical="star1_orbit_z_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star2_body_x",
-            "Star2BX",
-            384,
-            16,
-            "int",
-            physical="star2_body_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star2_body_y",
-            "Star2BY",
-            400,
-            16,
-            "int",
-            physical="star2_body_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star2_body_z",
-            "Star2BZ",
-            416,
-            16,
-            "int",
-            physical="star2_body_z_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star2_orbit_x",
-            "Star2OX",
-            432,
-            16,
-            "int",
-            physical="star2_orbit_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star2_orbit_y",
-            "Star2OY",
-            448,
-            16,
-            "int",
-            physical="star2_orbit_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star2_orbit_z",
-            "Star2OZ",
-            464,
-            16,
-            "int",
-            physical="star2_orbit_z_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star3_body_x",
-            "Star3BX",
-            480,
-            16,
-            "int",
-            physical="star3_body_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star3_body_y",
-            "Star3BY",
-            496,
-            16,
-            "int",
-            physical="star3_body_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star3_body_z",
-            "Star3BZ",
-            512,
-            16,
-            "int",
-            physical="star3_body_z_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star3_orbit_x",
-            "Star3OX",
-            528,
-            16,
-            "int",
-            physical="star3_orbit_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star3_orbit_y",
-            "Star3OY",
-            544,
-            16,
-            "int",
-            physical="star3_orbit_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star3_orbit_z",
-            "Star3OZ",
-            560,
-            16,
-            "int",
-            physical="star3_orbit_z_physical",
-            scale=(1, 0, 10000),
-        ),
-    )
 
-    magnetic_field_x: int
+    magnetic_field_x: int = _base.field("Magnetic Field X", 0, 16, "int", default=0, unit="uT")
     """Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68
     to 327.67 uT.
     """
-    magnetic_field_y: int
+    magnetic_field_x_ut: float = _base.scaled(1, 0, 100, default=0.0)
+    """Magnetic Field X in uT: -327.68 to 327.67."""
+    magnetic_field_x_nt: int = _base.whole(10, 0)
+    """Magnetic Field X in nT, exact: -327680 to 327670."""
+
+    magnetic_field_y: int = _base.field("Magnetic Field Y", 16, 16, "int", default=0, unit="uT")
     """Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 uT.
     """
-    magnetic_field_z: int
+    magnetic_field_y_ut: float = _base.scaled(1, 0, 100, default=0.0)
+    """Magnetic Field Y in uT: -327.68 to 327.67."""
+    magnetic_field_y_nt: int = _base.whole(10, 0)
+    """Magnetic Field Y in nT, exact: -327680 to 327670."""
+
+    magnetic_field_z: int = _base.field("Magnetic Field Z", 32, 16, "int", default=0, unit="uT")
     """Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 uT.
     """
-    coarse_sun_x: int
+    magnetic_field_z_ut: float = _base.scaled(1, 0, 100, default=0.0)
+    """Magnetic Field Z in uT: -327.68 to 327.67."""
+    magnetic_field_z_nt: int = _base.whole(10, 0)
+    """Magnetic Field Z in nT, exact: -327680 to 327670."""
+
+    coarse_sun_x: int = _base.field("Coarse Sun X", 48, 16, "int", default=0)
     """Coarse Sun X: bits 48 to 63, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     to 3.2767.
     """
-    coarse_sun_y: int
+    coarse_sun_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Coarse Sun X, as a physical value: -3.2768 to 3.2767."""
+    coarse_sun_x_micro: int = _base.whole(100, 0)
+    """Coarse Sun X in millionths, exact: -3276800 to 3276700."""
+
+    coarse_sun_y: int = _base.field("Coarse Sun Y", 64, 16, "int", default=0)
     """Coarse Sun Y: bits 64 to 79, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     to 3.2767.
     """
-    coarse_sun_z: int
+    coarse_sun_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Coarse Sun Y, as a physical value: -3.2768 to 3.2767."""
+    coarse_sun_y_micro: int = _base.whole(100, 0)
+    """Coarse Sun Y in millionths, exact: -3276800 to 3276700."""
+
+    coarse_sun_z: int = _base.field("Coarse Sun Z", 80, 16, "int", default=0)
     """Coarse Sun Z: bits 80 to 95, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     to 3.2767.
     """
-    sun_x: int
+    coarse_sun_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Coarse Sun Z, as a physical value: -3.2768 to 3.2767."""
+    coarse_sun_z_micro: int = _base.whole(100, 0)
+    """Coarse Sun Z in millionths, exact: -3276800 to 3276700."""
+
+    sun_x: int = _base.field("Sun X", 96, 16, "int", default=0)
     """Sun X: bits 96 to 111, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
     """
-    sun_y: int
+    sun_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Sun X, as a physical value: -3.2768 to 3.2767."""
+    sun_x_micro: int = _base.whole(100, 0)
+    """Sun X in millionths, exact: -3276800 to 3276700."""
+
+    sun_y: int = _base.field("Sun Y", 112, 16, "int", default=0)
     """Sun Y: bits 112 to 127, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
     """
-    sun_z: int
+    sun_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Sun Y, as a physical value: -3.2768 to 3.2767."""
+    sun_y_micro: int = _base.whole(100, 0)
+    """Sun Y in millionths, exact: -3276800 to 3276700."""
+
+    sun_z: int = _base.field("Sun Z", 128, 16, "int", default=0)
     """Sun Z: bits 128 to 143, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
     """
-    nadir_x: int
+    sun_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Sun Z, as a physical value: -3.2768 to 3.2767."""
+    sun_z_micro: int = _base.whole(100, 0)
+    """Sun Z in millionths, exact: -3276800 to 3276700."""
+
+    nadir_x: int = _base.field("Nadir X", 144, 16, "int", default=0)
     """Nadir X: bits 144 to 159, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
     """
-    nadir_y: int
+    nadir_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Nadir X, as a physical value: -3.2768 to 3.2767."""
+    nadir_x_micro: int = _base.whole(100, 0)
+    """Nadir X in millionths, exact: -3276800 to 3276700."""
+
+    nadir_y: int = _base.field("Nadir Y", 160, 16, "int", default=0)
     """Nadir Y: bits 160 to 175, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
     """
-    nadir_z: int
+    nadir_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Nadir Y, as a physical value: -3.2768 to 3.2767."""
+    nadir_y_micro: int = _base.whole(100, 0)
+    """Nadir Y in millionths, exact: -3276800 to 3276700."""
+
+    nadir_z: int = _base.field("Nadir Z", 176, 16, "int", default=0)
     """Nadir Z: bits 176 to 191, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
     """
-    x_angular_rate: int
+    nadir_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Nadir Z, as a physical value: -3.2768 to 3.2767."""
+    nadir_z_micro: int = _base.whole(100, 0)
+    """Nadir Z in millionths, exact: -3276800 to 3276700."""
+
+    x_angular_rate: int = _base.field("X Angular Rate", 192, 16, "int", default=0, unit="deg/s")
     """X Angular Rate: bits 192 to 207, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 deg/s.
     """
-    y_angular_rate: int
+    x_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
+    """X Angular Rate in deg/s: -327.68 to 327.67."""
+    x_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """X Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
+
+    y_angular_rate: int = _base.field("Y Angular Rate", 208, 16, "int", default=0, unit="deg/s")
     """Y Angular Rate: bits 208 to 223, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 deg/s.
     """
-    z_angular_rate: int
+    y_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
+    """Y Angular Rate in deg/s: -327.68 to 327.67."""
+    y_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Y Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
+
+    z_angular_rate: int = _base.field("Z Angular Rate", 224, 16, "int", default=0, unit="deg/s")
     """Z Angular Rate: bits 224 to 239, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 deg/s.
     """
-    x_wheel_speed: int
+    z_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
+    """Z Angular Rate in deg/s: -327.68 to 327.67."""
+    z_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Z Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
+
+    x_wheel_speed: int = _base.field("X Wheel Speed", 240, 16, "int", default=0, unit="rpm")
     """X Wheel Speed: bits 240 to 255, raw -32768 to 32767, in rpm."""
-    y_wheel_speed: int
+
+    y_wheel_speed: int = _base.field("Y Wheel Speed", 256, 16, "int", default=0, unit="rpm")
     """Y Wheel Speed: bits 256 to 271, raw -32768 to 32767, in rpm."""
-    z_wheel_speed: int
+
+    z_wheel_speed: int = _base.field("Z Wheel Speed", 272, 16, "int", default=0, unit="rpm")
     """Z Wheel Speed: bits 272 to 287, raw -32768 to 32767, in rpm."""
-    star1_body_x: int
+
+    star1_body_x: int = _base.field("Star1BX", 288, 16, "int", default=0)
     """Star1BX: bits 288 to 303, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the body frame.
     """
-    star1_body_y: int
+    star1_body_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star1BX, as a physical value: -3.2768 to 3.2767."""
+    star1_body_x_micro: int = _base.whole(100, 0)
+    """Star1BX in millionths, exact: -3276800 to 3276700."""
+
+    star1_body_y: int = _base.field("Star1BY", 304, 16, "int", default=0)
     """Star1BY: bits 304 to 319, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the body frame.
     """
-    star1_body_z: int
+    star1_body_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star1BY, as a physical value: -3.2768 to 3.2767."""
+    star1_body_y_micro: int = _base.whole(100, 0)
+    """Star1BY in millionths, exact: -3276800 to 3276700."""
+
+    star1_body_z: int = _base.field("Star1BZ", 320, 16, "int", default=0)
     """Star1BZ: bits 320 to 335, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the body frame.
     """
-    star1_orbit_x: int
+    star1_body_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star1BZ, as a physical value: -3.2768 to 3.2767."""
+    star1_body_z_micro: int = _base.whole(100, 0)
+    """Star1BZ in millionths, exact: -3276800 to 3276700."""
+
+    star1_orbit_x: int = _base.field("Star1OX", 336, 16, "int", default=0)
     """Star1OX: bits 336 to 351, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the orbit frame.
     """
-    star1_orbit_y: int
+    star1_orbit_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star1OX, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_x_micro: int = _base.whole(100, 0)
+    """Star1OX in millionths, exact: -3276800 to 3276700."""
+
+    star1_orbit_y: int = _base.field("Star1OY", 352, 16, "int", default=0)
     """Star1OY: bits 352 to 367, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the orbit frame.
     """
-    star1_orbit_z: int
+    star1_orbit_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star1OY, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_y_micro: int = _base.whole(100, 0)
+    """Star1OY in millionths, exact: -3276800 to 3276700."""
+
+    star1_orbit_z: int = _base.field("Star1OZ", 368, 16, "int", default=0)
     """Star1OZ: bits 368 to 383, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the orbit frame.
     """
-    star2_body_x: int
+    star1_orbit_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star1OZ, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_z_micro: int = _base.whole(100, 0)
+    """Star1OZ in millionths, exact: -3276800 to 3276700."""
+
+    star2_body_x: int = _base.field("Star2BX", 384, 16, "int", default=0)
     """Star2BX: bits 384 to 399, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the body frame.
     """
-    star2_body_y: int
+    star2_body_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star2BX, as a physical value: -3.2768 to 3.2767."""
+    star2_body_x_micro: int = _base.whole(100, 0)
+    """Star2BX in millionths, exact: -3276800 to 3276700."""
+
+    star2_body_y: int = _base.field("Star2BY", 400, 16, "int", default=0)
     """Star2BY: bits 400 to 415, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the body frame.
     """
-    star2_body_z: int
+    star2_body_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star2BY, as a physical value: -3.2768 to 3.2767."""
+    star2_body_y_micro: int = _base.whole(100, 0)
+    """Star2BY in millionths, exact: -3276800 to 3276700."""
+
+    star2_body_z: int = _base.field("Star2BZ", 416, 16, "int", default=0)
     """Star2BZ: bits 416 to 431, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the body frame.
     """
-    star2_orbit_x: int
+    star2_body_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star2BZ, as a physical value: -3.2768 to 3.2767."""
+    star2_body_z_micro: int = _base.whole(100, 0)
+    """Star2BZ in millionths, exact: -3276800 to 3276700."""
+
+    star2_orbit_x: int = _base.field("Star2OX", 432, 16, "int", default=0)
     """Star2OX: bits 432 to 447, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the orbit frame.
     """
-    star2_orbit_y: int
+    star2_orbit_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star2OX, as a physical value: -3.2768 to 3.2767."""
+    star2_orbit_x_micro: int = _base.whole(100, 0)
+    """Star2OX in millionths, exact: -3276800 to 3276700."""
+
+    star2_orbit_y: int = _base.field("Star2OY", 448, 16, "int", default=0)
     """Star2OY: bits 448 to 463, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the orbit frame.
     """
-    star2_orbit_z: int
+    star2_orbit_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star2OY, as a physical value: -3.2768 to 3.2767."""
+    star2_orbit_y_micro: int = _base.whole(100, 0)
+    """Star2OY in millionths, exact: -3276800 to 3276700."""
+
+    star2_orbit_z: int = _base.field("Star2OZ", 464, 16, "int", default=0)
     """Star2OZ: bits 464 to 479, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the orbit frame.
     """
-    star3_body_x: int
+    star2_orbit_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star2OZ, as a physical value: -3.2768 to 3.2767."""
+    star2_orbit_z_micro: int = _base.whole(100, 0)
+    """Star2OZ in millionths, exact: -3276800 to 3276700."""
+
+    star3_body_x: int = _base.field("Star3BX", 480, 16, "int", default=0)
     """Star3BX: bits 480 to 495, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the body frame.
     """
-    star3_body_y: int
+    star3_body_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star3BX, as a physical value: -3.2768 to 3.2767."""
+    star3_body_x_micro: int = _base.whole(100, 0)
+    """Star3BX in millionths, exact: -3276800 to 3276700."""
+
+    star3_body_y: int = _base.field("Star3BY", 496, 16, "int", default=0)
     """Star3BY: bits 496 to 511, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the body frame.
     """
-    star3_body_z: int
+    star3_body_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star3BY, as a physical value: -3.2768 to 3.2767."""
+    star3_body_y_micro: int = _base.whole(100, 0)
+    """Star3BY in millionths, exact: -3276800 to 3276700."""
+
+    star3_body_z: int = _base.field("Star3BZ", 512, 16, "int", default=0)
     """Star3BZ: bits 512 to 527, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the body frame.
     """
-    star3_orbit_x: int
+    star3_body_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star3BZ, as a physical value: -3.2768 to 3.2767."""
+    star3_body_z_micro: int = _base.whole(100, 0)
+    """Star3BZ in millionths, exact: -3276800 to 3276700."""
+
+    star3_orbit_x: int = _base.field("Star3OX", 528, 16, "int", default=0)
     """Star3OX: bits 528 to 543, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the orbit frame.
     """
-    star3_orbit_y: int
+    star3_orbit_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star3OX, as a physical value: -3.2768 to 3.2767."""
+    star3_orbit_x_micro: int = _base.whole(100, 0)
+    """Star3OX in millionths, exact: -3276800 to 3276700."""
+
+    star3_orbit_y: int = _base.field("Star3OY", 544, 16, "int", default=0)
     """Star3OY: bits 544 to 559, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the orbit frame.
     """
-    star3_orbit_z: int
+    star3_orbit_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star3OY, as a physical value: -3.2768 to 3.2767."""
+    star3_orbit_y_micro: int = _base.whole(100, 0)
+    """Star3OY in millionths, exact: -3276800 to 3276700."""
+
+    star3_orbit_z: int = _base.field("Star3OZ", 560, 16, "int", default=0)
     """Star3OZ: bits 560 to 575, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the orbit frame.
     """
-
-    def __init__(
-        self,
-        *,
-        magnetic_field_x: int = 0,
-        magnetic_field_y: int = 0,
-        magnetic_field_z: int = 0,
-        coarse_sun_x: int = 0,
-        coarse_sun_y: int = 0,
-        coarse_sun_z: int = 0,
-        sun_x: int = 0,
-        sun_y: int = 0,
-        sun_z: int = 0,
-        nadir_x: int = 0,
-        nadir_y: int = 0,
-        nadir_z: int = 0,
-        x_angular_rate: int = 0,
-        y_angular_rate: int = 0,
-        z_angular_rate: int = 0,
-        x_wheel_speed: int = 0,
-        y_wheel_speed: int = 0,
-        z_wheel_speed: int = 0,
-        star1_body_x: int = 0,
-        star1_body_y: int = 0,
-        star1_body_z: int = 0,
-        star1_orbit_x: int = 0,
-        star1_orbit_y: int = 0,
-        star1_orbit_z: int = 0,
-        star2_body_x: int = 0,
-        star2_body_y: int = 0,
-        star2_body_z: int = 0,
-        star2_orbit_x: int = 0,
-        star2_orbit_y: int = 0,
-        star2_orbit_z: int = 0,
-        star3_body_x: int = 0,
-        star3_body_y: int = 0,
-        star3_body_z: int = 0,
-        star3_orbit_x: int = 0,
-        star3_orbit_y: int = 0,
-        star3_orbit_z: int = 0,
-    ) -> None:
-        self.magnetic_field_x = magnetic_field_x
-        self.magnetic_field_y = magnetic_field_y
-        self.magnetic_field_z = magnetic_field_z
-        self.coarse_sun_x = coarse_sun_x
-        self.coarse_sun_y = coarse_sun_y
-        self.coarse_sun_z = coarse_sun_z
-        self.sun_x = sun_x
-        self.sun_y = sun_y
-        self.sun_z = sun_z
-        self.nadir_x = nadir_x
-        self.nadir_y = nadir_y
-        self.nadir_z = nadir_z
-        self.x_angular_rate = x_angular_rate
-        self.y_angular_rate = y_angular_rate
-        self.z_angular_rate = z_angular_rate
-        self.x_wheel_speed = x_wheel_speed
-        self.y_wheel_speed = y_wheel_speed
-        self.z_wheel_speed = z_wheel_speed
-        self.star1_body_x = star1_body_x
-        self.star1_body_y = star1_body_y
-        self.star1_body_z = star1_body_z
-        self.star1_orbit_x = star1_orbit_x
-        self.star1_orbit_y = star1_orbit_y
-        self.star1_orbit_z = star1_orbit_z
-        self.star2_body_x = star2_body_x
-        self.star2_body_y = star2_body_y
-        self.star2_body_z = star2_body_z
-        self.star2_orbit_x = star2_orbit_x
-        self.star2_orbit_y = star2_orbit_y
-        self.star2_orbit_z = star2_orbit_z
-        self.star3_body_x = star3_body_x
-        self.star3_body_y = star3_body_y
-        self.star3_body_z = star3_body_z
-        self.star3_orbit_x = star3_orbit_x
-        self.star3_orbit_y = star3_orbit_y
-        self.star3_orbit_z = star3_orbit_z
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        magnetic_field_x_ut: float = 0.0,
-        magnetic_field_y_ut: float = 0.0,
-        magnetic_field_z_ut: float = 0.0,
-        coarse_sun_x_physical: float = 0.0,
-        coarse_sun_y_physical: float = 0.0,
-        coarse_sun_z_physical: float = 0.0,
-        sun_x_physical: float = 0.0,
-        sun_y_physical: float = 0.0,
-        sun_z_physical: float = 0.0,
-        nadir_x_physical: float = 0.0,
-        nadir_y_physical: float = 0.0,
-        nadir_z_physical: float = 0.0,
-        x_angular_rate_deg_per_s: float = 0.0,
-        y_angular_rate_deg_per_s: float = 0.0,
-        z_angular_rate_deg_per_s: float = 0.0,
-        x_wheel_speed: int = 0,
-        y_wheel_speed: int = 0,
-        z_wheel_speed: int = 0,
-        star1_body_x_physical: float = 0.0,
-        star1_body_y_physical: float = 0.0,
-        star1_body_z_physical: float = 0.0,
-        star1_orbit_x_physical: float = 0.0,
-        star1_orbit_y_physical: float = 0.0,
-        star1_orbit_z_physical: float = 0.0,
-        star2_body_x_physical: float = 0.0,
-        star2_body_y_physical: float = 0.0,
-        star2_body_z_physical: float = 0.0,
-        star2_orbit_x_physical: float = 0.0,
-        star2_orbit_y_physical: float = 0.0,
-        star2_orbit_z_physical: float = 0.0,
-        star3_body_x_physical: float = 0.0,
-        star3_body_y_physical: float = 0.0,
-        star3_body_z_physical: float = 0.0,
-        star3_orbit_x_physical: float = 0.0,
-        star3_orbit_y_physical: float = 0.0,
-        star3_orbit_z_physical: float = 0.0,
-    ) -> AdcsMeasurements:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.magnetic_field_x_ut = magnetic_field_x_ut
-        self.magnetic_field_y_ut = magnetic_field_y_ut
-        self.magnetic_field_z_ut = magnetic_field_z_ut
-        self.coarse_sun_x_physical = coarse_sun_x_physical
-        self.coarse_sun_y_physical = coarse_sun_y_physical
-        self.coarse_sun_z_physical = coarse_sun_z_physical
-        self.sun_x_physical = sun_x_physical
-        self.sun_y_physical = sun_y_physical
-        self.sun_z_physical = sun_z_physical
-        self.nadir_x_physical = nadir_x_physical
-        self.nadir_y_physical = nadir_y_physical
-        self.nadir_z_physical = nadir_z_physical
-        self.x_angular_rate_deg_per_s = x_angular_rate_deg_per_s
-        self.y_angular_rate_deg_per_s = y_angular_rate_deg_per_s
-        self.z_angular_rate_deg_per_s = z_angular_rate_deg_per_s
-        self.x_wheel_speed = x_wheel_speed
-        self.y_wheel_speed = y_wheel_speed
-        self.z_wheel_speed = z_wheel_speed
-        self.star1_body_x_physical = star1_body_x_physical
-        self.star1_body_y_physical = star1_body_y_physical
-        self.star1_body_z_physical = star1_body_z_physical
-        self.star1_orbit_x_physical = star1_orbit_x_physical
-        self.star1_orbit_y_physical = star1_orbit_y_physical
-        self.star1_orbit_z_physical = star1_orbit_z_physical
-        self.star2_body_x_physical = star2_body_x_physical
-        self.star2_body_y_physical = star2_body_y_physical
-        self.star2_body_z_physical = star2_body_z_physical
-        self.star2_orbit_x_physical = star2_orbit_x_physical
-        self.star2_orbit_y_physical = star2_orbit_y_physical
-        self.star2_orbit_z_physical = star2_orbit_z_physical
-        self.star3_body_x_physical = star3_body_x_physical
-        self.star3_body_y_physical = star3_body_y_physical
-        self.star3_body_z_physical = star3_body_z_physical
-        self.star3_orbit_x_physical = star3_orbit_x_physical
-        self.star3_orbit_y_physical = star3_orbit_y_physical
-        self.star3_orbit_z_physical = star3_orbit_z_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> AdcsMeasurements:
-        """The message in a frame of exactly 72 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.magnetic_field_x,
-                self.magnetic_field_y,
-                self.magnetic_field_z,
-                self.coarse_sun_x,
-                self.coarse_sun_y,
-                self.coarse_sun_z,
-                self.sun_x,
-                self.sun_y,
-                self.sun_z,
-                self.nadir_x,
-                self.nadir_y,
-                self.nadir_z,
-                self.x_angular_rate,
-                self.y_angular_rate,
-                self.z_angular_rate,
-                self.x_wheel_speed,
-                self.y_wheel_speed,
-                self.z_wheel_speed,
-                self.star1_body_x,
-                self.star1_body_y,
-                self.star1_body_z,
-                self.star1_orbit_x,
-                self.star1_orbit_y,
-                self.star1_orbit_z,
-                self.star2_body_x,
-                self.star2_body_y,
-                self.star2_body_z,
-                self.star2_orbit_x,
-                self.star2_orbit_y,
-                self.star2_orbit_z,
-                self.star3_body_x,
-                self.star3_body_y,
-                self.star3_body_z,
-                self.star3_orbit_x,
-                self.star3_orbit_y,
-                self.star3_orbit_z,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.magnetic_field_x,
-                self.magnetic_field_y,
-                self.magnetic_field_z,
-                self.coarse_sun_x,
-                self.coarse_sun_y,
-                self.coarse_sun_z,
-                self.sun_x,
-                self.sun_y,
-                self.sun_z,
-                self.nadir_x,
-                self.nadir_y,
-                self.nadir_z,
-                self.x_angular_rate,
-                self.y_angular_rate,
-                self.z_angular_rate,
-                self.x_wheel_speed,
-                self.y_wheel_speed,
-                self.z_wheel_speed,
-                self.star1_body_x,
-                self.star1_body_y,
-                self.star1_body_z,
-                self.star1_orbit_x,
-                self.star1_orbit_y,
-                self.star1_orbit_z,
-                self.star2_body_x,
-                self.star2_body_y,
-                self.star2_body_z,
-                self.star2_orbit_x,
-                self.star2_orbit_y,
-                self.star2_orbit_z,
-                self.star3_body_x,
-                self.star3_body_y,
-                self.star3_body_z,
-                self.star3_orbit_x,
-                self.star3_orbit_y,
-                self.star3_orbit_z,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def magnetic_field_x_ut(self) -> float:
-        """Magnetic Field X in uT: -327.68 to 327.67."""
-        return self.magnetic_field_x / 100
-
-    @magnetic_field_x_ut.setter
-    def magnetic_field_x_ut(self, value: float) -> None:
-        self.magnetic_field_x = _codec.raw_value(
-            value,
-            "magnetic_field_x",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetic_field_y_ut(self) -> float:
-        """Magnetic Field Y in uT: -327.68 to 327.67."""
-        return self.magnetic_field_y / 100
-
-    @magnetic_field_y_ut.setter
-    def magnetic_field_y_ut(self, value: float) -> None:
-        self.magnetic_field_y = _codec.raw_value(
-            value,
-            "magnetic_field_y",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetic_field_z_ut(self) -> float:
-        """Magnetic Field Z in uT: -327.68 to 327.67."""
-        return self.magnetic_field_z / 100
-
-    @magnetic_field_z_ut.setter
-    def magnetic_field_z_ut(self, value: float) -> None:
-        self.magnetic_field_z = _codec.raw_value(
-            value,
-            "magnetic_field_z",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def coarse_sun_x_physical(self) -> float:
-        """Coarse Sun X, as a physical value: -3.2768 to 3.2767."""
-        return self.coarse_sun_x / 10000
-
-    @coarse_sun_x_physical.setter
-    def coarse_sun_x_physical(self, value: float) -> None:
-        self.coarse_sun_x = _codec.raw_value(
-            value,
-            "coarse_sun_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def coarse_sun_y_physical(self) -> float:
-        """Coarse Sun Y, as a physical value: -3.2768 to 3.2767."""
-        return self.coarse_sun_y / 10000
-
-    @coarse_sun_y_physical.setter
-    def coarse_sun_y_physical(self, value: float) -> None:
-        self.coarse_sun_y = _codec.raw_value(
-            value,
-            "coarse_sun_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def coarse_sun_z_physical(self) -> float:
-        """Coarse Sun Z, as a physical value: -3.2768 to 3.2767."""
-        return self.coarse_sun_z / 10000
-
-    @coarse_sun_z_physical.setter
-    def coarse_sun_z_physical(self, value: float) -> None:
-        self.coarse_sun_z = _codec.raw_value(
-            value,
-            "coarse_sun_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def sun_x_physical(self) -> float:
-        """Sun X, as a physical value: -3.2768 to 3.2767."""
-        return self.sun_x / 10000
-
-    @sun_x_physical.setter
-    def sun_x_physical(self, value: float) -> None:
-        self.sun_x = _codec.raw_value(value, "sun_x", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def sun_y_physical(self) -> float:
-        """Sun Y, as a physical value: -3.2768 to 3.2767."""
-        return self.sun_y / 10000
-
-    @sun_y_physical.setter
-    def sun_y_physical(self, value: float) -> None:
-        self.sun_y = _codec.raw_value(value, "sun_y", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def sun_z_physical(self) -> float:
-        """Sun Z, as a physical value: -3.2768 to 3.2767."""
-        return self.sun_z / 10000
-
-    @sun_z_physical.setter
-    def sun_z_physical(self, value: float) -> None:
-        self.sun_z = _codec.raw_value(value, "sun_z", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def nadir_x_physical(self) -> float:
-        """Nadir X, as a physical value: -3.2768 to 3.2767."""
-        return self.nadir_x / 10000
-
-    @nadir_x_physical.setter
-    def nadir_x_physical(self, value: float) -> None:
-        self.nadir_x = _codec.raw_value(value, "nadir_x", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def nadir_y_physical(self) -> float:
-        """Nadir Y, as a physical value: -3.2768 to 3.2767."""
-        return self.nadir_y / 10000
-
-    @nadir_y_physical.setter
-    def nadir_y_physical(self, value: float) -> None:
-        self.nadir_y = _codec.raw_value(value, "nadir_y", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def nadir_z_physical(self) -> float:
-        """Nadir Z, as a physical value: -3.2768 to 3.2767."""
-        return self.nadir_z / 10000
-
-    @nadir_z_physical.setter
-    def nadir_z_physical(self, value: float) -> None:
-        self.nadir_z = _codec.raw_value(value, "nadir_z", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def x_angular_rate_deg_per_s(self) -> float:
-        """X Angular Rate in deg/s: -327.68 to 327.67."""
-        return self.x_angular_rate / 100
-
-    @x_angular_rate_deg_per_s.setter
-    def x_angular_rate_deg_per_s(self, value: float) -> None:
-        self.x_angular_rate = _codec.raw_value(
-            value,
-            "x_angular_rate",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def y_angular_rate_deg_per_s(self) -> float:
-        """Y Angular Rate in deg/s: -327.68 to 327.67."""
-        return self.y_angular_rate / 100
-
-    @y_angular_rate_deg_per_s.setter
-    def y_angular_rate_deg_per_s(self, value: float) -> None:
-        self.y_angular_rate = _codec.raw_value(
-            value,
-            "y_angular_rate",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def z_angular_rate_deg_per_s(self) -> float:
-        """Z Angular Rate in deg/s: -327.68 to 327.67."""
-        return self.z_angular_rate / 100
-
-    @z_angular_rate_deg_per_s.setter
-    def z_angular_rate_deg_per_s(self, value: float) -> None:
-        self.z_angular_rate = _codec.raw_value(
-            value,
-            "z_angular_rate",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star1_body_x_physical(self) -> float:
-        """Star1BX, as a physical value: -3.2768 to 3.2767."""
-        return self.star1_body_x / 10000
-
-    @star1_body_x_physical.setter
-    def star1_body_x_physical(self, value: float) -> None:
-        self.star1_body_x = _codec.raw_value(
-            value,
-            "star1_body_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star1_body_y_physical(self) -> float:
-        """Star1BY, as a physical value: -3.2768 to 3.2767."""
-        return self.star1_body_y / 10000
-
-    @star1_body_y_physical.setter
-    def star1_body_y_physical(self, value: float) -> None:
-        self.star1_body_y = _codec.raw_value(
-            value,
-            "star1_body_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star1_body_z_physical(self) -> float:
-        """Star1BZ, as a physical value: -3.2768 to 3.2767."""
-        return self.star1_body_z / 10000
-
-    @star1_body_z_physical.setter
-    def star1_body_z_physical(self, value: float) -> None:
-        self.star1_body_z = _codec.raw_value(
-            value,
-            "star1_body_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star1_orbit_x_physical(self) -> float:
-        """Star1OX, as a physical value: -3.2768 to 3.2767."""
-        return self.star1_orbit_x / 10000
-
-    @star1_orbit_x_physical.setter
-    def star1_orbit_x_physical(self, value: float) -> None:
-        self.star1_orbit_x = _codec.raw_value(
-            value,
-            "star1_orbit_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star1_orbit_y_physical(self) -> float:
-        """Star1OY, as a physical value: -3.2768 to 3.2767."""
-        return self.star1_orbit_y / 10000
-
-    @star1_orbit_y_physical.setter
-    def star1_orbit_y_physical(self, value: float) -> None:
-        self.star1_orbit_y = _codec.raw_value(
-            value,
-            "star1_orbit_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star1_orbit_z_physical(self) -> float:
-        """Star1OZ, as a physical value: -3.2768 to 3.2767."""
-        return self.star1_orbit_z / 10000
-
-    @star1_orbit_z_physical.setter
-    def star1_orbit_z_physical(self, value: float) -> None:
-        self.star1_orbit_z = _codec.raw_value(
-            value,
-            "star1_orbit_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star2_body_x_physical(self) -> float:
-        """Star2BX, as a physical value: -3.2768 to 3.2767."""
-        return self.star2_body_x / 10000
-
-    @star2_body_x_physical.setter
-    def star2_body_x_physical(self, value: float) -> None:
-        self.star2_body_x = _codec.raw_value(
-            value,
-            "star2_body_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star2_body_y_physical(self) -> float:
-        """Star2BY, as a physical value: -3.2768 to 3.2767."""
-        return self.star2_body_y / 10000
-
-    @star2_body_y_physical.setter
-    def star2_body_y_physical(self, value: float) -> None:
-        self.star2_body_y = _codec.raw_value(
-            value,
-            "star2_body_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star2_body_z_physical(self) -> float:
-        """Star2BZ, as a physical value: -3.2768 to 3.2767."""
-        return self.star2_body_z / 10000
-
-    @star2_body_z_physical.setter
-    def star2_body_z_physical(self, value: float) -> None:
-        self.star2_body_z = _codec.raw_value(
-            value,
-            "star2_body_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star2_orbit_x_physical(self) -> float:
-        """Star2OX, as a physical value: -3.2768 to 3.2767."""
-        return self.star2_orbit_x / 10000
-
-    @star2_orbit_x_physical.setter
-    def star2_orbit_x_physical(self, value: float) -> None:
-        self.star2_orbit_x = _codec.raw_value(
-            value,
-            "star2_orbit_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star2_orbit_y_physical(self) -> float:
-        """Star2OY, as a physical value: -3.2768 to 3.2767."""
-        return self.star2_orbit_y / 10000
-
-    @star2_orbit_y_physical.setter
-    def star2_orbit_y_physical(self, value: float) -> None:
-        self.star2_orbit_y = _codec.raw_value(
-            value,
-            "star2_orbit_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star2_orbit_z_physical(self) -> float:
-        """Star2OZ, as a physical value: -3.2768 to 3.2767."""
-        return self.star2_orbit_z / 10000
-
-    @star2_orbit_z_physical.setter
-    def star2_orbit_z_physical(self, value: float) -> None:
-        self.star2_orbit_z = _codec.raw_value(
-            value,
-            "star2_orbit_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star3_body_x_physical(self) -> float:
-        """Star3BX, as a physical value: -3.2768 to 3.2767."""
-        return self.star3_body_x / 10000
-
-    @star3_body_x_physical.setter
-    def star3_body_x_physical(self, value: float) -> None:
-        self.star3_body_x = _codec.raw_value(
-            value,
-            "star3_body_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star3_body_y_physical(self) -> float:
-        """Star3BY, as a physical value: -3.2768 to 3.2767."""
-        return self.star3_body_y / 10000
-
-    @star3_body_y_physical.setter
-    def star3_body_y_physical(self, value: float) -> None:
-        self.star3_body_y = _codec.raw_value(
-            value,
-            "star3_body_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star3_body_z_physical(self) -> float:
-        """Star3BZ, as a physical value: -3.2768 to 3.2767."""
-        return self.star3_body_z / 10000
-
-    @star3_body_z_physical.setter
-    def star3_body_z_physical(self, value: float) -> None:
-        self.star3_body_z = _codec.raw_value(
-            value,
-            "star3_body_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star3_orbit_x_physical(self) -> float:
-        """Star3OX, as a physical value: -3.2768 to 3.2767."""
-        return self.star3_orbit_x / 10000
-
-    @star3_orbit_x_physical.setter
-    def star3_orbit_x_physical(self, value: float) -> None:
-        self.star3_orbit_x = _codec.raw_value(
-            value,
-            "star3_orbit_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star3_orbit_y_physical(self) -> float:
-        """Star3OY, as a physical value: -3.2768 to 3.2767."""
-        return self.star3_orbit_y / 10000
-
-    @star3_orbit_y_physical.setter
-    def star3_orbit_y_physical(self, value: float) -> None:
-        self.star3_orbit_y = _codec.raw_value(
-            value,
-            "star3_orbit_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star3_orbit_z_physical(self) -> float:
-        """Star3OZ, as a physical value: -3.2768 to 3.2767."""
-        return self.star3_orbit_z / 10000
-
-    @star3_orbit_z_physical.setter
-    def star3_orbit_z_physical(self, value: float) -> None:
-        self.star3_orbit_z = _codec.raw_value(
-            value,
-            "star3_orbit_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
+    star3_orbit_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star3OZ, as a physical value: -3.2768 to 3.2767."""
+    star3_orbit_z_micro: int = _base.whole(100, 0)
+    """Star3OZ in millionths, exact: -3276800 to 3276700."""

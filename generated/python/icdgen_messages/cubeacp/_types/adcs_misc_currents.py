@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<2Hh")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class AdcsMiscCurrents(_base.Message):
     """ADCS Misc Current Measurements: telemetry 198, 6 bytes. Table 156.
 
@@ -23,12 +16,6 @@ class AdcsMiscCurrents(_base.Message):
     Bit 24 of the log mask.
     """
 
-    __slots__ = (
-        "cubestar_current",
-        "magnetorquer_current",
-        "cubestar_mcu_temperature",
-    )
-
     NODE = "cubeacp"
     NAME = "ADCS Misc Current Measurements"
     KIND = "telemetry"
@@ -36,150 +23,41 @@ class AdcsMiscCurrents(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 156
-    FIELDS = (
-        _base.FieldInfo(
-            "cubestar_current",
-            "CubeStarCurrent",
-            0,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubestar_current_ma",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "magnetorquer_current",
-            "Magnetorquer Current",
-            16,
-            16,
-            "uint",
-            unit="mA",
-            physical="magnetorquer_current_ma",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "cubestar_mcu_temperature",
-            "CubeStar MCU temperature",
-            32,
-            16,
-            "int",
-            unit="C",
-            physical="cubestar_mcu_temperature_c",
-            scale=(1, 0, 100),
-        ),
-    )
 
-    cubestar_current: int
+    cubestar_current: int = _base.field("CubeStarCurrent", 0, 16, "uint", default=0, unit="mA")
     """CubeStarCurrent: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of
+    0.01 mA sixteen bits reach 655.35 mA, which a wheel motor may well exceed. All other
+    currents have steps of 0.1 mA and more. The factor is held as printed.
     """
-    magnetorquer_current: int
+    cubestar_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
+    """CubeStarCurrent in mA: 0 to 655.35."""
+    cubestar_current_ua: int = _base.whole(10, 0)
+    """CubeStarCurrent in uA, exact: 0 to 655350."""
+
+    magnetorquer_current: int = _base.field("Magnetorquer Current", 16, 16, "uint", default=0, unit="mA")
     """Magnetorquer Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0 to
     6553.5 mA.
     """
-    cubestar_mcu_temperature: int
+    magnetorquer_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
+    """Magnetorquer Current in mA: 0 to 6553.5."""
+    magnetorquer_current_ua: int = _base.whole(100, 0)
+    """Magnetorquer Current in uA, exact: 0 to 6553500."""
+
+    cubestar_mcu_temperature: int = _base.field("CubeStar MCU temperature", 32, 16, "int", default=0, unit="C")
     """CubeStar MCU temperature: bits 32 to 47, raw -32768 to 32767; physical
     `raw/100.0`, -327.68 to 327.67 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a
+    degree sign. Degrees Celsius are meant.
 
-    Note ACP-108 (certain): ADCS Misc Current Measurements holds a temperature.
+    Note ACP-108 (certain): ADCS Misc Current Measurements holds a temperature. The name
+    speaks of currents, the description of CubeStar and torquer currents and
+    temperatures; one temperature is there, of CubeStar.
     """
-
-    def __init__(
-        self,
-        *,
-        cubestar_current: int = 0,
-        magnetorquer_current: int = 0,
-        cubestar_mcu_temperature: int = 0,
-    ) -> None:
-        self.cubestar_current = cubestar_current
-        self.magnetorquer_current = magnetorquer_current
-        self.cubestar_mcu_temperature = cubestar_mcu_temperature
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        cubestar_current_ma: float = 0.0,
-        magnetorquer_current_ma: float = 0.0,
-        cubestar_mcu_temperature_c: float = 0.0,
-    ) -> AdcsMiscCurrents:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.cubestar_current_ma = cubestar_current_ma
-        self.magnetorquer_current_ma = magnetorquer_current_ma
-        self.cubestar_mcu_temperature_c = cubestar_mcu_temperature_c
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> AdcsMiscCurrents:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.cubestar_current,
-                self.magnetorquer_current,
-                self.cubestar_mcu_temperature,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.cubestar_current,
-                self.magnetorquer_current,
-                self.cubestar_mcu_temperature,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def cubestar_current_ma(self) -> float:
-        """CubeStarCurrent in mA: 0 to 655.35."""
-        return self.cubestar_current / 100
-
-    @cubestar_current_ma.setter
-    def cubestar_current_ma(self, value: float) -> None:
-        self.cubestar_current = _codec.raw_value(
-            value,
-            "cubestar_current",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def magnetorquer_current_ma(self) -> float:
-        """Magnetorquer Current in mA: 0 to 6553.5."""
-        return self.magnetorquer_current / 10
-
-    @magnetorquer_current_ma.setter
-    def magnetorquer_current_ma(self, value: float) -> None:
-        self.magnetorquer_current = _codec.raw_value(
-            value,
-            "magnetorquer_current",
-            (1, 0, 10),
-            0,
-            65535,
-        )
-
-    @property
-    def cubestar_mcu_temperature_c(self) -> float:
-        """CubeStar MCU temperature in C: -327.68 to 327.67."""
-        return self.cubestar_mcu_temperature / 100
-
-    @cubestar_mcu_temperature_c.setter
-    def cubestar_mcu_temperature_c(self, value: float) -> None:
-        self.cubestar_mcu_temperature = _codec.raw_value(
-            value,
-            "cubestar_mcu_temperature",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
+    cubestar_mcu_temperature_c: float = _base.scaled(1, 0, 100, default=0.0)
+    """CubeStar MCU temperature in C: -327.68 to 327.67."""
+    cubestar_mcu_temperature_mc: int = _base.whole(10, 0)
+    """CubeStar MCU temperature in thousandths of C, exact: -327680 to 327670."""

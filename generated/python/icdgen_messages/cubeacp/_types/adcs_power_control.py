@@ -5,47 +5,19 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .power_select import PowerSelect
 
-_STRUCT = struct.Struct("<3B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table(
-    (0, 2, PowerSelect),
-    (2, 2, PowerSelect),
-    (4, 2, PowerSelect),
-    (6, 2, PowerSelect),
-)
-_BYTES_0 = _codec.Inverse(_BITS_0)
-_BITS_1 = _codec.bit_table((0, 2, PowerSelect), (2, 2, PowerSelect))
-_BYTES_1 = _codec.Inverse(_BITS_1)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class AdcsPowerControl(_base.Message):
     """ADCS Power Control: configuration, set by telecommand 11, got by telemetry 197, 3
     bytes. Table 184.
 
     Switches components on and off.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
     """
-
-    __slots__ = (
-        "cubecontrol_signal_power_selection",
-        "cubecontrol_motor_power_selection",
-        "cubesense1_power_selection",
-        "cubesense2_power_selection",
-        "cubestar_power_selection",
-        "cubewheel1_power_selection",
-        "cubewheel2_power_selection",
-        "cubewheel3_power_selection",
-        "motor_power",
-        "gps_power",
-    )
 
     NODE = "cubeacp"
     NAME = "ADCS Power Control"
@@ -55,196 +27,91 @@ class AdcsPowerControl(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 3
     TABLE = 184
-    FIELDS = (
-        _base.FieldInfo(
-            "cubecontrol_signal_power_selection",
-            "CubeControl Signal Power Selection",
-            0,
-            2,
-            "enum",
-            enum=PowerSelect,
-        ),
-        _base.FieldInfo(
-            "cubecontrol_motor_power_selection",
-            "CubeControl Motor Power Selection",
-            2,
-            2,
-            "enum",
-            enum=PowerSelect,
-        ),
-        _base.FieldInfo(
-            "cubesense1_power_selection",
-            "CubeSense1 Power Selection",
-            4,
-            2,
-            "enum",
-            enum=PowerSelect,
-        ),
-        _base.FieldInfo(
-            "cubesense2_power_selection",
-            "CubeSense2 Power Selection",
-            6,
-            2,
-            "enum",
-            enum=PowerSelect,
-        ),
-        _base.FieldInfo(
-            "cubestar_power_selection",
-            "CubeStarPower Power Selection",
-            8,
-            2,
-            "enum",
-            enum=PowerSelect,
-        ),
-        _base.FieldInfo(
-            "cubewheel1_power_selection",
-            "CubeWheel1Power Power Selection",
-            10,
-            2,
-            "enum",
-            enum=PowerSelect,
-        ),
-        _base.FieldInfo(
-            "cubewheel2_power_selection",
-            "CubeWheel2Power Power Selection",
-            12,
-            2,
-            "enum",
-            enum=PowerSelect,
-        ),
-        _base.FieldInfo(
-            "cubewheel3_power_selection",
-            "CubeWheel3Power Power Selection",
-            14,
-            2,
-            "enum",
-            enum=PowerSelect,
-        ),
-        _base.FieldInfo("motor_power", "Motor Power", 16, 2, "enum", enum=PowerSelect),
-        _base.FieldInfo("gps_power", "GPS Power", 18, 2, "enum", enum=PowerSelect),
-    )
 
-    cubecontrol_signal_power_selection: PowerSelect
+    cubecontrol_signal_power_selection: PowerSelect = _base.field(
+        "CubeControl Signal Power Selection", 0, 2, "enum", default=PowerSelect.OFF
+    )
     """CubeControl Signal Power Selection: bits 0 to 1.
 
     Electronics of the signal PIC.
 
-    Note ACP-136 (certain): Power control calls the controllers PIC.
+    Note ACP-136 (certain): Power control calls the controllers PIC. Elsewhere the same
+    two are MCUs or microcontrollers.
     """
-    cubecontrol_motor_power_selection: PowerSelect
+
+    cubecontrol_motor_power_selection: PowerSelect = _base.field(
+        "CubeControl Motor Power Selection", 2, 2, "enum", default=PowerSelect.OFF
+    )
     """CubeControl Motor Power Selection: bits 2 to 3.
 
     Electronics of the motor PIC.
 
-    Note ACP-136 (certain): Power control calls the controllers PIC.
+    Note ACP-136 (certain): see CubeControl Signal Power Selection.
     """
-    cubesense1_power_selection: PowerSelect
+
+    cubesense1_power_selection: PowerSelect = _base.field(
+        "CubeSense1 Power Selection", 4, 2, "enum", default=PowerSelect.OFF
+    )
     """CubeSense1 Power Selection: bits 4 to 5."""
-    cubesense2_power_selection: PowerSelect
+
+    cubesense2_power_selection: PowerSelect = _base.field(
+        "CubeSense2 Power Selection", 6, 2, "enum", default=PowerSelect.OFF
+    )
     """CubeSense2 Power Selection: bits 6 to 7."""
-    cubestar_power_selection: PowerSelect
+
+    cubestar_power_selection: PowerSelect = _base.field(
+        "CubeStarPower Power Selection", 8, 2, "enum", default=PowerSelect.OFF
+    )
     """CubeStarPower Power Selection: bits 8 to 9.
 
-    Note ACP-134 (certain): Power is doubled in four names.
+    Note ACP-134 (certain): Power is doubled in four names. CubeStarPower Power
+    Selection and three like it say power twice; the other units have it once.
+    Identifiers are built without the first.
     """
-    cubewheel1_power_selection: PowerSelect
+
+    cubewheel1_power_selection: PowerSelect = _base.field(
+        "CubeWheel1Power Power Selection", 10, 2, "enum", default=PowerSelect.OFF
+    )
     """CubeWheel1Power Power Selection: bits 10 to 11.
 
-    Note ACP-134 (certain): Power is doubled in four names.
+    Note ACP-134 (certain): see CubeStarPower Power Selection.
     """
-    cubewheel2_power_selection: PowerSelect
+
+    cubewheel2_power_selection: PowerSelect = _base.field(
+        "CubeWheel2Power Power Selection", 12, 2, "enum", default=PowerSelect.OFF
+    )
     """CubeWheel2Power Power Selection: bits 12 to 13.
 
-    Note ACP-134 (certain): Power is doubled in four names.
+    Note ACP-134 (certain): see CubeStarPower Power Selection.
     """
-    cubewheel3_power_selection: PowerSelect
+
+    cubewheel3_power_selection: PowerSelect = _base.field(
+        "CubeWheel3Power Power Selection", 14, 2, "enum", default=PowerSelect.OFF
+    )
     """CubeWheel3Power Power Selection: bits 14 to 15.
 
-    Note ACP-134 (certain): Power is doubled in four names.
+    Note ACP-134 (certain): see CubeStarPower Power Selection.
     """
-    motor_power: PowerSelect
+
+    motor_power: PowerSelect = _base.field("Motor Power", 16, 2, "enum", default=PowerSelect.OFF)
     """Motor Power: bits 16 to 17.
 
     Motor electronics.
 
-    Note ACP-062 (open): Power switches and enabled flags do not match.
+    Note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is
+    reported as Motor Driver Enabled, GPS Power switches the antenna amplifier and is
+    reported as GPS LNA Power Enabled. GPS Receiver Enabled has no switch.
 
-    Note ACP-135 (certain): Motor Power and GPS Power are not called selections.
+    Note ACP-135 (certain): Motor Power and GPS Power are not called selections. Two of
+    ten fields with the same enumeration lack the word.
     """
-    gps_power: PowerSelect
+
+    gps_power: PowerSelect = _base.field("GPS Power", 18, 2, "enum", default=PowerSelect.OFF)
     """GPS Power: bits 18 to 19.
 
     LNA of the GPS.
 
-    Note ACP-062 (open): Power switches and enabled flags do not match.
+    Note ACP-062 (open): see Motor Power.
 
-    Note ACP-135 (certain): Motor Power and GPS Power are not called selections.
+    Note ACP-135 (certain): see Motor Power.
     """
-
-    def __init__(
-        self,
-        *,
-        cubecontrol_signal_power_selection: PowerSelect = PowerSelect.OFF,
-        cubecontrol_motor_power_selection: PowerSelect = PowerSelect.OFF,
-        cubesense1_power_selection: PowerSelect = PowerSelect.OFF,
-        cubesense2_power_selection: PowerSelect = PowerSelect.OFF,
-        cubestar_power_selection: PowerSelect = PowerSelect.OFF,
-        cubewheel1_power_selection: PowerSelect = PowerSelect.OFF,
-        cubewheel2_power_selection: PowerSelect = PowerSelect.OFF,
-        cubewheel3_power_selection: PowerSelect = PowerSelect.OFF,
-        motor_power: PowerSelect = PowerSelect.OFF,
-        gps_power: PowerSelect = PowerSelect.OFF,
-    ) -> None:
-        self.cubecontrol_signal_power_selection = cubecontrol_signal_power_selection
-        self.cubecontrol_motor_power_selection = cubecontrol_motor_power_selection
-        self.cubesense1_power_selection = cubesense1_power_selection
-        self.cubesense2_power_selection = cubesense2_power_selection
-        self.cubestar_power_selection = cubestar_power_selection
-        self.cubewheel1_power_selection = cubewheel1_power_selection
-        self.cubewheel2_power_selection = cubewheel2_power_selection
-        self.cubewheel3_power_selection = cubewheel3_power_selection
-        self.motor_power = motor_power
-        self.gps_power = gps_power
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> AdcsPowerControl:
-        """The message in a frame of exactly 3 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, v1, v2 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        (
-            self.cubecontrol_signal_power_selection,
-            self.cubecontrol_motor_power_selection,
-            self.cubesense1_power_selection,
-            self.cubesense2_power_selection,
-        ) = _BITS_0[v0]
-        (
-            self.cubestar_power_selection,
-            self.cubewheel1_power_selection,
-            self.cubewheel2_power_selection,
-            self.cubewheel3_power_selection,
-        ) = _BITS_0[v1]
-        self.motor_power, self.gps_power = _BITS_1[v2]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[
-                self.cubecontrol_signal_power_selection,
-                self.cubecontrol_motor_power_selection,
-                self.cubesense1_power_selection,
-                self.cubesense2_power_selection,
-            ]
-            v1 = _BYTES_0[
-                self.cubestar_power_selection,
-                self.cubewheel1_power_selection,
-                self.cubewheel2_power_selection,
-                self.cubewheel3_power_selection,
-            ]
-            v2 = _BYTES_1[self.motor_power, self.gps_power]
-            return _pack(v0, v1, v2)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,55 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .adcs_run_mode import AdcsRunMode
 from .asgp4_mode_select import Asgp4ModeSelect
 from .con_mode_select import ConModeSelect
 from .estim_mode_select import EstimModeSelect
 from .mag_mode_val import MagModeVal
 
-_STRUCT = struct.Struct("<9B3x17hH3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 4, EstimModeSelect), (4, 4, ConModeSelect))
-_BYTES_0 = _codec.Inverse(_BITS_0)
-_BITS_1 = _codec.bit_table(
-    (0, 2, AdcsRunMode),
-    (2, 2, Asgp4ModeSelect),
-    (4, 1, bool),
-    (5, 1, bool),
-    (6, 1, bool),
-    (7, 1, bool),
-)
-_BYTES_1 = _codec.Inverse(_BITS_1)
-_BITS_2 = _codec.bit_table(
-    (0, 1, bool),
-    (1, 1, bool),
-    (2, 1, bool),
-    (3, 1, bool),
-    (4, 1, bool),
-    (5, 1, bool),
-    (6, 1, bool),
-    (7, 1, bool),
-)
-_BYTES_2 = _codec.Inverse(_BITS_2)
-_BITS_3 = _codec.bit_table(
-    (0, 1, bool),
-    (1, 1, bool),
-    (2, 1, bool),
-    (3, 1, bool),
-    (4, 2, MagModeVal),
-    (6, 1, bool),
-    (7, 1, bool),
-)
-_BYTES_3 = _codec.Inverse(_BITS_3)
-_BITS_4 = _codec.bit_table((0, 1, bool), (1, 1, bool))
-_BYTES_4 = _codec.Inverse(_BITS_4)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class AdcsState(_base.Message):
     """ADCS State: telemetry 190, 54 bytes. Table 149.
 
@@ -65,91 +24,14 @@ class AdcsState(_base.Message):
     (ECI) from byte 30. Repeats Satellite Velocity (ECI) from byte 36. Repeats Satellite
     Position (LLH) from byte 42. Repeats ECEF Position from byte 48.
 
-    Note ACP-059 (certain): Current ADCS State and ADCS State.
+    Note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called
+    Current ADCS State, and frame 190, which holds it and much more, ADCS State with the
+    description current ADCS state.
 
-    Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles.
+    Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles. Bits 66
+    to 95 are not described. They are the unused end of frame 224, which the frame
+    repeats.
     """
-
-    __slots__ = (
-        "attitude_estimation_mode",
-        "control_mode",
-        "adcs_run_mode",
-        "asgp4_mode",
-        "cubecontrol_signal_enabled",
-        "cubecontrol_motor_enabled",
-        "cubesense1_enabled",
-        "cubesense2_enabled",
-        "cubewheel1_enabled",
-        "cubewheel2_enabled",
-        "cubewheel3_enabled",
-        "cubestar_enabled",
-        "gps_receiver_enabled",
-        "gps_lna_power_enabled",
-        "motor_driver_enabled",
-        "sun_is_above_local_horizon",
-        "cubesense1_communications_error",
-        "cubesense2_communications_error",
-        "cubecontrol_signal_communications_error",
-        "cubecontrol_motor_communications_error",
-        "cubewheel1_communications_error",
-        "cubewheel2_communications_error",
-        "cubewheel3_communications_error",
-        "cubestar_communications_error",
-        "magnetometer_range_error",
-        "cam1_sram_overcurrent_detected",
-        "cam1_3v3_overcurrent_detected",
-        "cam1_sensor_busy_error",
-        "cam1_sensor_detection_error",
-        "sun_sensor_range_error",
-        "cam2_sram_overcurrent_detected",
-        "cam2_3v3_overcurrent_detected",
-        "cam2_sensor_busy_error",
-        "cam2_sensor_detection_error",
-        "nadir_sensor_range_error",
-        "rate_sensor_range_error",
-        "wheel_speed_range_error",
-        "coarse_sun_sensor_error",
-        "star_tracker_match_error",
-        "star_tracker_overcurrent_detected",
-        "orbit_parameters_are_invalid",
-        "configuration_is_invalid",
-        "control_mode_change_is_not_allowed",
-        "estimator_change_is_not_allowed",
-        "current_magnetometer_sampling_mode",
-        "magnetic_field_size_mismatch",
-        "node_recovery_error",
-        "cubesense1_runtime_error",
-        "cubesense2_runtime_error",
-        "cubecontrol_signal_runtime_error",
-        "cubecontrol_motor_runtime_error",
-        "cubewheel1_runtime_error",
-        "cubewheel2_runtime_error",
-        "cubewheel3_runtime_error",
-        "cubestar_runtime_error",
-        "magnetometer_error",
-        "rate_sensor_failure",
-        "estimated_roll_angle",
-        "estimated_pitch_angle",
-        "estimated_yaw_angle",
-        "estimated_q1",
-        "estimated_q2",
-        "estimated_q3",
-        "estimated_x_angular_rate",
-        "estimated_y_angular_rate",
-        "estimated_z_angular_rate",
-        "x_position",
-        "y_position",
-        "z_position",
-        "x_velocity",
-        "y_velocity",
-        "z_velocity",
-        "latitude",
-        "longitude",
-        "altitude",
-        "ecef_position_x",
-        "ecef_position_y",
-        "ecef_position_z",
-    )
 
     NODE = "cubeacp"
     NAME = "ADCS State"
@@ -158,1533 +40,468 @@ class AdcsState(_base.Message):
     IDS = (ID,)
     LENGTH = 54
     TABLE = 149
-    FIELDS = (
-        _base.FieldInfo(
-            "attitude_estimation_mode",
-            "Attitude Estimation Mode",
-            0,
-            4,
-            "enum",
-            enum=EstimModeSelect,
-        ),
-        _base.FieldInfo(
-            "control_mode",
-            "Control Mode",
-            4,
-            4,
-            "enum",
-            enum=ConModeSelect,
-        ),
-        _base.FieldInfo(
-            "adcs_run_mode",
-            "ADCS Run Mode",
-            8,
-            2,
-            "enum",
-            enum=AdcsRunMode,
-        ),
-        _base.FieldInfo("asgp4_mode", "ASGP4 Mode", 10, 2, "enum", enum=Asgp4ModeSelect),
-        _base.FieldInfo(
-            "cubecontrol_signal_enabled",
-            "CubeControl Signal Enabled",
-            12,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubecontrol_motor_enabled",
-            "CubeControl Motor Enabled",
-            13,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("cubesense1_enabled", "CubeSense1 Enabled", 14, 1, "bool"),
-        _base.FieldInfo("cubesense2_enabled", "CubeSense2 Enabled", 15, 1, "bool"),
-        _base.FieldInfo("cubewheel1_enabled", "CubeWheel1 Enabled", 16, 1, "bool"),
-        _base.FieldInfo("cubewheel2_enabled", "CubeWheel2 Enabled", 17, 1, "bool"),
-        _base.FieldInfo("cubewheel3_enabled", "CubeWheel3 Enabled", 18, 1, "bool"),
-        _base.FieldInfo("cubestar_enabled", "CubeStar Enabled", 19, 1, "bool"),
-        _base.FieldInfo("gps_receiver_enabled", "GPS Receiver Enabled", 20, 1, "bool"),
-        _base.FieldInfo("gps_lna_power_enabled", "GPS LNA Power Enabled", 21, 1, "bool"),
-        _base.FieldInfo("motor_driver_enabled", "Motor Driver Enabled", 22, 1, "bool"),
-        _base.FieldInfo(
-            "sun_is_above_local_horizon",
-            "Sun is Above Local Horizon",
-            23,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubesense1_communications_error",
-            "CubeSense1 Communications Error",
-            24,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubesense2_communications_error",
-            "CubeSense2 Communications Error",
-            25,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubecontrol_signal_communications_error",
-            "CubeControl Signal Communications Error",
-            26,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubecontrol_motor_communications_error",
-            "CubeControl Motor Communications Error",
-            27,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubewheel1_communications_error",
-            "CubeWheel1 Communications Error",
-            28,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubewheel2_communications_error",
-            "CubeWheel2 Communications Error",
-            29,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubewheel3_communications_error",
-            "CubeWheel3 Communications Error",
-            30,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubestar_communications_error",
-            "CubeStar Communications Error",
-            31,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "magnetometer_range_error",
-            "Magnetometer Range Error",
-            32,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam1_sram_overcurrent_detected",
-            "Cam1 SRAM Overcurrent Detected",
-            33,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam1_3v3_overcurrent_detected",
-            "Cam1 3V3 Overcurrent Detected",
-            34,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam1_sensor_busy_error",
-            "Cam1 Sensor Busy Error",
-            35,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam1_sensor_detection_error",
-            "Cam1 Sensor Detection Error",
-            36,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "sun_sensor_range_error",
-            "Sun Sensor Range Error",
-            37,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam2_sram_overcurrent_detected",
-            "Cam2 SRAM Overcurrent Detected",
-            38,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam2_3v3_overcurrent_detected",
-            "Cam2 3V3 Overcurrent Detected",
-            39,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam2_sensor_busy_error",
-            "Cam2 Sensor Busy Error",
-            40,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam2_sensor_detection_error",
-            "Cam2 Sensor Detection Error",
-            41,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "nadir_sensor_range_error",
-            "Nadir Sensor Range Error",
-            42,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "rate_sensor_range_error",
-            "Rate Sensor Range Error",
-            43,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "wheel_speed_range_error",
-            "Wheel Speed Range Error",
-            44,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "coarse_sun_sensor_error",
-            "Coarse Sun Sensor Error",
-            45,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "star_tracker_match_error",
-            "StarTracker Match Error",
-            46,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "star_tracker_overcurrent_detected",
-            "Star Tracker Overcurrent Detected",
-            47,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "orbit_parameters_are_invalid",
-            "Orbit Parameters are Invalid",
-            48,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "configuration_is_invalid",
-            "Configuration is Invalid",
-            49,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "control_mode_change_is_not_allowed",
-            "Control Mode Change is not allowed",
-            50,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "estimator_change_is_not_allowed",
-            "Estimator Change is not allowed",
-            51,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "current_magnetometer_sampling_mode",
-            "Current Magnetometer Sampling Mode",
-            52,
-            2,
-            "enum",
-            enum=MagModeVal,
-        ),
-        _base.FieldInfo(
-            "magnetic_field_size_mismatch",
-            "Modelled and measured magnetic field differs in size",
-            54,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("node_recovery_error", "Node Recovery Error", 55, 1, "bool"),
-        _base.FieldInfo(
-            "cubesense1_runtime_error",
-            "CubeSense1 Runtime Error",
-            56,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubesense2_runtime_error",
-            "CubeSense2 Runtime Error",
-            57,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubecontrol_signal_runtime_error",
-            "CubeControl Signal Runtime Error",
-            58,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubecontrol_motor_runtime_error",
-            "CubeControl Motor Runtime Error",
-            59,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubewheel1_runtime_error",
-            "CubeWheel1 Runtime Error",
-            60,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubewheel2_runtime_error",
-            "CubeWheel2 Runtime Error",
-            61,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubewheel3_runtime_error",
-            "CubeWheel3 Runtime Error",
-            62,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubestar_runtime_error",
-            "CubeStar Runtime Error",
-            63,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("magnetometer_error", "Magnetometer Error", 64, 1, "bool"),
-        _base.FieldInfo("rate_sensor_failure", "Rate Sensor Failure", 65, 1, "bool"),
-        _base.FieldInfo(
-            "estimated_roll_angle",
-            "Estimated Roll Angle",
-            96,
-            16,
-            "int",
-            unit="deg",
-            physical="estimated_roll_angle_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "estimated_pitch_angle",
-            "Estimated Pitch Angle",
-            112,
-            16,
-            "int",
-            unit="deg",
-            physical="estimated_pitch_angle_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "estimated_yaw_angle",
-            "Estimated Yaw Angle",
-            128,
-            16,
-            "int",
-            unit="deg",
-            physical="estimated_yaw_angle_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo("estimated_q1", "Estimated q1", 144, 16, "int"),
-        _base.FieldInfo("estimated_q2", "Estimated q2", 160, 16, "int"),
-        _base.FieldInfo("estimated_q3", "Estimated q3", 176, 16, "int"),
-        _base.FieldInfo(
-            "estimated_x_angular_rate",
-            "Estimated X Angular Rate",
-            192,
-            16,
-            "int",
-            unit="deg/s",
-            physical="estimated_x_angular_rate_deg_per_s",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "estimated_y_angular_rate",
-            "Estimated Y Angular Rate",
-            208,
-            16,
-            "int",
-            unit="deg/s",
-            physical="estimated_y_angular_rate_deg_per_s",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "estimated_z_angular_rate",
-            "Estimated Z Angular Rate",
-            224,
-            16,
-            "int",
-            unit="deg/s",
-            physical="estimated_z_angular_rate_deg_per_s",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "x_position",
-            "X position",
-            240,
-            16,
-            "int",
-            unit="km",
-            physical="x_position_km",
-            scale=(1, 0, 4),
-        ),
-        _base.FieldInfo(
-            "y_position",
-            "Y position",
-            256,
-            16,
-            "int",
-            unit="km",
-            physical="y_position_km",
-            scale=(1, 0, 4),
-        ),
-        _base.FieldInfo(
-            "z_position",
-            "Z position",
-            272,
-            16,
-            "int",
-            unit="km",
-            physical="z_position_km",
-            scale=(1, 0, 4),
-        ),
-        _base.FieldInfo(
-            "x_velocity",
-            "X Velocity",
-            288,
-            16,
-            "int",
-            unit="m/s",
-            physical="x_velocity_m_per_s",
-            scale=(1, 0, 4),
-        ),
-        _base.FieldInfo(
-            "y_velocity",
-            "Y Velocity",
-            304,
-            16,
-            "int",
-            unit="m/s",
-            physical="y_velocity_m_per_s",
-            scale=(1, 0, 4),
-        ),
-        _base.FieldInfo(
-            "z_velocity",
-            "Z Velocity",
-            320,
-            16,
-            "int",
-            unit="m/s",
-            physical="z_velocity_m_per_s",
-            scale=(1, 0, 4),
-        ),
-        _base.FieldInfo(
-            "latitude",
-            "Latitude",
-            336,
-            16,
-            "int",
-            unit="deg",
-            physical="latitude_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "longitude",
-            "Longitude",
-            352,
-            16,
-            "int",
-            unit="deg",
-            physical="longitude_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "altitude",
-            "Altitude",
-            368,
-            16,
-            "uint",
-            unit="km",
-            physical="altitude_km",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo("ecef_position_x", "ECEF Position X", 384, 16, "int"),
-        _base.FieldInfo("ecef_position_y", "ECEF Position Y", 400, 16, "int"),
-        _base.FieldInfo("ecef_position_z", "ECEF Position Z", 416, 16, "int"),
-    )
 
-    attitude_estimation_mode: EstimModeSelect
+    attitude_estimation_mode: EstimModeSelect = _base.field(
+        "Attitude Estimation Mode", 0, 4, "enum", default=EstimModeSelect.NO_ATTITUDE_ESTIMATION
+    )
     """Attitude Estimation Mode: bits 0 to 3."""
-    control_mode: ConModeSelect
+
+    control_mode: ConModeSelect = _base.field("Control Mode", 4, 4, "enum", default=ConModeSelect.NO_CONTROL)
     """Control Mode: bits 4 to 7."""
-    adcs_run_mode: AdcsRunMode
+
+    adcs_run_mode: AdcsRunMode = _base.field("ADCS Run Mode", 8, 2, "enum", default=AdcsRunMode.OFF)
     """ADCS Run Mode: bits 8 to 9."""
-    asgp4_mode: Asgp4ModeSelect
+
+    asgp4_mode: Asgp4ModeSelect = _base.field("ASGP4 Mode", 10, 2, "enum", default=Asgp4ModeSelect.OFF)
     """ASGP4 Mode: bits 10 to 11.
 
-    Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold
+    a mode with four values; the description has an enabled state.
     """
-    cubecontrol_signal_enabled: bool
+
+    cubecontrol_signal_enabled: bool = _base.field("CubeControl Signal Enabled", 12, 1, "bool", default=False)
     """CubeControl Signal Enabled: bit 12."""
-    cubecontrol_motor_enabled: bool
+
+    cubecontrol_motor_enabled: bool = _base.field("CubeControl Motor Enabled", 13, 1, "bool", default=False)
     """CubeControl Motor Enabled: bit 13."""
-    cubesense1_enabled: bool
+
+    cubesense1_enabled: bool = _base.field("CubeSense1 Enabled", 14, 1, "bool", default=False)
     """CubeSense1 Enabled: bit 14."""
-    cubesense2_enabled: bool
+
+    cubesense2_enabled: bool = _base.field("CubeSense2 Enabled", 15, 1, "bool", default=False)
     """CubeSense2 Enabled: bit 15."""
-    cubewheel1_enabled: bool
+
+    cubewheel1_enabled: bool = _base.field("CubeWheel1 Enabled", 16, 1, "bool", default=False)
     """CubeWheel1 Enabled: bit 16."""
-    cubewheel2_enabled: bool
+
+    cubewheel2_enabled: bool = _base.field("CubeWheel2 Enabled", 17, 1, "bool", default=False)
     """CubeWheel2 Enabled: bit 17."""
-    cubewheel3_enabled: bool
+
+    cubewheel3_enabled: bool = _base.field("CubeWheel3 Enabled", 18, 1, "bool", default=False)
     """CubeWheel3 Enabled: bit 18."""
-    cubestar_enabled: bool
+
+    cubestar_enabled: bool = _base.field("CubeStar Enabled", 19, 1, "bool", default=False)
     """CubeStar Enabled: bit 19."""
-    gps_receiver_enabled: bool
+
+    gps_receiver_enabled: bool = _base.field("GPS Receiver Enabled", 20, 1, "bool", default=False)
     """GPS Receiver Enabled: bit 20."""
-    gps_lna_power_enabled: bool
+
+    gps_lna_power_enabled: bool = _base.field("GPS LNA Power Enabled", 21, 1, "bool", default=False)
     """GPS LNA Power Enabled: bit 21.
 
     Amplifier of the GPS antenna.
     """
-    motor_driver_enabled: bool
+
+    motor_driver_enabled: bool = _base.field("Motor Driver Enabled", 22, 1, "bool", default=False)
     """Motor Driver Enabled: bit 22."""
-    sun_is_above_local_horizon: bool
+
+    sun_is_above_local_horizon: bool = _base.field("Sun is Above Local Horizon", 23, 1, "bool", default=False)
     """Sun is Above Local Horizon: bit 23.
 
     The elevation is above 0.
     """
-    cubesense1_communications_error: bool
+
+    cubesense1_communications_error: bool = _base.field("CubeSense1 Communications Error", 24, 1, "bool", default=False)
     """CubeSense1 Communications Error: bit 24."""
-    cubesense2_communications_error: bool
+
+    cubesense2_communications_error: bool = _base.field("CubeSense2 Communications Error", 25, 1, "bool", default=False)
     """CubeSense2 Communications Error: bit 25."""
-    cubecontrol_signal_communications_error: bool
+
+    cubecontrol_signal_communications_error: bool = _base.field(
+        "CubeControl Signal Communications Error", 26, 1, "bool", default=False
+    )
     """CubeControl Signal Communications Error: bit 26."""
-    cubecontrol_motor_communications_error: bool
+
+    cubecontrol_motor_communications_error: bool = _base.field(
+        "CubeControl Motor Communications Error", 27, 1, "bool", default=False
+    )
     """CubeControl Motor Communications Error: bit 27."""
-    cubewheel1_communications_error: bool
+
+    cubewheel1_communications_error: bool = _base.field("CubeWheel1 Communications Error", 28, 1, "bool", default=False)
     """CubeWheel1 Communications Error: bit 28."""
-    cubewheel2_communications_error: bool
+
+    cubewheel2_communications_error: bool = _base.field("CubeWheel2 Communications Error", 29, 1, "bool", default=False)
     """CubeWheel2 Communications Error: bit 29."""
-    cubewheel3_communications_error: bool
+
+    cubewheel3_communications_error: bool = _base.field("CubeWheel3 Communications Error", 30, 1, "bool", default=False)
     """CubeWheel3 Communications Error: bit 30."""
-    cubestar_communications_error: bool
+
+    cubestar_communications_error: bool = _base.field("CubeStar Communications Error", 31, 1, "bool", default=False)
     """CubeStar Communications Error: bit 31."""
-    magnetometer_range_error: bool
+
+    magnetometer_range_error: bool = _base.field("Magnetometer Range Error", 32, 1, "bool", default=False)
     """Magnetometer Range Error: bit 32.
 
     About a measured field of 65 uT. Whether above or below is not printed.
 
-    Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
+    Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is
+    set when the field has a size 65 uT. Above is likely, since the field of the earth
+    hardly reaches it.
     """
-    cam1_sram_overcurrent_detected: bool
+
+    cam1_sram_overcurrent_detected: bool = _base.field("Cam1 SRAM Overcurrent Detected", 33, 1, "bool", default=False)
     """Cam1 SRAM Overcurrent Detected: bit 33."""
-    cam1_3v3_overcurrent_detected: bool
+
+    cam1_3v3_overcurrent_detected: bool = _base.field("Cam1 3V3 Overcurrent Detected", 34, 1, "bool", default=False)
     """Cam1 3V3 Overcurrent Detected: bit 34."""
-    cam1_sensor_busy_error: bool
+
+    cam1_sensor_busy_error: bool = _base.field("Cam1 Sensor Busy Error", 35, 1, "bool", default=False)
     """Cam1 Sensor Busy Error: bit 35.
 
     Cam1 sensor was still busy when the control loop began.
     """
-    cam1_sensor_detection_error: bool
+
+    cam1_sensor_detection_error: bool = _base.field("Cam1 Sensor Detection Error", 36, 1, "bool", default=False)
     """Cam1 Sensor Detection Error: bit 36.
 
     No angles could be computed. The target may have been out of view.
     """
-    sun_sensor_range_error: bool
+
+    sun_sensor_range_error: bool = _base.field("Sun Sensor Range Error", 37, 1, "bool", default=False)
     """Sun Sensor Range Error: bit 37.
 
     A detected sun angle was beyond +/-90 deg.
 
-    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag
+    each is for the sun and the nadir sensor; the cameras are numbered, and which of
+    them is which is a setting. With two sun sensors one flag serves both.
     """
-    cam2_sram_overcurrent_detected: bool
+
+    cam2_sram_overcurrent_detected: bool = _base.field("Cam2 SRAM Overcurrent Detected", 38, 1, "bool", default=False)
     """Cam2 SRAM Overcurrent Detected: bit 38."""
-    cam2_3v3_overcurrent_detected: bool
+
+    cam2_3v3_overcurrent_detected: bool = _base.field("Cam2 3V3 Overcurrent Detected", 39, 1, "bool", default=False)
     """Cam2 3V3 Overcurrent Detected: bit 39."""
-    cam2_sensor_busy_error: bool
+
+    cam2_sensor_busy_error: bool = _base.field("Cam2 Sensor Busy Error", 40, 1, "bool", default=False)
     """Cam2 Sensor Busy Error: bit 40.
 
     Cam2 sensor was still busy when the control loop began.
     """
-    cam2_sensor_detection_error: bool
+
+    cam2_sensor_detection_error: bool = _base.field("Cam2 Sensor Detection Error", 41, 1, "bool", default=False)
     """Cam2 Sensor Detection Error: bit 41.
 
     No angles could be computed. The target may have been out of view.
     """
-    nadir_sensor_range_error: bool
+
+    nadir_sensor_range_error: bool = _base.field("Nadir Sensor Range Error", 42, 1, "bool", default=False)
     """Nadir Sensor Range Error: bit 42.
 
     A detected nadir angle was beyond +/-60 deg.
 
-    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    Note ACP-061 (open): see Sun Sensor Range Error.
     """
-    rate_sensor_range_error: bool
+
+    rate_sensor_range_error: bool = _base.field("Rate Sensor Range Error", 43, 1, "bool", default=False)
     """Rate Sensor Range Error: bit 43.
 
     A measured body rate was beyond +/-20 deg/s.
     """
-    wheel_speed_range_error: bool
+
+    wheel_speed_range_error: bool = _base.field("Wheel Speed Range Error", 44, 1, "bool", default=False)
     """Wheel Speed Range Error: bit 44.
 
     A measured wheel speed was beyond +/-8500 rpm.
     """
-    coarse_sun_sensor_error: bool
+
+    coarse_sun_sensor_error: bool = _base.field("Coarse Sun Sensor Error", 45, 1, "bool", default=False)
     """Coarse Sun Sensor Error: bit 45.
 
     No vector could be computed. The sun may have been out of view.
     """
-    star_tracker_match_error: bool
+
+    star_tracker_match_error: bool = _base.field("StarTracker Match Error", 46, 1, "bool", default=False)
     """StarTracker Match Error: bit 46.
 
     Too few stars were matched.
     """
-    star_tracker_overcurrent_detected: bool
+
+    star_tracker_overcurrent_detected: bool = _base.field(
+        "Star Tracker Overcurrent Detected", 47, 1, "bool", default=False
+    )
     """Star Tracker Overcurrent Detected: bit 47."""
-    orbit_parameters_are_invalid: bool
+
+    orbit_parameters_are_invalid: bool = _base.field("Orbit Parameters are Invalid", 48, 1, "bool", default=False)
     """Orbit Parameters are Invalid: bit 48.
 
     A parameter is out of bounds, or the SGP4 propagator could not start from them.
 
-    Note ACP-104 (open): Orbit parameter flag has two reasons.
+    Note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds,
+    or a propagator that failed to start, are told as two sentences for one bit.
     """
-    configuration_is_invalid: bool
+
+    configuration_is_invalid: bool = _base.field("Configuration is Invalid", 49, 1, "bool", default=False)
     """Configuration is Invalid: bit 49.
 
     Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at
     least one CSS.
 
-    Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
+    Note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames
+    differ by a letter in the description, and principle stands for principal twice in
+    each.
 
-    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output. Each
+    axis is said to need a torquer output 1, 2 or 3. The configuration works the other
+    way round and gives an axis to each torquer, or Not Used.
     """
-    control_mode_change_is_not_allowed: bool
+
+    control_mode_change_is_not_allowed: bool = _base.field(
+        "Control Mode Change is not allowed", 50, 1, "bool", default=False
+    )
     """Control Mode Change is not allowed: bit 50.
 
     The mode asked for needs another estimator, or Y-momentum was asked for outside
     steady-state Y-Thomson.
     """
-    estimator_change_is_not_allowed: bool
+
+    estimator_change_is_not_allowed: bool = _base.field("Estimator Change is not allowed", 51, 1, "bool", default=False)
     """Estimator Change is not allowed: bit 51.
 
     The estimation mode asked for does not suit the current control mode.
     """
-    current_magnetometer_sampling_mode: MagModeVal
+
+    current_magnetometer_sampling_mode: MagModeVal = _base.field(
+        "Current Magnetometer Sampling Mode", 52, 2, "enum", default=MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL
+    )
     """Current Magnetometer Sampling Mode: bits 52 to 53."""
-    magnetic_field_size_mismatch: bool
+
+    magnetic_field_size_mismatch: bool = _base.field(
+        "Modelled and measured magnetic field differs in size", 54, 1, "bool", default=False
+    )
     """Modelled and measured magnetic field differs in size: bit 54.
 
     By more than 5000 nT.
     """
-    node_recovery_error: bool
+
+    node_recovery_error: bool = _base.field("Node Recovery Error", 55, 1, "bool", default=False)
     """Node Recovery Error: bit 55.
 
     An ADCS node could not be recovered by repeated resets.
     """
-    cubesense1_runtime_error: bool
+
+    cubesense1_runtime_error: bool = _base.field("CubeSense1 Runtime Error", 56, 1, "bool", default=False)
     """CubeSense1 Runtime Error: bit 56."""
-    cubesense2_runtime_error: bool
+
+    cubesense2_runtime_error: bool = _base.field("CubeSense2 Runtime Error", 57, 1, "bool", default=False)
     """CubeSense2 Runtime Error: bit 57."""
-    cubecontrol_signal_runtime_error: bool
+
+    cubecontrol_signal_runtime_error: bool = _base.field(
+        "CubeControl Signal Runtime Error", 58, 1, "bool", default=False
+    )
     """CubeControl Signal Runtime Error: bit 58."""
-    cubecontrol_motor_runtime_error: bool
+
+    cubecontrol_motor_runtime_error: bool = _base.field("CubeControl Motor Runtime Error", 59, 1, "bool", default=False)
     """CubeControl Motor Runtime Error: bit 59."""
-    cubewheel1_runtime_error: bool
+
+    cubewheel1_runtime_error: bool = _base.field("CubeWheel1 Runtime Error", 60, 1, "bool", default=False)
     """CubeWheel1 Runtime Error: bit 60."""
-    cubewheel2_runtime_error: bool
+
+    cubewheel2_runtime_error: bool = _base.field("CubeWheel2 Runtime Error", 61, 1, "bool", default=False)
     """CubeWheel2 Runtime Error: bit 61."""
-    cubewheel3_runtime_error: bool
+
+    cubewheel3_runtime_error: bool = _base.field("CubeWheel3 Runtime Error", 62, 1, "bool", default=False)
     """CubeWheel3 Runtime Error: bit 62."""
-    cubestar_runtime_error: bool
+
+    cubestar_runtime_error: bool = _base.field("CubeStar Runtime Error", 63, 1, "bool", default=False)
     """CubeStar Runtime Error: bit 63."""
-    magnetometer_error: bool
+
+    magnetometer_error: bool = _base.field("Magnetometer Error", 64, 1, "bool", default=False)
     """Magnetometer Error: bit 64.
 
     The magnetometer failed.
     """
-    rate_sensor_failure: bool
+
+    rate_sensor_failure: bool = _base.field("Rate Sensor Failure", 65, 1, "bool", default=False)
     """Rate Sensor Failure: bit 65."""
-    estimated_roll_angle: int
+
+    estimated_roll_angle: int = _base.field("Estimated Roll Angle", 96, 16, "int", default=0, unit="deg")
     """Estimated Roll Angle: bits 96 to 111, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 deg.
     """
-    estimated_pitch_angle: int
+    estimated_roll_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Estimated Roll Angle in deg: -327.68 to 327.67."""
+    estimated_roll_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Roll Angle in thousandths of deg, exact: -327680 to 327670."""
+
+    estimated_pitch_angle: int = _base.field("Estimated Pitch Angle", 112, 16, "int", default=0, unit="deg")
     """Estimated Pitch Angle: bits 112 to 127, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 deg.
     """
-    estimated_yaw_angle: int
+    estimated_pitch_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Estimated Pitch Angle in deg: -327.68 to 327.67."""
+    estimated_pitch_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Pitch Angle in thousandths of deg, exact: -327680 to 327670."""
+
+    estimated_yaw_angle: int = _base.field("Estimated Yaw Angle", 128, 16, "int", default=0, unit="deg")
     """Estimated Yaw Angle: bits 128 to 143, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 deg.
     """
-    estimated_q1: int
+    estimated_yaw_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Estimated Yaw Angle in deg: -327.68 to 327.67."""
+    estimated_yaw_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Yaw Angle in thousandths of deg, exact: -327680 to 327670."""
+
+    estimated_q1: int = _base.field("Estimated q1", 144, 16, "int", default=0)
     """Estimated q1: bits 144 to 159, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): Estimated quaternion has no formula. Components of a unit
+    quaternion in 16 bits need a factor; all other quaternions have one of 1/10000. It
+    is likely here too, but not printed, so the raw value is all that is offered.
     """
-    estimated_q2: int
+
+    estimated_q2: int = _base.field("Estimated q2", 160, 16, "int", default=0)
     """Estimated q2: bits 160 to 175, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): see Estimated q1.
     """
-    estimated_q3: int
+
+    estimated_q3: int = _base.field("Estimated q3", 176, 16, "int", default=0)
     """Estimated q3: bits 176 to 191, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): see Estimated q1.
     """
-    estimated_x_angular_rate: int
+
+    estimated_x_angular_rate: int = _base.field("Estimated X Angular Rate", 192, 16, "int", default=0, unit="deg/s")
     """Estimated X Angular Rate: bits 192 to 207, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 deg/s.
     """
-    estimated_y_angular_rate: int
+    estimated_x_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
+    """Estimated X Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_x_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated X Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
+
+    estimated_y_angular_rate: int = _base.field("Estimated Y Angular Rate", 208, 16, "int", default=0, unit="deg/s")
     """Estimated Y Angular Rate: bits 208 to 223, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 deg/s.
     """
-    estimated_z_angular_rate: int
+    estimated_y_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
+    """Estimated Y Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_y_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated Y Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
+
+    estimated_z_angular_rate: int = _base.field("Estimated Z Angular Rate", 224, 16, "int", default=0, unit="deg/s")
     """Estimated Z Angular Rate: bits 224 to 239, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 deg/s.
     """
-    x_position: int
+    estimated_z_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
+    """Estimated Z Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_z_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated Z Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
+
+    x_position: int = _base.field("X position", 240, 16, "int", default=0, unit="km")
     """X position: bits 240 to 255, raw -32768 to 32767; physical `raw*0.25`, -8192 to
     8191.75 km.
     """
-    y_position: int
+    x_position_km: float = _base.scaled(1, 0, 4, default=0.0)
+    """X position in km: -8192 to 8191.75."""
+    x_position_m: int = _base.whole(250, 0)
+    """X position in m, exact: -8192000 to 8191750."""
+
+    y_position: int = _base.field("Y position", 256, 16, "int", default=0, unit="km")
     """Y position: bits 256 to 271, raw -32768 to 32767; physical `raw*0.25`, -8192 to
     8191.75 km.
     """
-    z_position: int
+    y_position_km: float = _base.scaled(1, 0, 4, default=0.0)
+    """Y position in km: -8192 to 8191.75."""
+    y_position_m: int = _base.whole(250, 0)
+    """Y position in m, exact: -8192000 to 8191750."""
+
+    z_position: int = _base.field("Z position", 272, 16, "int", default=0, unit="km")
     """Z position: bits 272 to 287, raw -32768 to 32767; physical `raw*0.25`, -8192 to
     8191.75 km.
     """
-    x_velocity: int
+    z_position_km: float = _base.scaled(1, 0, 4, default=0.0)
+    """Z position in km: -8192 to 8191.75."""
+    z_position_m: int = _base.whole(250, 0)
+    """Z position in m, exact: -8192000 to 8191750."""
+
+    x_velocity: int = _base.field("X Velocity", 288, 16, "int", default=0, unit="m/s")
     """X Velocity: bits 288 to 303, raw -32768 to 32767; physical `raw*0.25`, -8192 to
     8191.75 m/s.
     """
-    y_velocity: int
+    x_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
+    """X Velocity in m/s: -8192 to 8191.75."""
+    x_velocity_mm_per_s: int = _base.whole(250, 0)
+    """X Velocity in mm/s, exact: -8192000 to 8191750."""
+
+    y_velocity: int = _base.field("Y Velocity", 304, 16, "int", default=0, unit="m/s")
     """Y Velocity: bits 304 to 319, raw -32768 to 32767; physical `raw*0.25`, -8192 to
     8191.75 m/s.
     """
-    z_velocity: int
+    y_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
+    """Y Velocity in m/s: -8192 to 8191.75."""
+    y_velocity_mm_per_s: int = _base.whole(250, 0)
+    """Y Velocity in mm/s, exact: -8192000 to 8191750."""
+
+    z_velocity: int = _base.field("Z Velocity", 320, 16, "int", default=0, unit="m/s")
     """Z Velocity: bits 320 to 335, raw -32768 to 32767; physical `raw*0.25`, -8192 to
     8191.75 m/s.
     """
-    latitude: int
+    z_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
+    """Z Velocity in m/s: -8192 to 8191.75."""
+    z_velocity_mm_per_s: int = _base.whole(250, 0)
+    """Z Velocity in mm/s, exact: -8192000 to 8191750."""
+
+    latitude: int = _base.field("Latitude", 336, 16, "int", default=0, unit="deg")
     """Latitude: bits 336 to 351, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     327.67 deg.
     """
-    longitude: int
+    latitude_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Latitude in deg: -327.68 to 327.67."""
+    latitude_mdeg: int = _base.whole(10, 0)
+    """Latitude in thousandths of deg, exact: -327680 to 327670."""
+
+    longitude: int = _base.field("Longitude", 352, 16, "int", default=0, unit="deg")
     """Longitude: bits 352 to 367, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     327.67 deg.
 
-    Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
+    Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The
+    datum is missing in one of three rows; the frame is called LLH by name and WGS-84
+    frame by description.
     """
-    altitude: int
+    longitude_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Longitude in deg: -327.68 to 327.67."""
+    longitude_mdeg: int = _base.whole(10, 0)
+    """Longitude in thousandths of deg, exact: -327680 to 327670."""
+
+    altitude: int = _base.field("Altitude", 368, 16, "uint", default=0, unit="km")
     """Altitude: bits 368 to 383, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
 
-    Note ACP-067 (open): Position and altitude do not reach equally far.
+    Note ACP-067 (open): Position and altitude do not reach equally far. The inertial
+    position fits orbits up to 1800 km, the altitude of 16 bits ends at 655.35 km. Above
+    that it wraps or sticks; which is not said.
     """
-    ecef_position_x: int
+    altitude_km: float = _base.scaled(1, 0, 100, default=0.0)
+    """Altitude in km: 0 to 655.35."""
+    altitude_m: int = _base.whole(10, 0)
+    """Altitude in m, exact: 0 to 655350."""
+
+    ecef_position_x: int = _base.field("ECEF Position X", 384, 16, "int", default=0)
     """ECEF Position X: bits 384 to 399, raw -32768 to 32767.
 
-    Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    Erratum ACP-098 (likely): ECEF position: 16 bits in metres. In metres the field
+    reaches 32.767 km, a position some 7000 km. A factor is missing; 0.25 km as in the
+    inertial position is one possibility, km another. No unit is held, so nothing is
+    converted.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z
+    have 16 bits in the state frames and 32 bits in the GPS frames and the simulated
+    data, with the same name, description and unit.
     """
-    ecef_position_y: int
+
+    ecef_position_y: int = _base.field("ECEF Position Y", 400, 16, "int", default=0)
     """ECEF Position Y: bits 400 to 415, raw -32768 to 32767.
 
-    Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    Erratum ACP-098 (likely): see ECEF Position X.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
-    ecef_position_z: int
+
+    ecef_position_z: int = _base.field("ECEF Position Z", 416, 16, "int", default=0)
     """ECEF Position Z: bits 416 to 431, raw -32768 to 32767.
 
-    Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    Erratum ACP-098 (likely): see ECEF Position X.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
-
-    def __init__(
-        self,
-        *,
-        attitude_estimation_mode: EstimModeSelect = EstimModeSelect.NO_ATTITUDE_ESTIMATION,
-        control_mode: ConModeSelect = ConModeSelect.NO_CONTROL,
-        adcs_run_mode: AdcsRunMode = AdcsRunMode.OFF,
-        asgp4_mode: Asgp4ModeSelect = Asgp4ModeSelect.OFF,
-        cubecontrol_signal_enabled: bool = False,
-        cubecontrol_motor_enabled: bool = False,
-        cubesense1_enabled: bool = False,
-        cubesense2_enabled: bool = False,
-        cubewheel1_enabled: bool = False,
-        cubewheel2_enabled: bool = False,
-        cubewheel3_enabled: bool = False,
-        cubestar_enabled: bool = False,
-        gps_receiver_enabled: bool = False,
-        gps_lna_power_enabled: bool = False,
-        motor_driver_enabled: bool = False,
-        sun_is_above_local_horizon: bool = False,
-        cubesense1_communications_error: bool = False,
-        cubesense2_communications_error: bool = False,
-        cubecontrol_signal_communications_error: bool = False,
-        cubecontrol_motor_communications_error: bool = False,
-        cubewheel1_communications_error: bool = False,
-        cubewheel2_communications_error: bool = False,
-        cubewheel3_communications_error: bool = False,
-        cubestar_communications_error: bool = False,
-        magnetometer_range_error: bool = False,
-        cam1_sram_overcurrent_detected: bool = False,
-        cam1_3v3_overcurrent_detected: bool = False,
-        cam1_sensor_busy_error: bool = False,
-        cam1_sensor_detection_error: bool = False,
-        sun_sensor_range_error: bool = False,
-        cam2_sram_overcurrent_detected: bool = False,
-        cam2_3v3_overcurrent_detected: bool = False,
-        cam2_sensor_busy_error: bool = False,
-        cam2_sensor_detection_error: bool = False,
-        nadir_sensor_range_error: bool = False,
-        rate_sensor_range_error: bool = False,
-        wheel_speed_range_error: bool = False,
-        coarse_sun_sensor_error: bool = False,
-        star_tracker_match_error: bool = False,
-        star_tracker_overcurrent_detected: bool = False,
-        orbit_parameters_are_invalid: bool = False,
-        configuration_is_invalid: bool = False,
-        control_mode_change_is_not_allowed: bool = False,
-        estimator_change_is_not_allowed: bool = False,
-        current_magnetometer_sampling_mode: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
-        magnetic_field_size_mismatch: bool = False,
-        node_recovery_error: bool = False,
-        cubesense1_runtime_error: bool = False,
-        cubesense2_runtime_error: bool = False,
-        cubecontrol_signal_runtime_error: bool = False,
-        cubecontrol_motor_runtime_error: bool = False,
-        cubewheel1_runtime_error: bool = False,
-        cubewheel2_runtime_error: bool = False,
-        cubewheel3_runtime_error: bool = False,
-        cubestar_runtime_error: bool = False,
-        magnetometer_error: bool = False,
-        rate_sensor_failure: bool = False,
-        estimated_roll_angle: int = 0,
-        estimated_pitch_angle: int = 0,
-        estimated_yaw_angle: int = 0,
-        estimated_q1: int = 0,
-        estimated_q2: int = 0,
-        estimated_q3: int = 0,
-        estimated_x_angular_rate: int = 0,
-        estimated_y_angular_rate: int = 0,
-        estimated_z_angular_rate: int = 0,
-        x_position: int = 0,
-        y_position: int = 0,
-        z_position: int = 0,
-        x_velocity: int = 0,
-        y_velocity: int = 0,
-        z_velocity: int = 0,
-        latitude: int = 0,
-        longitude: int = 0,
-        altitude: int = 0,
-        ecef_position_x: int = 0,
-        ecef_position_y: int = 0,
-        ecef_position_z: int = 0,
-    ) -> None:
-        self.attitude_estimation_mode = attitude_estimation_mode
-        self.control_mode = control_mode
-        self.adcs_run_mode = adcs_run_mode
-        self.asgp4_mode = asgp4_mode
-        self.cubecontrol_signal_enabled = cubecontrol_signal_enabled
-        self.cubecontrol_motor_enabled = cubecontrol_motor_enabled
-        self.cubesense1_enabled = cubesense1_enabled
-        self.cubesense2_enabled = cubesense2_enabled
-        self.cubewheel1_enabled = cubewheel1_enabled
-        self.cubewheel2_enabled = cubewheel2_enabled
-        self.cubewheel3_enabled = cubewheel3_enabled
-        self.cubestar_enabled = cubestar_enabled
-        self.gps_receiver_enabled = gps_receiver_enabled
-        self.gps_lna_power_enabled = gps_lna_power_enabled
-        self.motor_driver_enabled = motor_driver_enabled
-        self.sun_is_above_local_horizon = sun_is_above_local_horizon
-        self.cubesense1_communications_error = cubesense1_communications_error
-        self.cubesense2_communications_error = cubesense2_communications_error
-        self.cubecontrol_signal_communications_error = cubecontrol_signal_communications_error
-        self.cubecontrol_motor_communications_error = cubecontrol_motor_communications_error
-        self.cubewheel1_communications_error = cubewheel1_communications_error
-        self.cubewheel2_communications_error = cubewheel2_communications_error
-        self.cubewheel3_communications_error = cubewheel3_communications_error
-        self.cubestar_communications_error = cubestar_communications_error
-        self.magnetometer_range_error = magnetometer_range_error
-        self.cam1_sram_overcurrent_detected = cam1_sram_overcurrent_detected
-        self.cam1_3v3_overcurrent_detected = cam1_3v3_overcurrent_detected
-        self.cam1_sensor_busy_error = cam1_sensor_busy_error
-        self.cam1_sensor_detection_error = cam1_sensor_detection_error
-        self.sun_sensor_range_error = sun_sensor_range_error
-        self.cam2_sram_overcurrent_detected = cam2_sram_overcurrent_detected
-        self.cam2_3v3_overcurrent_detected = cam2_3v3_overcurrent_detected
-        self.cam2_sensor_busy_error = cam2_sensor_busy_error
-        self.cam2_sensor_detection_error = cam2_sensor_detection_error
-        self.nadir_sensor_range_error = nadir_sensor_range_error
-        self.rate_sensor_range_error = rate_sensor_range_error
-        self.wheel_speed_range_error = wheel_speed_range_error
-        self.coarse_sun_sensor_error = coarse_sun_sensor_error
-        self.star_tracker_match_error = star_tracker_match_error
-        self.star_tracker_overcurrent_detected = star_tracker_overcurrent_detected
-        self.orbit_parameters_are_invalid = orbit_parameters_are_invalid
-        self.configuration_is_invalid = configuration_is_invalid
-        self.control_mode_change_is_not_allowed = control_mode_change_is_not_allowed
-        self.estimator_change_is_not_allowed = estimator_change_is_not_allowed
-        self.current_magnetometer_sampling_mode = current_magnetometer_sampling_mode
-        self.magnetic_field_size_mismatch = magnetic_field_size_mismatch
-        self.node_recovery_error = node_recovery_error
-        self.cubesense1_runtime_error = cubesense1_runtime_error
-        self.cubesense2_runtime_error = cubesense2_runtime_error
-        self.cubecontrol_signal_runtime_error = cubecontrol_signal_runtime_error
-        self.cubecontrol_motor_runtime_error = cubecontrol_motor_runtime_error
-        self.cubewheel1_runtime_error = cubewheel1_runtime_error
-        self.cubewheel2_runtime_error = cubewheel2_runtime_error
-        self.cubewheel3_runtime_error = cubewheel3_runtime_error
-        self.cubestar_runtime_error = cubestar_runtime_error
-        self.magnetometer_error = magnetometer_error
-        self.rate_sensor_failure = rate_sensor_failure
-        self.estimated_roll_angle = estimated_roll_angle
-        self.estimated_pitch_angle = estimated_pitch_angle
-        self.estimated_yaw_angle = estimated_yaw_angle
-        self.estimated_q1 = estimated_q1
-        self.estimated_q2 = estimated_q2
-        self.estimated_q3 = estimated_q3
-        self.estimated_x_angular_rate = estimated_x_angular_rate
-        self.estimated_y_angular_rate = estimated_y_angular_rate
-        self.estimated_z_angular_rate = estimated_z_angular_rate
-        self.x_position = x_position
-        self.y_position = y_position
-        self.z_position = z_position
-        self.x_velocity = x_velocity
-        self.y_velocity = y_velocity
-        self.z_velocity = z_velocity
-        self.latitude = latitude
-        self.longitude = longitude
-        self.altitude = altitude
-        self.ecef_position_x = ecef_position_x
-        self.ecef_position_y = ecef_position_y
-        self.ecef_position_z = ecef_position_z
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        attitude_estimation_mode: EstimModeSelect = EstimModeSelect.NO_ATTITUDE_ESTIMATION,
-        control_mode: ConModeSelect = ConModeSelect.NO_CONTROL,
-        adcs_run_mode: AdcsRunMode = AdcsRunMode.OFF,
-        asgp4_mode: Asgp4ModeSelect = Asgp4ModeSelect.OFF,
-        cubecontrol_signal_enabled: bool = False,
-        cubecontrol_motor_enabled: bool = False,
-        cubesense1_enabled: bool = False,
-        cubesense2_enabled: bool = False,
-        cubewheel1_enabled: bool = False,
-        cubewheel2_enabled: bool = False,
-        cubewheel3_enabled: bool = False,
-        cubestar_enabled: bool = False,
-        gps_receiver_enabled: bool = False,
-        gps_lna_power_enabled: bool = False,
-        motor_driver_enabled: bool = False,
-        sun_is_above_local_horizon: bool = False,
-        cubesense1_communications_error: bool = False,
-        cubesense2_communications_error: bool = False,
-        cubecontrol_signal_communications_error: bool = False,
-        cubecontrol_motor_communications_error: bool = False,
-        cubewheel1_communications_error: bool = False,
-        cubewheel2_communications_error: bool = False,
-        cubewheel3_communications_error: bool = False,
-        cubestar_communications_error: bool = False,
-        magnetometer_range_error: bool = False,
-        cam1_sram_overcurrent_detected: bool = False,
-        cam1_3v3_overcurrent_detected: bool = False,
-        cam1_sensor_busy_error: bool = False,
-        cam1_sensor_detection_error: bool = False,
-        sun_sensor_range_error: bool = False,
-        cam2_sram_overcurrent_detected: bool = False,
-        cam2_3v3_overcurrent_detected: bool = False,
-        cam2_sensor_busy_error: bool = False,
-        cam2_sensor_detection_error: bool = False,
-        nadir_sensor_range_error: bool = False,
-        rate_sensor_range_error: bool = False,
-        wheel_speed_range_error: bool = False,
-        coarse_sun_sensor_error: bool = False,
-        star_tracker_match_error: bool = False,
-        star_tracker_overcurrent_detected: bool = False,
-        orbit_parameters_are_invalid: bool = False,
-        configuration_is_invalid: bool = False,
-        control_mode_change_is_not_allowed: bool = False,
-        estimator_change_is_not_allowed: bool = False,
-        current_magnetometer_sampling_mode: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
-        magnetic_field_size_mismatch: bool = False,
-        node_recovery_error: bool = False,
-        cubesense1_runtime_error: bool = False,
-        cubesense2_runtime_error: bool = False,
-        cubecontrol_signal_runtime_error: bool = False,
-        cubecontrol_motor_runtime_error: bool = False,
-        cubewheel1_runtime_error: bool = False,
-        cubewheel2_runtime_error: bool = False,
-        cubewheel3_runtime_error: bool = False,
-        cubestar_runtime_error: bool = False,
-        magnetometer_error: bool = False,
-        rate_sensor_failure: bool = False,
-        estimated_roll_angle_deg: float = 0.0,
-        estimated_pitch_angle_deg: float = 0.0,
-        estimated_yaw_angle_deg: float = 0.0,
-        estimated_q1: int = 0,
-        estimated_q2: int = 0,
-        estimated_q3: int = 0,
-        estimated_x_angular_rate_deg_per_s: float = 0.0,
-        estimated_y_angular_rate_deg_per_s: float = 0.0,
-        estimated_z_angular_rate_deg_per_s: float = 0.0,
-        x_position_km: float = 0.0,
-        y_position_km: float = 0.0,
-        z_position_km: float = 0.0,
-        x_velocity_m_per_s: float = 0.0,
-        y_velocity_m_per_s: float = 0.0,
-        z_velocity_m_per_s: float = 0.0,
-        latitude_deg: float = 0.0,
-        longitude_deg: float = 0.0,
-        altitude_km: float = 0.0,
-        ecef_position_x: int = 0,
-        ecef_position_y: int = 0,
-        ecef_position_z: int = 0,
-    ) -> AdcsState:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.attitude_estimation_mode = attitude_estimation_mode
-        self.control_mode = control_mode
-        self.adcs_run_mode = adcs_run_mode
-        self.asgp4_mode = asgp4_mode
-        self.cubecontrol_signal_enabled = cubecontrol_signal_enabled
-        self.cubecontrol_motor_enabled = cubecontrol_motor_enabled
-        self.cubesense1_enabled = cubesense1_enabled
-        self.cubesense2_enabled = cubesense2_enabled
-        self.cubewheel1_enabled = cubewheel1_enabled
-        self.cubewheel2_enabled = cubewheel2_enabled
-        self.cubewheel3_enabled = cubewheel3_enabled
-        self.cubestar_enabled = cubestar_enabled
-        self.gps_receiver_enabled = gps_receiver_enabled
-        self.gps_lna_power_enabled = gps_lna_power_enabled
-        self.motor_driver_enabled = motor_driver_enabled
-        self.sun_is_above_local_horizon = sun_is_above_local_horizon
-        self.cubesense1_communications_error = cubesense1_communications_error
-        self.cubesense2_communications_error = cubesense2_communications_error
-        self.cubecontrol_signal_communications_error = cubecontrol_signal_communications_error
-        self.cubecontrol_motor_communications_error = cubecontrol_motor_communications_error
-        self.cubewheel1_communications_error = cubewheel1_communications_error
-        self.cubewheel2_communications_error = cubewheel2_communications_error
-        self.cubewheel3_communications_error = cubewheel3_communications_error
-        self.cubestar_communications_error = cubestar_communications_error
-        self.magnetometer_range_error = magnetometer_range_error
-        self.cam1_sram_overcurrent_detected = cam1_sram_overcurrent_detected
-        self.cam1_3v3_overcurrent_detected = cam1_3v3_overcurrent_detected
-        self.cam1_sensor_busy_error = cam1_sensor_busy_error
-        self.cam1_sensor_detection_error = cam1_sensor_detection_error
-        self.sun_sensor_range_error = sun_sensor_range_error
-        self.cam2_sram_overcurrent_detected = cam2_sram_overcurrent_detected
-        self.cam2_3v3_overcurrent_detected = cam2_3v3_overcurrent_detected
-        self.cam2_sensor_busy_error = cam2_sensor_busy_error
-        self.cam2_sensor_detection_error = cam2_sensor_detection_error
-        self.nadir_sensor_range_error = nadir_sensor_range_error
-        self.rate_sensor_range_error = rate_sensor_range_error
-        self.wheel_speed_range_error = wheel_speed_range_error
-        self.coarse_sun_sensor_error = coarse_sun_sensor_error
-        self.star_tracker_match_error = star_tracker_match_error
-        self.star_tracker_overcurrent_detected = star_tracker_overcurrent_detected
-        self.orbit_parameters_are_invalid = orbit_parameters_are_invalid
-        self.configuration_is_invalid = configuration_is_invalid
-        self.control_mode_change_is_not_allowed = control_mode_change_is_not_allowed
-        self.estimator_change_is_not_allowed = estimator_change_is_not_allowed
-        self.current_magnetometer_sampling_mode = current_magnetometer_sampling_mode
-        self.magnetic_field_size_mismatch = magnetic_field_size_mismatch
-        self.node_recovery_error = node_recovery_error
-        self.cubesense1_runtime_error = cubesense1_runtime_error
-        self.cubesense2_runtime_error = cubesense2_runtime_error
-        self.cubecontrol_signal_runtime_error = cubecontrol_signal_runtime_error
-        self.cubecontrol_motor_runtime_error = cubecontrol_motor_runtime_error
-        self.cubewheel1_runtime_error = cubewheel1_runtime_error
-        self.cubewheel2_runtime_error = cubewheel2_runtime_error
-        self.cubewheel3_runtime_error = cubewheel3_runtime_error
-        self.cubestar_runtime_error = cubestar_runtime_error
-        self.magnetometer_error = magnetometer_error
-        self.rate_sensor_failure = rate_sensor_failure
-        self.estimated_roll_angle_deg = estimated_roll_angle_deg
-        self.estimated_pitch_angle_deg = estimated_pitch_angle_deg
-        self.estimated_yaw_angle_deg = estimated_yaw_angle_deg
-        self.estimated_q1 = estimated_q1
-        self.estimated_q2 = estimated_q2
-        self.estimated_q3 = estimated_q3
-        self.estimated_x_angular_rate_deg_per_s = estimated_x_angular_rate_deg_per_s
-        self.estimated_y_angular_rate_deg_per_s = estimated_y_angular_rate_deg_per_s
-        self.estimated_z_angular_rate_deg_per_s = estimated_z_angular_rate_deg_per_s
-        self.x_position_km = x_position_km
-        self.y_position_km = y_position_km
-        self.z_position_km = z_position_km
-        self.x_velocity_m_per_s = x_velocity_m_per_s
-        self.y_velocity_m_per_s = y_velocity_m_per_s
-        self.z_velocity_m_per_s = z_velocity_m_per_s
-        self.latitude_deg = latitude_deg
-        self.longitude_deg = longitude_deg
-        self.altitude_km = altitude_km
-        self.ecef_position_x = ecef_position_x
-        self.ecef_position_y = ecef_position_y
-        self.ecef_position_z = ecef_position_z
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> AdcsState:
-        """The message in a frame of exactly 54 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                v0,
-                v1,
-                v2,
-                v3,
-                v4,
-                v5,
-                v6,
-                v7,
-                v8,
-                self.estimated_roll_angle,
-                self.estimated_pitch_angle,
-                self.estimated_yaw_angle,
-                self.estimated_q1,
-                self.estimated_q2,
-                self.estimated_q3,
-                self.estimated_x_angular_rate,
-                self.estimated_y_angular_rate,
-                self.estimated_z_angular_rate,
-                self.x_position,
-                self.y_position,
-                self.z_position,
-                self.x_velocity,
-                self.y_velocity,
-                self.z_velocity,
-                self.latitude,
-                self.longitude,
-                self.altitude,
-                self.ecef_position_x,
-                self.ecef_position_y,
-                self.ecef_position_z,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.attitude_estimation_mode, self.control_mode = _BITS_0[v0]
-        (
-            self.adcs_run_mode,
-            self.asgp4_mode,
-            self.cubecontrol_signal_enabled,
-            self.cubecontrol_motor_enabled,
-            self.cubesense1_enabled,
-            self.cubesense2_enabled,
-        ) = _BITS_1[v1]
-        (
-            self.cubewheel1_enabled,
-            self.cubewheel2_enabled,
-            self.cubewheel3_enabled,
-            self.cubestar_enabled,
-            self.gps_receiver_enabled,
-            self.gps_lna_power_enabled,
-            self.motor_driver_enabled,
-            self.sun_is_above_local_horizon,
-        ) = _BITS_2[v2]
-        (
-            self.cubesense1_communications_error,
-            self.cubesense2_communications_error,
-            self.cubecontrol_signal_communications_error,
-            self.cubecontrol_motor_communications_error,
-            self.cubewheel1_communications_error,
-            self.cubewheel2_communications_error,
-            self.cubewheel3_communications_error,
-            self.cubestar_communications_error,
-        ) = _BITS_2[v3]
-        (
-            self.magnetometer_range_error,
-            self.cam1_sram_overcurrent_detected,
-            self.cam1_3v3_overcurrent_detected,
-            self.cam1_sensor_busy_error,
-            self.cam1_sensor_detection_error,
-            self.sun_sensor_range_error,
-            self.cam2_sram_overcurrent_detected,
-            self.cam2_3v3_overcurrent_detected,
-        ) = _BITS_2[v4]
-        (
-            self.cam2_sensor_busy_error,
-            self.cam2_sensor_detection_error,
-            self.nadir_sensor_range_error,
-            self.rate_sensor_range_error,
-            self.wheel_speed_range_error,
-            self.coarse_sun_sensor_error,
-            self.star_tracker_match_error,
-            self.star_tracker_overcurrent_detected,
-        ) = _BITS_2[v5]
-        (
-            self.orbit_parameters_are_invalid,
-            self.configuration_is_invalid,
-            self.control_mode_change_is_not_allowed,
-            self.estimator_change_is_not_allowed,
-            self.current_magnetometer_sampling_mode,
-            self.magnetic_field_size_mismatch,
-            self.node_recovery_error,
-        ) = _BITS_3[v6]
-        (
-            self.cubesense1_runtime_error,
-            self.cubesense2_runtime_error,
-            self.cubecontrol_signal_runtime_error,
-            self.cubecontrol_motor_runtime_error,
-            self.cubewheel1_runtime_error,
-            self.cubewheel2_runtime_error,
-            self.cubewheel3_runtime_error,
-            self.cubestar_runtime_error,
-        ) = _BITS_2[v7]
-        self.magnetometer_error, self.rate_sensor_failure = _BITS_4[v8]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.attitude_estimation_mode, self.control_mode]
-            v1 = _BYTES_1[
-                self.adcs_run_mode,
-                self.asgp4_mode,
-                self.cubecontrol_signal_enabled,
-                self.cubecontrol_motor_enabled,
-                self.cubesense1_enabled,
-                self.cubesense2_enabled,
-            ]
-            v2 = _BYTES_2[
-                self.cubewheel1_enabled,
-                self.cubewheel2_enabled,
-                self.cubewheel3_enabled,
-                self.cubestar_enabled,
-                self.gps_receiver_enabled,
-                self.gps_lna_power_enabled,
-                self.motor_driver_enabled,
-                self.sun_is_above_local_horizon,
-            ]
-            v3 = _BYTES_2[
-                self.cubesense1_communications_error,
-                self.cubesense2_communications_error,
-                self.cubecontrol_signal_communications_error,
-                self.cubecontrol_motor_communications_error,
-                self.cubewheel1_communications_error,
-                self.cubewheel2_communications_error,
-                self.cubewheel3_communications_error,
-                self.cubestar_communications_error,
-            ]
-            v4 = _BYTES_2[
-                self.magnetometer_range_error,
-                self.cam1_sram_overcurrent_detected,
-                self.cam1_3v3_overcurrent_detected,
-                self.cam1_sensor_busy_error,
-                self.cam1_sensor_detection_error,
-                self.sun_sensor_range_error,
-                self.cam2_sram_overcurrent_detected,
-                self.cam2_3v3_overcurrent_detected,
-            ]
-            v5 = _BYTES_2[
-                self.cam2_sensor_busy_error,
-                self.cam2_sensor_detection_error,
-                self.nadir_sensor_range_error,
-                self.rate_sensor_range_error,
-                self.wheel_speed_range_error,
-                self.coarse_sun_sensor_error,
-                self.star_tracker_match_error,
-                self.star_tracker_overcurrent_detected,
-            ]
-            v6 = _BYTES_3[
-                self.orbit_parameters_are_invalid,
-                self.configuration_is_invalid,
-                self.control_mode_change_is_not_allowed,
-                self.estimator_change_is_not_allowed,
-                self.current_magnetometer_sampling_mode,
-                self.magnetic_field_size_mismatch,
-                self.node_recovery_error,
-            ]
-            v7 = _BYTES_2[
-                self.cubesense1_runtime_error,
-                self.cubesense2_runtime_error,
-                self.cubecontrol_signal_runtime_error,
-                self.cubecontrol_motor_runtime_error,
-                self.cubewheel1_runtime_error,
-                self.cubewheel2_runtime_error,
-                self.cubewheel3_runtime_error,
-                self.cubestar_runtime_error,
-            ]
-            v8 = _BYTES_4[self.magnetometer_error, self.rate_sensor_failure]
-            return _pack(
-                v0,
-                v1,
-                v2,
-                v3,
-                v4,
-                v5,
-                v6,
-                v7,
-                v8,
-                self.estimated_roll_angle,
-                self.estimated_pitch_angle,
-                self.estimated_yaw_angle,
-                self.estimated_q1,
-                self.estimated_q2,
-                self.estimated_q3,
-                self.estimated_x_angular_rate,
-                self.estimated_y_angular_rate,
-                self.estimated_z_angular_rate,
-                self.x_position,
-                self.y_position,
-                self.z_position,
-                self.x_velocity,
-                self.y_velocity,
-                self.z_velocity,
-                self.latitude,
-                self.longitude,
-                self.altitude,
-                self.ecef_position_x,
-                self.ecef_position_y,
-                self.ecef_position_z,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def estimated_roll_angle_deg(self) -> float:
-        """Estimated Roll Angle in deg: -327.68 to 327.67."""
-        return self.estimated_roll_angle / 100
-
-    @estimated_roll_angle_deg.setter
-    def estimated_roll_angle_deg(self, value: float) -> None:
-        self.estimated_roll_angle = _codec.raw_value(
-            value,
-            "estimated_roll_angle",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_pitch_angle_deg(self) -> float:
-        """Estimated Pitch Angle in deg: -327.68 to 327.67."""
-        return self.estimated_pitch_angle / 100
-
-    @estimated_pitch_angle_deg.setter
-    def estimated_pitch_angle_deg(self, value: float) -> None:
-        self.estimated_pitch_angle = _codec.raw_value(
-            value,
-            "estimated_pitch_angle",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_yaw_angle_deg(self) -> float:
-        """Estimated Yaw Angle in deg: -327.68 to 327.67."""
-        return self.estimated_yaw_angle / 100
-
-    @estimated_yaw_angle_deg.setter
-    def estimated_yaw_angle_deg(self, value: float) -> None:
-        self.estimated_yaw_angle = _codec.raw_value(
-            value,
-            "estimated_yaw_angle",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_x_angular_rate_deg_per_s(self) -> float:
-        """Estimated X Angular Rate in deg/s: -327.68 to 327.67."""
-        return self.estimated_x_angular_rate / 100
-
-    @estimated_x_angular_rate_deg_per_s.setter
-    def estimated_x_angular_rate_deg_per_s(self, value: float) -> None:
-        self.estimated_x_angular_rate = _codec.raw_value(
-            value,
-            "estimated_x_angular_rate",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_y_angular_rate_deg_per_s(self) -> float:
-        """Estimated Y Angular Rate in deg/s: -327.68 to 327.67."""
-        return self.estimated_y_angular_rate / 100
-
-    @estimated_y_angular_rate_deg_per_s.setter
-    def estimated_y_angular_rate_deg_per_s(self, value: float) -> None:
-        self.estimated_y_angular_rate = _codec.raw_value(
-            value,
-            "estimated_y_angular_rate",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_z_angular_rate_deg_per_s(self) -> float:
-        """Estimated Z Angular Rate in deg/s: -327.68 to 327.67."""
-        return self.estimated_z_angular_rate / 100
-
-    @estimated_z_angular_rate_deg_per_s.setter
-    def estimated_z_angular_rate_deg_per_s(self, value: float) -> None:
-        self.estimated_z_angular_rate = _codec.raw_value(
-            value,
-            "estimated_z_angular_rate",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def x_position_km(self) -> float:
-        """X position in km: -8192 to 8191.75."""
-        return self.x_position / 4
-
-    @x_position_km.setter
-    def x_position_km(self, value: float) -> None:
-        self.x_position = _codec.raw_value(
-            value,
-            "x_position",
-            (1, 0, 4),
-            -32768,
-            32767,
-        )
-
-    @property
-    def y_position_km(self) -> float:
-        """Y position in km: -8192 to 8191.75."""
-        return self.y_position / 4
-
-    @y_position_km.setter
-    def y_position_km(self, value: float) -> None:
-        self.y_position = _codec.raw_value(
-            value,
-            "y_position",
-            (1, 0, 4),
-            -32768,
-            32767,
-        )
-
-    @property
-    def z_position_km(self) -> float:
-        """Z position in km: -8192 to 8191.75."""
-        return self.z_position / 4
-
-    @z_position_km.setter
-    def z_position_km(self, value: float) -> None:
-        self.z_position = _codec.raw_value(
-            value,
-            "z_position",
-            (1, 0, 4),
-            -32768,
-            32767,
-        )
-
-    @property
-    def x_velocity_m_per_s(self) -> float:
-        """X Velocity in m/s: -8192 to 8191.75."""
-        return self.x_velocity / 4
-
-    @x_velocity_m_per_s.setter
-    def x_velocity_m_per_s(self, value: float) -> None:
-        self.x_velocity = _codec.raw_value(
-            value,
-            "x_velocity",
-            (1, 0, 4),
-            -32768,
-            32767,
-        )
-
-    @property
-    def y_velocity_m_per_s(self) -> float:
-        """Y Velocity in m/s: -8192 to 8191.75."""
-        return self.y_velocity / 4
-
-    @y_velocity_m_per_s.setter
-    def y_velocity_m_per_s(self, value: float) -> None:
-        self.y_velocity = _codec.raw_value(
-            value,
-            "y_velocity",
-            (1, 0, 4),
-            -32768,
-            32767,
-        )
-
-    @property
-    def z_velocity_m_per_s(self) -> float:
-        """Z Velocity in m/s: -8192 to 8191.75."""
-        return self.z_velocity / 4
-
-    @z_velocity_m_per_s.setter
-    def z_velocity_m_per_s(self, value: float) -> None:
-        self.z_velocity = _codec.raw_value(
-            value,
-            "z_velocity",
-            (1, 0, 4),
-            -32768,
-            32767,
-        )
-
-    @property
-    def latitude_deg(self) -> float:
-        """Latitude in deg: -327.68 to 327.67."""
-        return self.latitude / 100
-
-    @latitude_deg.setter
-    def latitude_deg(self, value: float) -> None:
-        self.latitude = _codec.raw_value(value, "latitude", (1, 0, 100), -32768, 32767)
-
-    @property
-    def longitude_deg(self) -> float:
-        """Longitude in deg: -327.68 to 327.67."""
-        return self.longitude / 100
-
-    @longitude_deg.setter
-    def longitude_deg(self, value: float) -> None:
-        self.longitude = _codec.raw_value(
-            value,
-            "longitude",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def altitude_km(self) -> float:
-        """Altitude in km: 0 to 655.35."""
-        return self.altitude / 100
-
-    @altitude_km.setter
-    def altitude_km(self, value: float) -> None:
-        self.altitude = _codec.raw_value(value, "altitude", (1, 0, 100), 0, 65535)

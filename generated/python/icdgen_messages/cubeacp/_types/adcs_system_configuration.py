@@ -5,10 +5,7 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
+from ... import _base
 from .acp_program_type import AcpProgramType
 from .cs_cam_type import CsCamType
 from .gpio_port import GpioPort
@@ -16,100 +13,20 @@ from .gpio_port_pin import GpioPortPin
 from .gps_select import GpsSelect
 from .special_con_select import SpecialConSelect
 
-_STRUCT = struct.Struct("<8B39f9B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 4, AcpProgramType), (4, 4, SpecialConSelect))
-_BYTES_0 = _codec.Inverse(_BITS_0)
-_BITS_1 = _codec.bit_table((0, 4, CsCamType), (4, 4, CsCamType))
-_BYTES_1 = _codec.Inverse(_BITS_1)
-_BITS_2 = _codec.bit_table((0, 4, GpsSelect), (4, 1, bool))
-_BYTES_2 = _codec.Inverse(_BITS_2)
-_BITS_3 = _codec.bit_table((0, 4, GpioPort), (4, 4, GpioPortPin))
-_BYTES_3 = _codec.Inverse(_BITS_3)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class AdcsSystemConfiguration(_base.Message):
     """ADCS System Configuration: configuration, set by telecommand 30, got by telemetry
     225, 173 bytes. Table 201.
 
     What is hard-coded: versions, ratings, calibration and pins.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
 
-    Note ACP-170 (open): System configuration is hard-coded and can be set.
+    Note ACP-170 (open): System configuration is hard-coded and can be set. The
+    description says hard-coded, the message has a set id, and a load error exists for
+    it. Whether a set is refused, or lost with the next start, is not said.
     """
-
-    __slots__ = (
-        "acp_type",
-        "special_control_selection",
-        "cubecontrol_signal_version",
-        "cubecontrol_motor_version",
-        "cubesense1_version",
-        "cubesense2_version",
-        "cubesense1_camera_type",
-        "cubesense2_camera_type",
-        "cubestar_version",
-        "gps_type",
-        "redundant_mtm_included",
-        "magnetorquer_x_max_dipole",
-        "magnetorquer_y_max_dipole",
-        "magnetorquer_z_max_dipole",
-        "magnetorquer_on_time_resolution",
-        "magnetorquer_maximum_on_time",
-        "rw_x_maximum_torque",
-        "rw_y_maximum_torque",
-        "rw_z_maximum_torque",
-        "rw_x_maximum_momentum",
-        "rw_y_maximum_momentum",
-        "rw_z_maximum_momentum",
-        "rw_x_inertia",
-        "rw_y_inertia",
-        "rw_z_inertia",
-        "rw_torque_increment",
-        "primary_mtm_x_bias_d1",
-        "primary_mtm_y_bias_d1",
-        "primary_mtm_z_bias_d1",
-        "primary_mtm_x_bias_d2",
-        "primary_mtm_y_bias_d2",
-        "primary_mtm_z_bias_d2",
-        "primary_mtm_x_sens_s1",
-        "primary_mtm_y_sens_s1",
-        "primary_mtm_z_sens_s1",
-        "primary_mtm_x_sens_s2",
-        "primary_mtm_y_sens_s2",
-        "primary_mtm_z_sens_s2",
-        "redundant_mtm_x_bias_d1",
-        "redundant_mtm_y_bias_d1",
-        "redundant_mtm_z_bias_d1",
-        "redundant_mtm_x_bias_d2",
-        "redundant_mtm_y_bias_d2",
-        "redundant_mtm_z_bias_d2",
-        "redundant_mtm_x_sens_s1",
-        "redundant_mtm_y_sens_s1",
-        "redundant_mtm_z_sens_s1",
-        "redundant_mtm_x_sens_s2",
-        "redundant_mtm_y_sens_s2",
-        "redundant_mtm_z_sens_s2",
-        "cc_signal_enable_port",
-        "cc_signal_enable_pin",
-        "cc_motor_enable_port",
-        "cc_motor_enable_pin",
-        "cc_common_enable_port",
-        "cc_common_enable_pin",
-        "cubesense1_enable_port",
-        "cubesense1_enable_pin",
-        "cubesense2_enable_port",
-        "cubesense2_enable_pin",
-        "cubestar_enable_port",
-        "cubestar_enable_pin",
-        "cubewheel1_enable_port",
-        "cubewheel1_enable_pin",
-        "cubewheel2_enable_port",
-        "cubewheel2_enable_pin",
-        "cubewheel3_enable_port",
-        "cubewheel3_enable_pin",
-    )
 
     NODE = "cubeacp"
     NAME = "ADCS System Configuration"
@@ -119,1125 +36,382 @@ class AdcsSystemConfiguration(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 173
     TABLE = 201
-    FIELDS = (
-        _base.FieldInfo("acp_type", "ACP Type", 0, 4, "enum", enum=AcpProgramType),
-        _base.FieldInfo(
-            "special_control_selection",
-            "Special Control Selection",
-            4,
-            4,
-            "enum",
-            enum=SpecialConSelect,
-        ),
-        _base.FieldInfo(
-            "cubecontrol_signal_version",
-            "CubeControl Signal Version",
-            8,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cubecontrol_motor_version",
-            "CubeControl Motor Version",
-            16,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo("cubesense1_version", "CubeSense1 Version", 24, 8, "uint"),
-        _base.FieldInfo("cubesense2_version", "CubeSense2 Version", 32, 8, "uint"),
-        _base.FieldInfo(
-            "cubesense1_camera_type",
-            "CubeSense1 Camera Type",
-            40,
-            4,
-            "enum",
-            enum=CsCamType,
-        ),
-        _base.FieldInfo(
-            "cubesense2_camera_type",
-            "CubeSense2 Camera Type",
-            44,
-            4,
-            "enum",
-            enum=CsCamType,
-        ),
-        _base.FieldInfo("cubestar_version", "CubeStar Version", 48, 8, "uint"),
-        _base.FieldInfo("gps_type", "GPS Type", 56, 4, "enum", enum=GpsSelect),
-        _base.FieldInfo(
-            "redundant_mtm_included",
-            "Redundant MTM Included",
-            60,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "magnetorquer_x_max_dipole",
-            "Magnetorquer-X Max Dipole",
-            64,
-            32,
-            "float",
-            unit="A.m^2",
-        ),
-        _base.FieldInfo(
-            "magnetorquer_y_max_dipole",
-            "Magnetorquer-Y Max Dipole",
-            96,
-            32,
-            "float",
-            unit="A.m^2",
-        ),
-        _base.FieldInfo(
-            "magnetorquer_z_max_dipole",
-            "Magnetorquer-Z Max Dipole",
-            128,
-            32,
-            "float",
-            unit="A.m^2",
-        ),
-        _base.FieldInfo(
-            "magnetorquer_on_time_resolution",
-            "Magnetorquer On-time Resolution",
-            160,
-            32,
-            "float",
-            unit="s",
-        ),
-        _base.FieldInfo(
-            "magnetorquer_maximum_on_time",
-            "Magnetorquer Maximum On-time",
-            192,
-            32,
-            "float",
-            unit="s",
-        ),
-        _base.FieldInfo(
-            "rw_x_maximum_torque",
-            "RW-X Maximum Torque",
-            224,
-            32,
-            "float",
-            unit="N.m",
-        ),
-        _base.FieldInfo(
-            "rw_y_maximum_torque",
-            "RW-Y Maximum Torque",
-            256,
-            32,
-            "float",
-            unit="N.m",
-        ),
-        _base.FieldInfo(
-            "rw_z_maximum_torque",
-            "RW-Z Maximum Torque",
-            288,
-            32,
-            "float",
-            unit="N.m",
-        ),
-        _base.FieldInfo(
-            "rw_x_maximum_momentum",
-            "RW-X Maximum Momentum",
-            320,
-            32,
-            "float",
-            unit="Nms",
-        ),
-        _base.FieldInfo(
-            "rw_y_maximum_momentum",
-            "RW-Y Maximum Momentum",
-            352,
-            32,
-            "float",
-            unit="Nms",
-        ),
-        _base.FieldInfo(
-            "rw_z_maximum_momentum",
-            "RW-Z Maximum Momentum",
-            384,
-            32,
-            "float",
-            unit="Nms",
-        ),
-        _base.FieldInfo("rw_x_inertia", "RW-X Inertia", 416, 32, "float", unit="kg.m^2"),
-        _base.FieldInfo("rw_y_inertia", "RW-Y Inertia", 448, 32, "float", unit="kg.m^2"),
-        _base.FieldInfo("rw_z_inertia", "RW-Z Inertia", 480, 32, "float", unit="kg.m^2"),
-        _base.FieldInfo(
-            "rw_torque_increment",
-            "RW Torque Increment",
-            512,
-            32,
-            "float",
-            unit="N.m",
-        ),
-        _base.FieldInfo(
-            "primary_mtm_x_bias_d1",
-            "Primary MTM X-Bias d1",
-            544,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "primary_mtm_y_bias_d1",
-            "Primary MTM Y-Bias d1",
-            576,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "primary_mtm_z_bias_d1",
-            "Primary MTM Z-Bias d1",
-            608,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "primary_mtm_x_bias_d2",
-            "Primary MTM X-Bias d2",
-            640,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "primary_mtm_y_bias_d2",
-            "Primary MTM Y-Bias d2",
-            672,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "primary_mtm_z_bias_d2",
-            "Primary MTM Z-Bias d2",
-            704,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "primary_mtm_x_sens_s1",
-            "Primary MTM X-Sens s1",
-            736,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "primary_mtm_y_sens_s1",
-            "Primary MTM Y-Sens s1",
-            768,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "primary_mtm_z_sens_s1",
-            "Primary MTM Z-Sens s1",
-            800,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "primary_mtm_x_sens_s2",
-            "Primary MTM X-Sens s2",
-            832,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "primary_mtm_y_sens_s2",
-            "Primary MTM Y-Sens s2",
-            864,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "primary_mtm_z_sens_s2",
-            "Primary MTM Z-Sens s2",
-            896,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "redundant_mtm_x_bias_d1",
-            "Redundant MTM X-Bias d1",
-            928,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "redundant_mtm_y_bias_d1",
-            "Redundant MTM Y-Bias d1",
-            960,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "redundant_mtm_z_bias_d1",
-            "Redundant MTM Z-Bias d1",
-            992,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "redundant_mtm_x_bias_d2",
-            "Redundant MTM X-Bias d2",
-            1024,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "redundant_mtm_y_bias_d2",
-            "Redundant MTM Y-Bias d2",
-            1056,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "redundant_mtm_z_bias_d2",
-            "Redundant MTM Z-Bias d2",
-            1088,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "redundant_mtm_x_sens_s1",
-            "Redundant MTM X-Sens s1",
-            1120,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "redundant_mtm_y_sens_s1",
-            "Redundant MTM Y-Sens s1",
-            1152,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "redundant_mtm_z_sens_s1",
-            "Redundant MTM Z-Sens s1",
-            1184,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "redundant_mtm_x_sens_s2",
-            "Redundant MTM X-Sens s2",
-            1216,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "redundant_mtm_y_sens_s2",
-            "Redundant MTM Y-Sens s2",
-            1248,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "redundant_mtm_z_sens_s2",
-            "Redundant MTM Z-Sens s2",
-            1280,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "cc_signal_enable_port",
-            "CC Signal Enable Port",
-            1312,
-            4,
-            "enum",
-            enum=GpioPort,
-        ),
-        _base.FieldInfo(
-            "cc_signal_enable_pin",
-            "CC Signal Enable Pin",
-            1316,
-            4,
-            "enum",
-            enum=GpioPortPin,
-        ),
-        _base.FieldInfo(
-            "cc_motor_enable_port",
-            "CC Motor Enable Port",
-            1320,
-            4,
-            "enum",
-            enum=GpioPort,
-        ),
-        _base.FieldInfo(
-            "cc_motor_enable_pin",
-            "CC Motor Enable Pin",
-            1324,
-            4,
-            "enum",
-            enum=GpioPortPin,
-        ),
-        _base.FieldInfo(
-            "cc_common_enable_port",
-            "CC Common Enable Port",
-            1328,
-            4,
-            "enum",
-            enum=GpioPort,
-        ),
-        _base.FieldInfo(
-            "cc_common_enable_pin",
-            "CC Common Enable Pin",
-            1332,
-            4,
-            "enum",
-            enum=GpioPortPin,
-        ),
-        _base.FieldInfo(
-            "cubesense1_enable_port",
-            "CubeSense1 Enable Port",
-            1336,
-            4,
-            "enum",
-            enum=GpioPort,
-        ),
-        _base.FieldInfo(
-            "cubesense1_enable_pin",
-            "CubeSense1 Enable Pin",
-            1340,
-            4,
-            "enum",
-            enum=GpioPortPin,
-        ),
-        _base.FieldInfo(
-            "cubesense2_enable_port",
-            "CubeSense2 Enable Port",
-            1344,
-            4,
-            "enum",
-            enum=GpioPort,
-        ),
-        _base.FieldInfo(
-            "cubesense2_enable_pin",
-            "CubeSense2 Enable Pin",
-            1348,
-            4,
-            "enum",
-            enum=GpioPortPin,
-        ),
-        _base.FieldInfo(
-            "cubestar_enable_port",
-            "CubeStar Enable Port",
-            1352,
-            4,
-            "enum",
-            enum=GpioPort,
-        ),
-        _base.FieldInfo(
-            "cubestar_enable_pin",
-            "CubeStar Enable Pin",
-            1356,
-            4,
-            "enum",
-            enum=GpioPortPin,
-        ),
-        _base.FieldInfo(
-            "cubewheel1_enable_port",
-            "CubeWheel1 Enable Port",
-            1360,
-            4,
-            "enum",
-            enum=GpioPort,
-        ),
-        _base.FieldInfo(
-            "cubewheel1_enable_pin",
-            "CubeWheel1 Enable Pin",
-            1364,
-            4,
-            "enum",
-            enum=GpioPortPin,
-        ),
-        _base.FieldInfo(
-            "cubewheel2_enable_port",
-            "CubeWheel2 Enable Port",
-            1368,
-            4,
-            "enum",
-            enum=GpioPort,
-        ),
-        _base.FieldInfo(
-            "cubewheel2_enable_pin",
-            "CubeWheel2 Enable Pin",
-            1372,
-            4,
-            "enum",
-            enum=GpioPortPin,
-        ),
-        _base.FieldInfo(
-            "cubewheel3_enable_port",
-            "CubeWheel3 Enable Port",
-            1376,
-            4,
-            "enum",
-            enum=GpioPort,
-        ),
-        _base.FieldInfo(
-            "cubewheel3_enable_pin",
-            "CubeWheel3 Enable Pin",
-            1380,
-            4,
-            "enum",
-            enum=GpioPortPin,
-        ),
-    )
 
-    acp_type: AcpProgramType
+    acp_type: AcpProgramType = _base.field("ACP Type", 0, 4, "enum", default=AcpProgramType.THREE_AXIS_ACP)
     """ACP Type: bits 0 to 3."""
-    special_control_selection: SpecialConSelect
+
+    special_control_selection: SpecialConSelect = _base.field(
+        "Special Control Selection", 4, 4, "enum", default=SpecialConSelect.NONE
+    )
     """Special Control Selection: bits 4 to 7."""
-    cubecontrol_signal_version: int
+
+    cubecontrol_signal_version: int = _base.field("CubeControl Signal Version", 8, 8, "uint", default=0)
     """CubeControl Signal Version: bits 8 to 15, raw 0 to 255.
 
-    Note ACP-171 (open): Versions of the units: format of the number.
+    Note ACP-171 (open): Versions of the units: format of the number. Versions of
+    hardware or firmware, as whole numbers or packed digits, are all possible in a byte.
     """
-    cubecontrol_motor_version: int
+
+    cubecontrol_motor_version: int = _base.field("CubeControl Motor Version", 16, 8, "uint", default=0)
     """CubeControl Motor Version: bits 16 to 23, raw 0 to 255.
 
-    Note ACP-171 (open): Versions of the units: format of the number.
+    Note ACP-171 (open): see CubeControl Signal Version.
     """
-    cubesense1_version: int
+
+    cubesense1_version: int = _base.field("CubeSense1 Version", 24, 8, "uint", default=0)
     """CubeSense1 Version: bits 24 to 31, raw 0 to 255.
 
-    Note ACP-171 (open): Versions of the units: format of the number.
+    Note ACP-171 (open): see CubeControl Signal Version.
     """
-    cubesense2_version: int
+
+    cubesense2_version: int = _base.field("CubeSense2 Version", 32, 8, "uint", default=0)
     """CubeSense2 Version: bits 32 to 39, raw 0 to 255.
 
-    Note ACP-171 (open): Versions of the units: format of the number.
+    Note ACP-171 (open): see CubeControl Signal Version.
     """
-    cubesense1_camera_type: CsCamType
+
+    cubesense1_camera_type: CsCamType = _base.field(
+        "CubeSense1 Camera Type", 40, 4, "enum", default=CsCamType.SUN_SENSOR
+    )
     """CubeSense1 Camera Type: bits 40 to 43."""
-    cubesense2_camera_type: CsCamType
+
+    cubesense2_camera_type: CsCamType = _base.field(
+        "CubeSense2 Camera Type", 44, 4, "enum", default=CsCamType.SUN_SENSOR
+    )
     """CubeSense2 Camera Type: bits 44 to 47."""
-    cubestar_version: int
+
+    cubestar_version: int = _base.field("CubeStar Version", 48, 8, "uint", default=0)
     """CubeStar Version: bits 48 to 55, raw 0 to 255.
 
-    Note ACP-171 (open): Versions of the units: format of the number.
+    Note ACP-171 (open): see CubeControl Signal Version.
     """
-    gps_type: GpsSelect
+
+    gps_type: GpsSelect = _base.field("GPS Type", 56, 4, "enum", default=GpsSelect.NO_GPS_SUPPORT)
     """GPS Type: bits 56 to 59."""
-    redundant_mtm_included: bool
+
+    redundant_mtm_included: bool = _base.field("Redundant MTM Included", 60, 1, "bool", default=False)
     """Redundant MTM Included: bit 60."""
-    magnetorquer_x_max_dipole: float
+
+    magnetorquer_x_max_dipole: float = _base.field(
+        "Magnetorquer-X Max Dipole", 64, 32, "float", default=0.0, unit="A.m^2"
+    )
     """Magnetorquer-X Max Dipole: bits 64 to 95, 32-bit float, in A.m^2.
 
-    Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2.
+    Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2. The square is written as a digit
+    above the line here and with a caret for the inertia. Held with a caret.
     """
-    magnetorquer_y_max_dipole: float
+
+    magnetorquer_y_max_dipole: float = _base.field(
+        "Magnetorquer-Y Max Dipole", 96, 32, "float", default=0.0, unit="A.m^2"
+    )
     """Magnetorquer-Y Max Dipole: bits 96 to 127, 32-bit float, in A.m^2.
 
-    Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2.
+    Erratum ACP-172 (certain): see Magnetorquer-X Max Dipole.
     """
-    magnetorquer_z_max_dipole: float
+
+    magnetorquer_z_max_dipole: float = _base.field(
+        "Magnetorquer-Z Max Dipole", 128, 32, "float", default=0.0, unit="A.m^2"
+    )
     """Magnetorquer-Z Max Dipole: bits 128 to 159, 32-bit float, in A.m^2.
 
-    Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2.
+    Erratum ACP-172 (certain): see Magnetorquer-X Max Dipole.
     """
-    magnetorquer_on_time_resolution: float
+
+    magnetorquer_on_time_resolution: float = _base.field(
+        "Magnetorquer On-time Resolution", 160, 32, "float", default=0.0, unit="s"
+    )
     """Magnetorquer On-time Resolution: bits 160 to 191, 32-bit float, in s."""
-    magnetorquer_maximum_on_time: float
+
+    magnetorquer_maximum_on_time: float = _base.field(
+        "Magnetorquer Maximum On-time", 192, 32, "float", default=0.0, unit="s"
+    )
     """Magnetorquer Maximum On-time: bits 192 to 223, 32-bit float, in s."""
-    rw_x_maximum_torque: float
+
+    rw_x_maximum_torque: float = _base.field("RW-X Maximum Torque", 224, 32, "float", default=0.0, unit="N.m")
     """RW-X Maximum Torque: bits 224 to 255, 32-bit float, in N.m.
 
-    Note ACP-173 (certain): N.m and Nms.
+    Note ACP-173 (certain): N.m and Nms. Torque is written with a dot, angular momentum
+    without. Both are held as printed.
     """
-    rw_y_maximum_torque: float
+
+    rw_y_maximum_torque: float = _base.field("RW-Y Maximum Torque", 256, 32, "float", default=0.0, unit="N.m")
     """RW-Y Maximum Torque: bits 256 to 287, 32-bit float, in N.m.
 
-    Note ACP-173 (certain): N.m and Nms.
+    Note ACP-173 (certain): see RW-X Maximum Torque.
     """
-    rw_z_maximum_torque: float
+
+    rw_z_maximum_torque: float = _base.field("RW-Z Maximum Torque", 288, 32, "float", default=0.0, unit="N.m")
     """RW-Z Maximum Torque: bits 288 to 319, 32-bit float, in N.m.
 
-    Note ACP-173 (certain): N.m and Nms.
+    Note ACP-173 (certain): see RW-X Maximum Torque.
     """
-    rw_x_maximum_momentum: float
+
+    rw_x_maximum_momentum: float = _base.field("RW-X Maximum Momentum", 320, 32, "float", default=0.0, unit="Nms")
     """RW-X Maximum Momentum: bits 320 to 351, 32-bit float, in Nms.
 
-    Note ACP-173 (certain): N.m and Nms.
+    Note ACP-173 (certain): see RW-X Maximum Torque.
     """
-    rw_y_maximum_momentum: float
+
+    rw_y_maximum_momentum: float = _base.field("RW-Y Maximum Momentum", 352, 32, "float", default=0.0, unit="Nms")
     """RW-Y Maximum Momentum: bits 352 to 383, 32-bit float, in Nms.
 
-    Note ACP-173 (certain): N.m and Nms.
+    Note ACP-173 (certain): see RW-X Maximum Torque.
     """
-    rw_z_maximum_momentum: float
+
+    rw_z_maximum_momentum: float = _base.field("RW-Z Maximum Momentum", 384, 32, "float", default=0.0, unit="Nms")
     """RW-Z Maximum Momentum: bits 384 to 415, 32-bit float, in Nms.
 
-    Note ACP-173 (certain): N.m and Nms.
+    Note ACP-173 (certain): see RW-X Maximum Torque.
     """
-    rw_x_inertia: float
+
+    rw_x_inertia: float = _base.field("RW-X Inertia", 416, 32, "float", default=0.0, unit="kg.m^2")
     """RW-X Inertia: bits 416 to 447, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2. The same fields
+    have the unit in two spellings. Held as kg.m^2.
 
-    Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    Note ACP-129 (open): Reaction wheels are RW1 and RW-X. Numbers in one message, axes
+    in the other. The two agree only after the wheel configuration has been applied.
     """
-    rw_y_inertia: float
+
+    rw_y_inertia: float = _base.field("RW-Y Inertia", 448, 32, "float", default=0.0, unit="kg.m^2")
     """RW-Y Inertia: bits 448 to 479, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see RW-X Inertia.
 
-    Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    Note ACP-129 (open): see RW-X Inertia.
     """
-    rw_z_inertia: float
+
+    rw_z_inertia: float = _base.field("RW-Z Inertia", 480, 32, "float", default=0.0, unit="kg.m^2")
     """RW-Z Inertia: bits 480 to 511, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see RW-X Inertia.
 
-    Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    Note ACP-129 (open): see RW-X Inertia.
     """
-    rw_torque_increment: float
+
+    rw_torque_increment: float = _base.field("RW Torque Increment", 512, 32, "float", default=0.0, unit="N.m")
     """RW Torque Increment: bits 512 to 543, 32-bit float, in N.m."""
-    primary_mtm_x_bias_d1: float
+
+    primary_mtm_x_bias_d1: float = _base.field("Primary MTM X-Bias d1", 544, 32, "float", default=0.0)
     """Primary MTM X-Bias d1: bits 544 to 575, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2. Twenty-four
+    coefficients have neither description nor unit. How they work together with the
+    offsets and the sensitivity matrix of the configuration is not said.
     """
-    primary_mtm_y_bias_d1: float
+
+    primary_mtm_y_bias_d1: float = _base.field("Primary MTM Y-Bias d1", 576, 32, "float", default=0.0)
     """Primary MTM Y-Bias d1: bits 576 to 607, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    primary_mtm_z_bias_d1: float
+
+    primary_mtm_z_bias_d1: float = _base.field("Primary MTM Z-Bias d1", 608, 32, "float", default=0.0)
     """Primary MTM Z-Bias d1: bits 608 to 639, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    primary_mtm_x_bias_d2: float
+
+    primary_mtm_x_bias_d2: float = _base.field("Primary MTM X-Bias d2", 640, 32, "float", default=0.0)
     """Primary MTM X-Bias d2: bits 640 to 671, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    primary_mtm_y_bias_d2: float
+
+    primary_mtm_y_bias_d2: float = _base.field("Primary MTM Y-Bias d2", 672, 32, "float", default=0.0)
     """Primary MTM Y-Bias d2: bits 672 to 703, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    primary_mtm_z_bias_d2: float
+
+    primary_mtm_z_bias_d2: float = _base.field("Primary MTM Z-Bias d2", 704, 32, "float", default=0.0)
     """Primary MTM Z-Bias d2: bits 704 to 735, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    primary_mtm_x_sens_s1: float
+
+    primary_mtm_x_sens_s1: float = _base.field("Primary MTM X-Sens s1", 736, 32, "float", default=0.0)
     """Primary MTM X-Sens s1: bits 736 to 767, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    primary_mtm_y_sens_s1: float
+
+    primary_mtm_y_sens_s1: float = _base.field("Primary MTM Y-Sens s1", 768, 32, "float", default=0.0)
     """Primary MTM Y-Sens s1: bits 768 to 799, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    primary_mtm_z_sens_s1: float
+
+    primary_mtm_z_sens_s1: float = _base.field("Primary MTM Z-Sens s1", 800, 32, "float", default=0.0)
     """Primary MTM Z-Sens s1: bits 800 to 831, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    primary_mtm_x_sens_s2: float
+
+    primary_mtm_x_sens_s2: float = _base.field("Primary MTM X-Sens s2", 832, 32, "float", default=0.0)
     """Primary MTM X-Sens s2: bits 832 to 863, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    primary_mtm_y_sens_s2: float
+
+    primary_mtm_y_sens_s2: float = _base.field("Primary MTM Y-Sens s2", 864, 32, "float", default=0.0)
     """Primary MTM Y-Sens s2: bits 864 to 895, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    primary_mtm_z_sens_s2: float
+
+    primary_mtm_z_sens_s2: float = _base.field("Primary MTM Z-Sens s2", 896, 32, "float", default=0.0)
     """Primary MTM Z-Sens s2: bits 896 to 927, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    redundant_mtm_x_bias_d1: float
+
+    redundant_mtm_x_bias_d1: float = _base.field("Redundant MTM X-Bias d1", 928, 32, "float", default=0.0)
     """Redundant MTM X-Bias d1: bits 928 to 959, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    redundant_mtm_y_bias_d1: float
+
+    redundant_mtm_y_bias_d1: float = _base.field("Redundant MTM Y-Bias d1", 960, 32, "float", default=0.0)
     """Redundant MTM Y-Bias d1: bits 960 to 991, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    redundant_mtm_z_bias_d1: float
+
+    redundant_mtm_z_bias_d1: float = _base.field("Redundant MTM Z-Bias d1", 992, 32, "float", default=0.0)
     """Redundant MTM Z-Bias d1: bits 992 to 1023, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    redundant_mtm_x_bias_d2: float
+
+    redundant_mtm_x_bias_d2: float = _base.field("Redundant MTM X-Bias d2", 1024, 32, "float", default=0.0)
     """Redundant MTM X-Bias d2: bits 1024 to 1055, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    redundant_mtm_y_bias_d2: float
+
+    redundant_mtm_y_bias_d2: float = _base.field("Redundant MTM Y-Bias d2", 1056, 32, "float", default=0.0)
     """Redundant MTM Y-Bias d2: bits 1056 to 1087, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    redundant_mtm_z_bias_d2: float
+
+    redundant_mtm_z_bias_d2: float = _base.field("Redundant MTM Z-Bias d2", 1088, 32, "float", default=0.0)
     """Redundant MTM Z-Bias d2: bits 1088 to 1119, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    redundant_mtm_x_sens_s1: float
+
+    redundant_mtm_x_sens_s1: float = _base.field("Redundant MTM X-Sens s1", 1120, 32, "float", default=0.0)
     """Redundant MTM X-Sens s1: bits 1120 to 1151, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    redundant_mtm_y_sens_s1: float
+
+    redundant_mtm_y_sens_s1: float = _base.field("Redundant MTM Y-Sens s1", 1152, 32, "float", default=0.0)
     """Redundant MTM Y-Sens s1: bits 1152 to 1183, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    redundant_mtm_z_sens_s1: float
+
+    redundant_mtm_z_sens_s1: float = _base.field("Redundant MTM Z-Sens s1", 1184, 32, "float", default=0.0)
     """Redundant MTM Z-Sens s1: bits 1184 to 1215, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    redundant_mtm_x_sens_s2: float
+
+    redundant_mtm_x_sens_s2: float = _base.field("Redundant MTM X-Sens s2", 1216, 32, "float", default=0.0)
     """Redundant MTM X-Sens s2: bits 1216 to 1247, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    redundant_mtm_y_sens_s2: float
+
+    redundant_mtm_y_sens_s2: float = _base.field("Redundant MTM Y-Sens s2", 1248, 32, "float", default=0.0)
     """Redundant MTM Y-Sens s2: bits 1248 to 1279, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    redundant_mtm_z_sens_s2: float
+
+    redundant_mtm_z_sens_s2: float = _base.field("Redundant MTM Z-Sens s2", 1280, 32, "float", default=0.0)
     """Redundant MTM Z-Sens s2: bits 1280 to 1311, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
-    cc_signal_enable_port: GpioPort
+
+    cc_signal_enable_port: GpioPort = _base.field("CC Signal Enable Port", 1312, 4, "enum", default=GpioPort.PORT_A)
     """CC Signal Enable Port: bits 1312 to 1315.
 
-    Note ACP-175 (likely): CC is not explained.
+    Note ACP-175 (likely): CC is not explained. It stands for CubeControl by the order
+    of the fields. A third, common enable line appears nowhere else.
     """
-    cc_signal_enable_pin: GpioPortPin
+
+    cc_signal_enable_pin: GpioPortPin = _base.field("CC Signal Enable Pin", 1316, 4, "enum", default=GpioPortPin.PIN_0)
     """CC Signal Enable Pin: bits 1316 to 1319.
 
-    Note ACP-175 (likely): CC is not explained.
+    Note ACP-175 (likely): see CC Signal Enable Port.
     """
-    cc_motor_enable_port: GpioPort
+
+    cc_motor_enable_port: GpioPort = _base.field("CC Motor Enable Port", 1320, 4, "enum", default=GpioPort.PORT_A)
     """CC Motor Enable Port: bits 1320 to 1323."""
-    cc_motor_enable_pin: GpioPortPin
+
+    cc_motor_enable_pin: GpioPortPin = _base.field("CC Motor Enable Pin", 1324, 4, "enum", default=GpioPortPin.PIN_0)
     """CC Motor Enable Pin: bits 1324 to 1327."""
-    cc_common_enable_port: GpioPort
+
+    cc_common_enable_port: GpioPort = _base.field("CC Common Enable Port", 1328, 4, "enum", default=GpioPort.PORT_A)
     """CC Common Enable Port: bits 1328 to 1331.
 
-    Note ACP-175 (likely): CC is not explained.
+    Note ACP-175 (likely): see CC Signal Enable Port.
     """
-    cc_common_enable_pin: GpioPortPin
+
+    cc_common_enable_pin: GpioPortPin = _base.field("CC Common Enable Pin", 1332, 4, "enum", default=GpioPortPin.PIN_0)
     """CC Common Enable Pin: bits 1332 to 1335.
 
-    Note ACP-175 (likely): CC is not explained.
+    Note ACP-175 (likely): see CC Signal Enable Port.
     """
-    cubesense1_enable_port: GpioPort
+
+    cubesense1_enable_port: GpioPort = _base.field("CubeSense1 Enable Port", 1336, 4, "enum", default=GpioPort.PORT_A)
     """CubeSense1 Enable Port: bits 1336 to 1339."""
-    cubesense1_enable_pin: GpioPortPin
+
+    cubesense1_enable_pin: GpioPortPin = _base.field(
+        "CubeSense1 Enable Pin", 1340, 4, "enum", default=GpioPortPin.PIN_0
+    )
     """CubeSense1 Enable Pin: bits 1340 to 1343."""
-    cubesense2_enable_port: GpioPort
+
+    cubesense2_enable_port: GpioPort = _base.field("CubeSense2 Enable Port", 1344, 4, "enum", default=GpioPort.PORT_A)
     """CubeSense2 Enable Port: bits 1344 to 1347."""
-    cubesense2_enable_pin: GpioPortPin
+
+    cubesense2_enable_pin: GpioPortPin = _base.field(
+        "CubeSense2 Enable Pin", 1348, 4, "enum", default=GpioPortPin.PIN_0
+    )
     """CubeSense2 Enable Pin: bits 1348 to 1351."""
-    cubestar_enable_port: GpioPort
+
+    cubestar_enable_port: GpioPort = _base.field("CubeStar Enable Port", 1352, 4, "enum", default=GpioPort.PORT_A)
     """CubeStar Enable Port: bits 1352 to 1355."""
-    cubestar_enable_pin: GpioPortPin
+
+    cubestar_enable_pin: GpioPortPin = _base.field("CubeStar Enable Pin", 1356, 4, "enum", default=GpioPortPin.PIN_0)
     """CubeStar Enable Pin: bits 1356 to 1359."""
-    cubewheel1_enable_port: GpioPort
+
+    cubewheel1_enable_port: GpioPort = _base.field("CubeWheel1 Enable Port", 1360, 4, "enum", default=GpioPort.PORT_A)
     """CubeWheel1 Enable Port: bits 1360 to 1363."""
-    cubewheel1_enable_pin: GpioPortPin
+
+    cubewheel1_enable_pin: GpioPortPin = _base.field(
+        "CubeWheel1 Enable Pin", 1364, 4, "enum", default=GpioPortPin.PIN_0
+    )
     """CubeWheel1 Enable Pin: bits 1364 to 1367."""
-    cubewheel2_enable_port: GpioPort
+
+    cubewheel2_enable_port: GpioPort = _base.field("CubeWheel2 Enable Port", 1368, 4, "enum", default=GpioPort.PORT_A)
     """CubeWheel2 Enable Port: bits 1368 to 1371."""
-    cubewheel2_enable_pin: GpioPortPin
+
+    cubewheel2_enable_pin: GpioPortPin = _base.field(
+        "CubeWheel2 Enable Pin", 1372, 4, "enum", default=GpioPortPin.PIN_0
+    )
     """CubeWheel2 Enable Pin: bits 1372 to 1375."""
-    cubewheel3_enable_port: GpioPort
+
+    cubewheel3_enable_port: GpioPort = _base.field("CubeWheel3 Enable Port", 1376, 4, "enum", default=GpioPort.PORT_A)
     """CubeWheel3 Enable Port: bits 1376 to 1379."""
-    cubewheel3_enable_pin: GpioPortPin
+
+    cubewheel3_enable_pin: GpioPortPin = _base.field(
+        "CubeWheel3 Enable Pin", 1380, 4, "enum", default=GpioPortPin.PIN_0
+    )
     """CubeWheel3 Enable Pin: bits 1380 to 1383."""
-
-    def __init__(
-        self,
-        *,
-        acp_type: AcpProgramType = AcpProgramType.THREE_AXIS_ACP,
-        special_control_selection: SpecialConSelect = SpecialConSelect.NONE,
-        cubecontrol_signal_version: int = 0,
-        cubecontrol_motor_version: int = 0,
-        cubesense1_version: int = 0,
-        cubesense2_version: int = 0,
-        cubesense1_camera_type: CsCamType = CsCamType.SUN_SENSOR,
-        cubesense2_camera_type: CsCamType = CsCamType.SUN_SENSOR,
-        cubestar_version: int = 0,
-        gps_type: GpsSelect = GpsSelect.NO_GPS_SUPPORT,
-        redundant_mtm_included: bool = False,
-        magnetorquer_x_max_dipole: float = 0.0,
-        magnetorquer_y_max_dipole: float = 0.0,
-        magnetorquer_z_max_dipole: float = 0.0,
-        magnetorquer_on_time_resolution: float = 0.0,
-        magnetorquer_maximum_on_time: float = 0.0,
-        rw_x_maximum_torque: float = 0.0,
-        rw_y_maximum_torque: float = 0.0,
-        rw_z_maximum_torque: float = 0.0,
-        rw_x_maximum_momentum: float = 0.0,
-        rw_y_maximum_momentum: float = 0.0,
-        rw_z_maximum_momentum: float = 0.0,
-        rw_x_inertia: float = 0.0,
-        rw_y_inertia: float = 0.0,
-        rw_z_inertia: float = 0.0,
-        rw_torque_increment: float = 0.0,
-        primary_mtm_x_bias_d1: float = 0.0,
-        primary_mtm_y_bias_d1: float = 0.0,
-        primary_mtm_z_bias_d1: float = 0.0,
-        primary_mtm_x_bias_d2: float = 0.0,
-        primary_mtm_y_bias_d2: float = 0.0,
-        primary_mtm_z_bias_d2: float = 0.0,
-        primary_mtm_x_sens_s1: float = 0.0,
-        primary_mtm_y_sens_s1: float = 0.0,
-        primary_mtm_z_sens_s1: float = 0.0,
-        primary_mtm_x_sens_s2: float = 0.0,
-        primary_mtm_y_sens_s2: float = 0.0,
-        primary_mtm_z_sens_s2: float = 0.0,
-        redundant_mtm_x_bias_d1: float = 0.0,
-        redundant_mtm_y_bias_d1: float = 0.0,
-        redundant_mtm_z_bias_d1: float = 0.0,
-        redundant_mtm_x_bias_d2: float = 0.0,
-        redundant_mtm_y_bias_d2: float = 0.0,
-        redundant_mtm_z_bias_d2: float = 0.0,
-        redundant_mtm_x_sens_s1: float = 0.0,
-        redundant_mtm_y_sens_s1: float = 0.0,
-        redundant_mtm_z_sens_s1: float = 0.0,
-        redundant_mtm_x_sens_s2: float = 0.0,
-        redundant_mtm_y_sens_s2: float = 0.0,
-        redundant_mtm_z_sens_s2: float = 0.0,
-        cc_signal_enable_port: GpioPort = GpioPort.PORT_A,
-        cc_signal_enable_pin: GpioPortPin = GpioPortPin.PIN_0,
-        cc_motor_enable_port: GpioPort = GpioPort.PORT_A,
-        cc_motor_enable_pin: GpioPortPin = GpioPortPin.PIN_0,
-        cc_common_enable_port: GpioPort = GpioPort.PORT_A,
-        cc_common_enable_pin: GpioPortPin = GpioPortPin.PIN_0,
-        cubesense1_enable_port: GpioPort = GpioPort.PORT_A,
-        cubesense1_enable_pin: GpioPortPin = GpioPortPin.PIN_0,
-        cubesense2_enable_port: GpioPort = GpioPort.PORT_A,
-        cubesense2_enable_pin: GpioPortPin = GpioPortPin.PIN_0,
-        cubestar_enable_port: GpioPort = GpioPort.PORT_A,
-        cubestar_enable_pin: GpioPortPin = GpioPortPin.PIN_0,
-        cubewheel1_enable_port: GpioPort = GpioPort.PORT_A,
-        cubewheel1_enable_pin: GpioPortPin = GpioPortPin.PIN_0,
-        cubewheel2_enable_port: GpioPort = GpioPort.PORT_A,
-        cubewheel2_enable_pin: GpioPortPin = GpioPortPin.PIN_0,
-        cubewheel3_enable_port: GpioPort = GpioPort.PORT_A,
-        cubewheel3_enable_pin: GpioPortPin = GpioPortPin.PIN_0,
-    ) -> None:
-        self.acp_type = acp_type
-        self.special_control_selection = special_control_selection
-        self.cubecontrol_signal_version = cubecontrol_signal_version
-        self.cubecontrol_motor_version = cubecontrol_motor_version
-        self.cubesense1_version = cubesense1_version
-        self.cubesense2_version = cubesense2_version
-        self.cubesense1_camera_type = cubesense1_camera_type
-        self.cubesense2_camera_type = cubesense2_camera_type
-        self.cubestar_version = cubestar_version
-        self.gps_type = gps_type
-        self.redundant_mtm_included = redundant_mtm_included
-        self.magnetorquer_x_max_dipole = magnetorquer_x_max_dipole
-        self.magnetorquer_y_max_dipole = magnetorquer_y_max_dipole
-        self.magnetorquer_z_max_dipole = magnetorquer_z_max_dipole
-        self.magnetorquer_on_time_resolution = magnetorquer_on_time_resolution
-        self.magnetorquer_maximum_on_time = magnetorquer_maximum_on_time
-        self.rw_x_maximum_torque = rw_x_maximum_torque
-        self.rw_y_maximum_torque = rw_y_maximum_torque
-        self.rw_z_maximum_torque = rw_z_maximum_torque
-        self.rw_x_maximum_momentum = rw_x_maximum_momentum
-        self.rw_y_maximum_momentum = rw_y_maximum_momentum
-        self.rw_z_maximum_momentum = rw_z_maximum_momentum
-        self.rw_x_inertia = rw_x_inertia
-        self.rw_y_inertia = rw_y_inertia
-        self.rw_z_inertia = rw_z_inertia
-        self.rw_torque_increment = rw_torque_increment
-        self.primary_mtm_x_bias_d1 = primary_mtm_x_bias_d1
-        self.primary_mtm_y_bias_d1 = primary_mtm_y_bias_d1
-        self.primary_mtm_z_bias_d1 = primary_mtm_z_bias_d1
-        self.primary_mtm_x_bias_d2 = primary_mtm_x_bias_d2
-        self.primary_mtm_y_bias_d2 = primary_mtm_y_bias_d2
-        self.primary_mtm_z_bias_d2 = primary_mtm_z_bias_d2
-        self.primary_mtm_x_sens_s1 = primary_mtm_x_sens_s1
-        self.primary_mtm_y_sens_s1 = primary_mtm_y_sens_s1
-        self.primary_mtm_z_sens_s1 = primary_mtm_z_sens_s1
-        self.primary_mtm_x_sens_s2 = primary_mtm_x_sens_s2
-        self.primary_mtm_y_sens_s2 = primary_mtm_y_sens_s2
-        self.primary_mtm_z_sens_s2 = primary_mtm_z_sens_s2
-        self.redundant_mtm_x_bias_d1 = redundant_mtm_x_bias_d1
-        self.redundant_mtm_y_bias_d1 = redundant_mtm_y_bias_d1
-        self.redundant_mtm_z_bias_d1 = redundant_mtm_z_bias_d1
-        self.redundant_mtm_x_bias_d2 = redundant_mtm_x_bias_d2
-        self.redundant_mtm_y_bias_d2 = redundant_mtm_y_bias_d2
-        self.redundant_mtm_z_bias_d2 = redundant_mtm_z_bias_d2
-        self.redundant_mtm_x_sens_s1 = redundant_mtm_x_sens_s1
-        self.redundant_mtm_y_sens_s1 = redundant_mtm_y_sens_s1
-        self.redundant_mtm_z_sens_s1 = redundant_mtm_z_sens_s1
-        self.redundant_mtm_x_sens_s2 = redundant_mtm_x_sens_s2
-        self.redundant_mtm_y_sens_s2 = redundant_mtm_y_sens_s2
-        self.redundant_mtm_z_sens_s2 = redundant_mtm_z_sens_s2
-        self.cc_signal_enable_port = cc_signal_enable_port
-        self.cc_signal_enable_pin = cc_signal_enable_pin
-        self.cc_motor_enable_port = cc_motor_enable_port
-        self.cc_motor_enable_pin = cc_motor_enable_pin
-        self.cc_common_enable_port = cc_common_enable_port
-        self.cc_common_enable_pin = cc_common_enable_pin
-        self.cubesense1_enable_port = cubesense1_enable_port
-        self.cubesense1_enable_pin = cubesense1_enable_pin
-        self.cubesense2_enable_port = cubesense2_enable_port
-        self.cubesense2_enable_pin = cubesense2_enable_pin
-        self.cubestar_enable_port = cubestar_enable_port
-        self.cubestar_enable_pin = cubestar_enable_pin
-        self.cubewheel1_enable_port = cubewheel1_enable_port
-        self.cubewheel1_enable_pin = cubewheel1_enable_pin
-        self.cubewheel2_enable_port = cubewheel2_enable_port
-        self.cubewheel2_enable_pin = cubewheel2_enable_pin
-        self.cubewheel3_enable_port = cubewheel3_enable_port
-        self.cubewheel3_enable_pin = cubewheel3_enable_pin
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> AdcsSystemConfiguration:
-        """The message in a frame of exactly 173 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                v0,
-                self.cubecontrol_signal_version,
-                self.cubecontrol_motor_version,
-                self.cubesense1_version,
-                self.cubesense2_version,
-                v5,
-                self.cubestar_version,
-                v7,
-                self.magnetorquer_x_max_dipole,
-                self.magnetorquer_y_max_dipole,
-                self.magnetorquer_z_max_dipole,
-                self.magnetorquer_on_time_resolution,
-                self.magnetorquer_maximum_on_time,
-                self.rw_x_maximum_torque,
-                self.rw_y_maximum_torque,
-                self.rw_z_maximum_torque,
-                self.rw_x_maximum_momentum,
-                self.rw_y_maximum_momentum,
-                self.rw_z_maximum_momentum,
-                self.rw_x_inertia,
-                self.rw_y_inertia,
-                self.rw_z_inertia,
-                self.rw_torque_increment,
-                self.primary_mtm_x_bias_d1,
-                self.primary_mtm_y_bias_d1,
-                self.primary_mtm_z_bias_d1,
-                self.primary_mtm_x_bias_d2,
-                self.primary_mtm_y_bias_d2,
-                self.primary_mtm_z_bias_d2,
-                self.primary_mtm_x_sens_s1,
-                self.primary_mtm_y_sens_s1,
-                self.primary_mtm_z_sens_s1,
-                self.primary_mtm_x_sens_s2,
-                self.primary_mtm_y_sens_s2,
-                self.primary_mtm_z_sens_s2,
-                self.redundant_mtm_x_bias_d1,
-                self.redundant_mtm_y_bias_d1,
-                self.redundant_mtm_z_bias_d1,
-                self.redundant_mtm_x_bias_d2,
-                self.redundant_mtm_y_bias_d2,
-                self.redundant_mtm_z_bias_d2,
-                self.redundant_mtm_x_sens_s1,
-                self.redundant_mtm_y_sens_s1,
-                self.redundant_mtm_z_sens_s1,
-                self.redundant_mtm_x_sens_s2,
-                self.redundant_mtm_y_sens_s2,
-                self.redundant_mtm_z_sens_s2,
-                v164,
-                v165,
-                v166,
-                v167,
-                v168,
-                v169,
-                v170,
-                v171,
-                v172,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.acp_type, self.special_control_selection = _BITS_0[v0]
-        self.cubesense1_camera_type, self.cubesense2_camera_type = _BITS_1[v5]
-        self.gps_type, self.redundant_mtm_included = _BITS_2[v7]
-        self.cc_signal_enable_port, self.cc_signal_enable_pin = _BITS_3[v164]
-        self.cc_motor_enable_port, self.cc_motor_enable_pin = _BITS_3[v165]
-        self.cc_common_enable_port, self.cc_common_enable_pin = _BITS_3[v166]
-        self.cubesense1_enable_port, self.cubesense1_enable_pin = _BITS_3[v167]
-        self.cubesense2_enable_port, self.cubesense2_enable_pin = _BITS_3[v168]
-        self.cubestar_enable_port, self.cubestar_enable_pin = _BITS_3[v169]
-        self.cubewheel1_enable_port, self.cubewheel1_enable_pin = _BITS_3[v170]
-        self.cubewheel2_enable_port, self.cubewheel2_enable_pin = _BITS_3[v171]
-        self.cubewheel3_enable_port, self.cubewheel3_enable_pin = _BITS_3[v172]
-        total = (
-            self.magnetorquer_x_max_dipole
-            + self.magnetorquer_y_max_dipole
-            + self.magnetorquer_z_max_dipole
-            + self.magnetorquer_on_time_resolution
-            + self.magnetorquer_maximum_on_time
-            + self.rw_x_maximum_torque
-            + self.rw_y_maximum_torque
-            + self.rw_z_maximum_torque
-            + self.rw_x_maximum_momentum
-            + self.rw_y_maximum_momentum
-            + self.rw_z_maximum_momentum
-            + self.rw_x_inertia
-            + self.rw_y_inertia
-            + self.rw_z_inertia
-            + self.rw_torque_increment
-            + self.primary_mtm_x_bias_d1
-            + self.primary_mtm_y_bias_d1
-            + self.primary_mtm_z_bias_d1
-            + self.primary_mtm_x_bias_d2
-            + self.primary_mtm_y_bias_d2
-            + self.primary_mtm_z_bias_d2
-            + self.primary_mtm_x_sens_s1
-            + self.primary_mtm_y_sens_s1
-            + self.primary_mtm_z_sens_s1
-            + self.primary_mtm_x_sens_s2
-            + self.primary_mtm_y_sens_s2
-            + self.primary_mtm_z_sens_s2
-            + self.redundant_mtm_x_bias_d1
-            + self.redundant_mtm_y_bias_d1
-            + self.redundant_mtm_z_bias_d1
-            + self.redundant_mtm_x_bias_d2
-            + self.redundant_mtm_y_bias_d2
-            + self.redundant_mtm_z_bias_d2
-            + self.redundant_mtm_x_sens_s1
-            + self.redundant_mtm_y_sens_s1
-            + self.redundant_mtm_z_sens_s1
-            + self.redundant_mtm_x_sens_s2
-            + self.redundant_mtm_y_sens_s2
-            + self.redundant_mtm_z_sens_s2
-        )
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.acp_type, self.special_control_selection]
-            v5 = _BYTES_1[self.cubesense1_camera_type, self.cubesense2_camera_type]
-            v7 = _BYTES_2[self.gps_type, self.redundant_mtm_included]
-            v164 = _BYTES_3[self.cc_signal_enable_port, self.cc_signal_enable_pin]
-            v165 = _BYTES_3[self.cc_motor_enable_port, self.cc_motor_enable_pin]
-            v166 = _BYTES_3[self.cc_common_enable_port, self.cc_common_enable_pin]
-            v167 = _BYTES_3[self.cubesense1_enable_port, self.cubesense1_enable_pin]
-            v168 = _BYTES_3[self.cubesense2_enable_port, self.cubesense2_enable_pin]
-            v169 = _BYTES_3[self.cubestar_enable_port, self.cubestar_enable_pin]
-            v170 = _BYTES_3[self.cubewheel1_enable_port, self.cubewheel1_enable_pin]
-            v171 = _BYTES_3[self.cubewheel2_enable_port, self.cubewheel2_enable_pin]
-            v172 = _BYTES_3[self.cubewheel3_enable_port, self.cubewheel3_enable_pin]
-            frame = _pack(
-                v0,
-                self.cubecontrol_signal_version,
-                self.cubecontrol_motor_version,
-                self.cubesense1_version,
-                self.cubesense2_version,
-                v5,
-                self.cubestar_version,
-                v7,
-                self.magnetorquer_x_max_dipole,
-                self.magnetorquer_y_max_dipole,
-                self.magnetorquer_z_max_dipole,
-                self.magnetorquer_on_time_resolution,
-                self.magnetorquer_maximum_on_time,
-                self.rw_x_maximum_torque,
-                self.rw_y_maximum_torque,
-                self.rw_z_maximum_torque,
-                self.rw_x_maximum_momentum,
-                self.rw_y_maximum_momentum,
-                self.rw_z_maximum_momentum,
-                self.rw_x_inertia,
-                self.rw_y_inertia,
-                self.rw_z_inertia,
-                self.rw_torque_increment,
-                self.primary_mtm_x_bias_d1,
-                self.primary_mtm_y_bias_d1,
-                self.primary_mtm_z_bias_d1,
-                self.primary_mtm_x_bias_d2,
-                self.primary_mtm_y_bias_d2,
-                self.primary_mtm_z_bias_d2,
-                self.primary_mtm_x_sens_s1,
-                self.primary_mtm_y_sens_s1,
-                self.primary_mtm_z_sens_s1,
-                self.primary_mtm_x_sens_s2,
-                self.primary_mtm_y_sens_s2,
-                self.primary_mtm_z_sens_s2,
-                self.redundant_mtm_x_bias_d1,
-                self.redundant_mtm_y_bias_d1,
-                self.redundant_mtm_z_bias_d1,
-                self.redundant_mtm_x_bias_d2,
-                self.redundant_mtm_y_bias_d2,
-                self.redundant_mtm_z_bias_d2,
-                self.redundant_mtm_x_sens_s1,
-                self.redundant_mtm_y_sens_s1,
-                self.redundant_mtm_z_sens_s1,
-                self.redundant_mtm_x_sens_s2,
-                self.redundant_mtm_y_sens_s2,
-                self.redundant_mtm_z_sens_s2,
-                v164,
-                v165,
-                v166,
-                v167,
-                v168,
-                v169,
-                v170,
-                v171,
-                v172,
-            )
-            total = (
-                self.magnetorquer_x_max_dipole
-                + self.magnetorquer_y_max_dipole
-                + self.magnetorquer_z_max_dipole
-                + self.magnetorquer_on_time_resolution
-                + self.magnetorquer_maximum_on_time
-                + self.rw_x_maximum_torque
-                + self.rw_y_maximum_torque
-                + self.rw_z_maximum_torque
-                + self.rw_x_maximum_momentum
-                + self.rw_y_maximum_momentum
-                + self.rw_z_maximum_momentum
-                + self.rw_x_inertia
-                + self.rw_y_inertia
-                + self.rw_z_inertia
-                + self.rw_torque_increment
-                + self.primary_mtm_x_bias_d1
-                + self.primary_mtm_y_bias_d1
-                + self.primary_mtm_z_bias_d1
-                + self.primary_mtm_x_bias_d2
-                + self.primary_mtm_y_bias_d2
-                + self.primary_mtm_z_bias_d2
-                + self.primary_mtm_x_sens_s1
-                + self.primary_mtm_y_sens_s1
-                + self.primary_mtm_z_sens_s1
-                + self.primary_mtm_x_sens_s2
-                + self.primary_mtm_y_sens_s2
-                + self.primary_mtm_z_sens_s2
-                + self.redundant_mtm_x_bias_d1
-                + self.redundant_mtm_y_bias_d1
-                + self.redundant_mtm_z_bias_d1
-                + self.redundant_mtm_x_bias_d2
-                + self.redundant_mtm_y_bias_d2
-                + self.redundant_mtm_z_bias_d2
-                + self.redundant_mtm_x_sens_s1
-                + self.redundant_mtm_y_sens_s1
-                + self.redundant_mtm_z_sens_s1
-                + self.redundant_mtm_x_sens_s2
-                + self.redundant_mtm_y_sens_s2
-                + self.redundant_mtm_z_sens_s2
-            )
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class AdcsTemperatures(_base.Message):
     """ADCS Temperatures: telemetry 174, 6 bytes. Table 132.
 
@@ -23,12 +16,6 @@ class AdcsTemperatures(_base.Message):
     Bit 25 of the log mask.
     """
 
-    __slots__ = (
-        "mcu_temperature",
-        "magnetometer_temperature",
-        "redundant_mag_temperature",
-    )
-
     NODE = "cubeacp"
     NAME = "ADCS Temperatures"
     KIND = "telemetry"
@@ -36,130 +23,43 @@ class AdcsTemperatures(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 132
-    FIELDS = (
-        _base.FieldInfo("mcu_temperature", "MCU Temperature", 0, 16, "int", unit="C"),
-        _base.FieldInfo(
-            "magnetometer_temperature",
-            "Magnetometer Temperature",
-            16,
-            16,
-            "int",
-            unit="C",
-            physical="magnetometer_temperature_c",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_temperature",
-            "Redundant Magnetometer Temperature",
-            32,
-            16,
-            "int",
-            unit="C",
-            physical="redundant_mag_temperature_c",
-            scale=(1, 0, 10),
-        ),
-    )
 
-    mcu_temperature: int
+    mcu_temperature: int = _base.field("MCU Temperature", 0, 16, "int", default=0, unit="C")
     """MCU Temperature: bits 0 to 15, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a
+    degree sign. Degrees Celsius are meant.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and
+    hundredths stand side by side, in one frame even. That the controllers and rate
+    sensors report whole degrees in 16 bits may be a lost factor.
     """
-    magnetometer_temperature: int
+
+    magnetometer_temperature: int = _base.field("Magnetometer Temperature", 16, 16, "int", default=0, unit="C")
     """Magnetometer Temperature: bits 16 to 31, raw -32768 to 32767; physical
     `raw/10.0`, -3276.8 to 3276.7 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see MCU Temperature.
     """
-    redundant_mag_temperature: int
+    magnetometer_temperature_c: float = _base.scaled(1, 0, 10, default=0.0)
+    """Magnetometer Temperature in C: -3276.8 to 3276.7."""
+    magnetometer_temperature_mc: int = _base.whole(100, 0)
+    """Magnetometer Temperature in thousandths of C, exact: -3276800 to 3276700."""
+
+    redundant_mag_temperature: int = _base.field(
+        "Redundant Magnetometer Temperature", 32, 16, "int", default=0, unit="C"
+    )
     """Redundant Magnetometer Temperature: bits 32 to 47, raw -32768 to 32767; physical
     `raw/10.0`, -3276.8 to 3276.7 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see MCU Temperature.
 
     Note ACP-086 (certain): ADCS Temperatures: the redundant magnetometer is left out of
-    the description.
+    the description. Magnetometer and MCU are named, the third field is not.
     """
-
-    def __init__(
-        self,
-        *,
-        mcu_temperature: int = 0,
-        magnetometer_temperature: int = 0,
-        redundant_mag_temperature: int = 0,
-    ) -> None:
-        self.mcu_temperature = mcu_temperature
-        self.magnetometer_temperature = magnetometer_temperature
-        self.redundant_mag_temperature = redundant_mag_temperature
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        mcu_temperature: int = 0,
-        magnetometer_temperature_c: float = 0.0,
-        redundant_mag_temperature_c: float = 0.0,
-    ) -> AdcsTemperatures:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.mcu_temperature = mcu_temperature
-        self.magnetometer_temperature_c = magnetometer_temperature_c
-        self.redundant_mag_temperature_c = redundant_mag_temperature_c
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> AdcsTemperatures:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.mcu_temperature,
-                self.magnetometer_temperature,
-                self.redundant_mag_temperature,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.mcu_temperature,
-                self.magnetometer_temperature,
-                self.redundant_mag_temperature,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def magnetometer_temperature_c(self) -> float:
-        """Magnetometer Temperature in C: -3276.8 to 3276.7."""
-        return self.magnetometer_temperature / 10
-
-    @magnetometer_temperature_c.setter
-    def magnetometer_temperature_c(self, value: float) -> None:
-        self.magnetometer_temperature = _codec.raw_value(
-            value,
-            "magnetometer_temperature",
-            (1, 0, 10),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_temperature_c(self) -> float:
-        """Redundant Magnetometer Temperature in C: -3276.8 to 3276.7."""
-        return self.redundant_mag_temperature / 10
-
-    @redundant_mag_temperature_c.setter
-    def redundant_mag_temperature_c(self, value: float) -> None:
-        self.redundant_mag_temperature = _codec.raw_value(
-            value,
-            "redundant_mag_temperature",
-            (1, 0, 10),
-            -32768,
-            32767,
-        )
+    redundant_mag_temperature_c: float = _base.scaled(1, 0, 10, default=0.0)
+    """Redundant Magnetometer Temperature in C: -3276.8 to 3276.7."""
+    redundant_mag_temperature_mc: int = _base.whole(100, 0)
+    """Redundant Magnetometer Temperature in thousandths of C, exact: -3276800 to
+    3276700.
+    """

@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class AngularRateCovariance(_base.Message):
     """Angular Rate Covariance: telemetry 165, 6 bytes. Table 121.
 
     Bit 41 of the log mask.
     """
-
-    __slots__ = (
-        "x_angular_rate_covariance",
-        "y_angular_rate_covariance",
-        "z_angular_rate_covariance",
-    )
 
     NODE = "cubeacp"
     NAME = "Angular Rate Covariance"
@@ -34,147 +21,37 @@ class AngularRateCovariance(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 121
-    FIELDS = (
-        _base.FieldInfo(
-            "x_angular_rate_covariance",
-            "X Angular Rate Covariance",
-            0,
-            16,
-            "int",
-            physical="x_angular_rate_covariance_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "y_angular_rate_covariance",
-            "Y Angular Rate Covariance",
-            16,
-            16,
-            "int",
-            physical="y_angular_rate_covariance_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "z_angular_rate_covariance",
-            "Z Angular Rate Covariance",
-            32,
-            16,
-            "int",
-            physical="z_angular_rate_covariance_physical",
-            scale=(1, 0, 1000),
-        ),
-    )
 
-    x_angular_rate_covariance: int
+    x_angular_rate_covariance: int = _base.field("X Angular Rate Covariance", 0, 16, "int", default=0)
     """X Angular Rate Covariance: bits 0 to 15, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for
+    the square of a rate, and the type is signed.
     """
-    y_angular_rate_covariance: int
+    x_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """X Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    x_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """X Angular Rate Covariance in thousandths, exact: -32768 to 32767."""
+
+    y_angular_rate_covariance: int = _base.field("Y Angular Rate Covariance", 16, 16, "int", default=0)
     """Y Angular Rate Covariance: bits 16 to 31, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): see X Angular Rate Covariance.
     """
-    z_angular_rate_covariance: int
+    y_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Y Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    y_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """Y Angular Rate Covariance in thousandths, exact: -32768 to 32767."""
+
+    z_angular_rate_covariance: int = _base.field("Z Angular Rate Covariance", 32, 16, "int", default=0)
     """Z Angular Rate Covariance: bits 32 to 47, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): see X Angular Rate Covariance.
     """
-
-    def __init__(
-        self,
-        *,
-        x_angular_rate_covariance: int = 0,
-        y_angular_rate_covariance: int = 0,
-        z_angular_rate_covariance: int = 0,
-    ) -> None:
-        self.x_angular_rate_covariance = x_angular_rate_covariance
-        self.y_angular_rate_covariance = y_angular_rate_covariance
-        self.z_angular_rate_covariance = z_angular_rate_covariance
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        x_angular_rate_covariance_physical: float = 0.0,
-        y_angular_rate_covariance_physical: float = 0.0,
-        z_angular_rate_covariance_physical: float = 0.0,
-    ) -> AngularRateCovariance:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.x_angular_rate_covariance_physical = x_angular_rate_covariance_physical
-        self.y_angular_rate_covariance_physical = y_angular_rate_covariance_physical
-        self.z_angular_rate_covariance_physical = z_angular_rate_covariance_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> AngularRateCovariance:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.x_angular_rate_covariance,
-                self.y_angular_rate_covariance,
-                self.z_angular_rate_covariance,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.x_angular_rate_covariance,
-                self.y_angular_rate_covariance,
-                self.z_angular_rate_covariance,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def x_angular_rate_covariance_physical(self) -> float:
-        """X Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
-        return self.x_angular_rate_covariance / 1000
-
-    @x_angular_rate_covariance_physical.setter
-    def x_angular_rate_covariance_physical(self, value: float) -> None:
-        self.x_angular_rate_covariance = _codec.raw_value(
-            value,
-            "x_angular_rate_covariance",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def y_angular_rate_covariance_physical(self) -> float:
-        """Y Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
-        return self.y_angular_rate_covariance / 1000
-
-    @y_angular_rate_covariance_physical.setter
-    def y_angular_rate_covariance_physical(self, value: float) -> None:
-        self.y_angular_rate_covariance = _codec.raw_value(
-            value,
-            "y_angular_rate_covariance",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def z_angular_rate_covariance_physical(self) -> float:
-        """Z Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
-        return self.z_angular_rate_covariance / 1000
-
-    @z_angular_rate_covariance_physical.setter
-    def z_angular_rate_covariance_physical(self, value: float) -> None:
-        self.z_angular_rate_covariance = _codec.raw_value(
-            value,
-            "z_angular_rate_covariance",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
+    z_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Z Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    z_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """Z Angular Rate Covariance in thousandths, exact: -32768 to 32767."""

@@ -5,27 +5,17 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .asgp4_mode_select import Asgp4ModeSelect
 
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, Asgp4ModeSelect))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class Asgp4RunMode(_base.Message):
     """ASGP4 Run Mode: telecommand 31, 1 byte. Table 86.
 
-    Note ACP-046 (certain): Telecommand 31 has the id of the escape byte.
+    Note ACP-046 (certain): Telecommand 31 has the id of the escape byte. On UART its id
+    is doubled like data. That follows from the decoding table; the text does not
+    mention the case.
     """
-
-    __slots__ = (
-        "asgp4_mode",
-    )
 
     NODE = "cubeacp"
     NAME = "ASGP4 Run Mode"
@@ -34,37 +24,10 @@ class Asgp4RunMode(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 86
-    FIELDS = (
-        _base.FieldInfo("asgp4_mode", "ASGP4 Mode", 0, 8, "enum", enum=Asgp4ModeSelect),
-    )
 
-    asgp4_mode: Asgp4ModeSelect
+    asgp4_mode: Asgp4ModeSelect = _base.field("ASGP4 Mode", 0, 8, "enum", default=Asgp4ModeSelect.OFF)
     """ASGP4 Mode: bits 0 to 7.
 
-    Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold
+    a mode with four values; the description has an enabled state.
     """
-
-    def __init__(
-        self,
-        *,
-        asgp4_mode: Asgp4ModeSelect = Asgp4ModeSelect.OFF,
-    ) -> None:
-        self.asgp4_mode = asgp4_mode
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> Asgp4RunMode:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.asgp4_mode = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.asgp4_mode)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,37 +5,15 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
+from ... import _base
 from .asgp_error import AsgpError
 
-_STRUCT = struct.Struct("<B8f")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool), (1, 7, AsgpError))
-_BYTES_0 = _codec.Inverse(_BITS_0)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class Asgp4Tles(_base.Message):
     """ASGP4 TLEs: telemetry 228, 33 bytes. Table 170.
 
     Orbit elements that ASGP4 has generated.
     """
-
-    __slots__ = (
-        "asgp4_complete",
-        "asgp4_error",
-        "asgp4_epoch",
-        "asgp4_inclination",
-        "asgp4_raan",
-        "asgp4_ecc",
-        "asgp4_aop",
-        "asgp4_ma",
-        "asgp4_mm",
-        "asgp4_bstar",
-    )
 
     NODE = "cubeacp"
     NAME = "ASGP4 TLEs"
@@ -44,178 +22,92 @@ class Asgp4Tles(_base.Message):
     IDS = (ID,)
     LENGTH = 33
     TABLE = 170
-    FIELDS = (
-        _base.FieldInfo("asgp4_complete", "ASGP4 complete", 0, 1, "bool"),
-        _base.FieldInfo("asgp4_error", "ASGP4 error", 1, 7, "enum", enum=AsgpError),
-        _base.FieldInfo("asgp4_epoch", "ASGP4 Epoch", 8, 32, "float"),
-        _base.FieldInfo("asgp4_inclination", "ASGP4 inclination", 40, 32, "float"),
-        _base.FieldInfo("asgp4_raan", "ASGP4 RAAN", 72, 32, "float"),
-        _base.FieldInfo("asgp4_ecc", "ASGP4 ECC", 104, 32, "float"),
-        _base.FieldInfo("asgp4_aop", "ASGP4 AOP", 136, 32, "float"),
-        _base.FieldInfo("asgp4_ma", "ASGP4 MA", 168, 32, "float"),
-        _base.FieldInfo("asgp4_mm", "ASGP4 MM", 200, 32, "float"),
-        _base.FieldInfo("asgp4_bstar", "ASGP4 Bstar", 232, 32, "float"),
-    )
 
-    asgp4_complete: bool
+    asgp4_complete: bool = _base.field("ASGP4 complete", 0, 1, "bool", default=False)
     """ASGP4 complete: bit 0.
 
     The run has finished.
     """
-    asgp4_error: AsgpError
+
+    asgp4_error: AsgpError = _base.field("ASGP4 error", 1, 7, "enum", default=AsgpError.OFF)
     """ASGP4 error: bits 1 to 7."""
-    asgp4_epoch: float
+
+    asgp4_epoch: float = _base.field("ASGP4 Epoch", 8, 32, "float", default=0.0)
     """ASGP4 Epoch: bits 8 to 39, 32-bit float.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): ASGP4 elements have no units. The same elements have units as a
+    setting. AOP, MA and MM are abbreviations that the manual does not explain.
 
     Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Elements are returned as floats and set as doubles. An epoch of year and day in a
+    float has a step of minutes. Order differs too: epoch first against last, mean
+    anomaly before mean motion.
     """
-    asgp4_inclination: float
+
+    asgp4_inclination: float = _base.field("ASGP4 inclination", 40, 32, "float", default=0.0)
     """ASGP4 inclination: bits 40 to 71, 32-bit float.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """
-    asgp4_raan: float
+
+    asgp4_raan: float = _base.field("ASGP4 RAAN", 72, 32, "float", default=0.0)
     """ASGP4 RAAN: bits 72 to 103, 32-bit float.
 
     Right ascension of the ascending node.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """
-    asgp4_ecc: float
+
+    asgp4_ecc: float = _base.field("ASGP4 ECC", 104, 32, "float", default=0.0)
     """ASGP4 ECC: bits 104 to 135, 32-bit float.
 
     Eccentricity.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """
-    asgp4_aop: float
+
+    asgp4_aop: float = _base.field("ASGP4 AOP", 136, 32, "float", default=0.0)
     """ASGP4 AOP: bits 136 to 167, 32-bit float.
 
     Argument of perigee.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """
-    asgp4_ma: float
+
+    asgp4_ma: float = _base.field("ASGP4 MA", 168, 32, "float", default=0.0)
     """ASGP4 MA: bits 168 to 199, 32-bit float.
 
     Mean anomaly.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """
-    asgp4_mm: float
+
+    asgp4_mm: float = _base.field("ASGP4 MM", 200, 32, "float", default=0.0)
     """ASGP4 MM: bits 200 to 231, 32-bit float.
 
     Mean motion.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """
-    asgp4_bstar: float
+
+    asgp4_bstar: float = _base.field("ASGP4 Bstar", 232, 32, "float", default=0.0)
     """ASGP4 Bstar: bits 232 to 263, 32-bit float.
 
     Drag term.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """
-
-    def __init__(
-        self,
-        *,
-        asgp4_complete: bool = False,
-        asgp4_error: AsgpError = AsgpError.OFF,
-        asgp4_epoch: float = 0.0,
-        asgp4_inclination: float = 0.0,
-        asgp4_raan: float = 0.0,
-        asgp4_ecc: float = 0.0,
-        asgp4_aop: float = 0.0,
-        asgp4_ma: float = 0.0,
-        asgp4_mm: float = 0.0,
-        asgp4_bstar: float = 0.0,
-    ) -> None:
-        self.asgp4_complete = asgp4_complete
-        self.asgp4_error = asgp4_error
-        self.asgp4_epoch = asgp4_epoch
-        self.asgp4_inclination = asgp4_inclination
-        self.asgp4_raan = asgp4_raan
-        self.asgp4_ecc = asgp4_ecc
-        self.asgp4_aop = asgp4_aop
-        self.asgp4_ma = asgp4_ma
-        self.asgp4_mm = asgp4_mm
-        self.asgp4_bstar = asgp4_bstar
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> Asgp4Tles:
-        """The message in a frame of exactly 33 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                v0,
-                self.asgp4_epoch,
-                self.asgp4_inclination,
-                self.asgp4_raan,
-                self.asgp4_ecc,
-                self.asgp4_aop,
-                self.asgp4_ma,
-                self.asgp4_mm,
-                self.asgp4_bstar,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.asgp4_complete, self.asgp4_error = _BITS_0[v0]
-        total = (
-            self.asgp4_epoch
-            + self.asgp4_inclination
-            + self.asgp4_raan
-            + self.asgp4_ecc
-            + self.asgp4_aop
-            + self.asgp4_ma
-            + self.asgp4_mm
-            + self.asgp4_bstar
-        )
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.asgp4_complete, self.asgp4_error]
-            frame = _pack(
-                v0,
-                self.asgp4_epoch,
-                self.asgp4_inclination,
-                self.asgp4_raan,
-                self.asgp4_ecc,
-                self.asgp4_aop,
-                self.asgp4_ma,
-                self.asgp4_mm,
-                self.asgp4_bstar,
-            )
-            total = (
-                self.asgp4_epoch
-                + self.asgp4_inclination
-                + self.asgp4_raan
-                + self.asgp4_ecc
-                + self.asgp4_aop
-                + self.asgp4_ma
-                + self.asgp4_mm
-                + self.asgp4_bstar
-            )
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,23 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class Asgp4Trigger(_base.Message):
     """ASGP4 Trigger: telecommand 32, 0 bytes. Table 88.
 
     Starts an ASGP4 run.
     """
-
-    __slots__ = ()
 
     NODE = "cubeacp"
     NAME = "ASGP4 Trigger"
@@ -30,20 +21,3 @@ class Asgp4Trigger(_base.Message):
     IDS = (ID,)
     LENGTH = 0
     TABLE = 88
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> Asgp4Trigger:
-        """The message in a frame of exactly 0 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack()
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,44 +5,16 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .asgp_filter import AsgpFilter
 
-_STRUCT = struct.Struct("<6H2B2i6BH")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, AsgpFilter))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class AugmentedSgp4Parameters(_base.Message):
     """Augmented-SGP4 Parameters: configuration, set by telecommand 28, got by telemetry
     227, 30 bytes. Table 209.
 
     Settings of the SGP4 that GPS measurements augment.
     """
-
-    __slots__ = (
-        "incl_coefficient",
-        "raan_coefficient",
-        "ecc_coefficient",
-        "aop_coefficient",
-        "time_coefficient",
-        "pos_coefficient",
-        "maximum_position_error",
-        "asgp4_filter",
-        "xp_coefficient",
-        "yp_coefficient",
-        "gps_roll_over",
-        "position_sd",
-        "velocity_sd",
-        "min_satellites",
-        "time_gain",
-        "max_lag",
-        "min_samples",
-    )
 
     NODE = "cubeacp"
     NAME = "Augmented-SGP4 Parameters"
@@ -52,562 +24,202 @@ class AugmentedSgp4Parameters(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 30
     TABLE = 209
-    FIELDS = (
-        _base.FieldInfo(
-            "incl_coefficient",
-            "Incl. coefficient",
-            0,
-            16,
-            "uint",
-            physical="incl_coefficient_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "raan_coefficient",
-            "Raan coefficient",
-            16,
-            16,
-            "uint",
-            physical="raan_coefficient_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "ecc_coefficient",
-            "Ecc coefficient",
-            32,
-            16,
-            "uint",
-            physical="ecc_coefficient_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "aop_coefficient",
-            "Aop coefficient",
-            48,
-            16,
-            "uint",
-            physical="aop_coefficient_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "time_coefficient",
-            "Time coefficient",
-            64,
-            16,
-            "uint",
-            physical="time_coefficient_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "pos_coefficient",
-            "Pos coefficient",
-            80,
-            16,
-            "uint",
-            physical="pos_coefficient_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "maximum_position_error",
-            "Maximum position error",
-            96,
-            8,
-            "uint",
-            physical="maximum_position_error_physical",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo("asgp4_filter", "ASGP4 filter", 104, 8, "enum", enum=AsgpFilter),
-        _base.FieldInfo(
-            "xp_coefficient",
-            "xp coefficient",
-            112,
-            32,
-            "int",
-            physical="xp_coefficient_physical",
-            scale=(1, 0, 10000000),
-        ),
-        _base.FieldInfo(
-            "yp_coefficient",
-            "yp coefficient",
-            144,
-            32,
-            "int",
-            physical="yp_coefficient_physical",
-            scale=(1, 0, 10000000),
-        ),
-        _base.FieldInfo("gps_roll_over", "GPS roll over", 176, 8, "uint"),
-        _base.FieldInfo(
-            "position_sd",
-            "Position sd",
-            184,
-            8,
-            "uint",
-            physical="position_sd_physical",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "velocity_sd",
-            "Velocity sd",
-            192,
-            8,
-            "uint",
-            physical="velocity_sd_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo("min_satellites", "Min. satellites", 200, 8, "uint"),
-        _base.FieldInfo(
-            "time_gain",
-            "Time gain",
-            208,
-            8,
-            "uint",
-            physical="time_gain_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "max_lag",
-            "Max. lag",
-            216,
-            8,
-            "uint",
-            physical="max_lag_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo("min_samples", "Min. samples", 224, 16, "uint"),
-    )
 
-    incl_coefficient: int
+    incl_coefficient: int = _base.field("Incl. coefficient", 0, 16, "uint", default=0)
     """Incl. coefficient: bits 0 to 15, raw 0 to 65535; physical `raw*0.001`, 0 to
     65.535.
 
     Of the filter of the inclination.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): Augmented SGP4: names are cut short. Incl., Ecc, Aop, Pos,
+    sd, Min. and Max. stand in names that are written out in the descriptions.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients. Factors
+    without range; whether coefficients are weights from 0 to 1 is not said.
     """
-    raan_coefficient: int
+    incl_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Incl. coefficient, as a physical value: 0 to 65.535."""
+    incl_coefficient_milli: int = _base.whole(1, 0)
+    """Incl. coefficient in thousandths, exact: 0 to 65535."""
+
+    raan_coefficient: int = _base.field("Raan coefficient", 16, 16, "uint", default=0)
     """Raan coefficient: bits 16 to 31, raw 0 to 65535; physical `raw*0.001`, 0 to
     65.535.
 
     Of the filter of the RAAN.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
-    ecc_coefficient: int
+    raan_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Raan coefficient, as a physical value: 0 to 65.535."""
+    raan_coefficient_milli: int = _base.whole(1, 0)
+    """Raan coefficient in thousandths, exact: 0 to 65535."""
+
+    ecc_coefficient: int = _base.field("Ecc coefficient", 32, 16, "uint", default=0)
     """Ecc coefficient: bits 32 to 47, raw 0 to 65535; physical `raw*0.001`, 0 to
     65.535.
 
     Of the filter of the eccentricity.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
-    aop_coefficient: int
+    ecc_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Ecc coefficient, as a physical value: 0 to 65.535."""
+    ecc_coefficient_milli: int = _base.whole(1, 0)
+    """Ecc coefficient in thousandths, exact: 0 to 65535."""
+
+    aop_coefficient: int = _base.field("Aop coefficient", 48, 16, "uint", default=0)
     """Aop coefficient: bits 48 to 63, raw 0 to 65535; physical `raw*0.001`, 0 to
     65.535.
 
     Of the filter of the argument of perigee.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
-    time_coefficient: int
+    aop_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Aop coefficient, as a physical value: 0 to 65.535."""
+    aop_coefficient_milli: int = _base.whole(1, 0)
+    """Aop coefficient in thousandths, exact: 0 to 65535."""
+
+    time_coefficient: int = _base.field("Time coefficient", 64, 16, "uint", default=0)
     """Time coefficient: bits 64 to 79, raw 0 to 65535; physical `raw*0.001`, 0 to
     65.535.
 
     Of the filter of the time.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
-    pos_coefficient: int
+    time_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Time coefficient, as a physical value: 0 to 65.535."""
+    time_coefficient_milli: int = _base.whole(1, 0)
+    """Time coefficient in thousandths, exact: 0 to 65535."""
+
+    pos_coefficient: int = _base.field("Pos coefficient", 80, 16, "uint", default=0)
     """Pos coefficient: bits 80 to 95, raw 0 to 65535; physical `raw*0.001`, 0 to
     65.535.
 
     Of the filter of the position.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
-    maximum_position_error: int
+    pos_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Pos coefficient, as a physical value: 0 to 65.535."""
+    pos_coefficient_milli: int = _base.whole(1, 0)
+    """Pos coefficient in thousandths, exact: 0 to 65535."""
+
+    maximum_position_error: int = _base.field("Maximum position error", 96, 8, "uint", default=0)
     """Maximum position error: bits 96 to 103, raw 0 to 255; physical `raw*0.1`, 0 to
     25.5.
 
     ASGP4 stops working beyond it.
 
-    Note ACP-179 (open): Augmented SGP4: limits have no units.
+    Note ACP-179 (open): Augmented SGP4: limits have no units. Position, velocity and
+    time limits have factors and no units. Maximum position error with 0.1 reaches 25.5
+    of something; km and m are both possible.
     """
-    asgp4_filter: AsgpFilter
+    maximum_position_error_physical: float = _base.scaled(1, 0, 10, default=0.0)
+    """Maximum position error, as a physical value: 0 to 25.5."""
+    maximum_position_error_milli: int = _base.whole(100, 0)
+    """Maximum position error in thousandths, exact: 0 to 25500."""
+
+    asgp4_filter: AsgpFilter = _base.field("ASGP4 filter", 104, 8, "enum", default=AsgpFilter.LPF)
     """ASGP4 filter: bits 104 to 111."""
-    xp_coefficient: int
+
+    xp_coefficient: int = _base.field("xp coefficient", 112, 32, "int", default=0)
     """xp coefficient: bits 112 to 143, raw -2147483648 to 2147483647; physical
     `raw*0.0000001`, -214.7483648 to 214.7483647.
 
     Polar coefficient.
 
-    Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
+    Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit. Polar motion
+    is published in seconds of arc, the factor is 0.0000001. Radians fit the range as
+    well.
     """
-    yp_coefficient: int
+    xp_coefficient_physical: float = _base.scaled(1, 0, 10000000, default=0.0)
+    """xp coefficient, as a physical value: -214.7483648 to 214.7483647."""
+
+    yp_coefficient: int = _base.field("yp coefficient", 144, 32, "int", default=0)
     """yp coefficient: bits 144 to 175, raw -2147483648 to 2147483647; physical
     `raw*0.0000001`, -214.7483648 to 214.7483647.
 
     Polar coefficient.
 
-    Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
+    Note ACP-180 (open): see xp coefficient.
     """
-    gps_roll_over: int
+    yp_coefficient_physical: float = _base.scaled(1, 0, 10000000, default=0.0)
+    """yp coefficient, as a physical value: -214.7483648 to 214.7483647."""
+
+    gps_roll_over: int = _base.field("GPS roll over", 176, 8, "uint", default=0)
     """GPS roll over: bits 176 to 183, raw 0 to 255."""
-    position_sd: int
+
+    position_sd: int = _base.field("Position sd", 184, 8, "uint", default=0)
     """Position sd: bits 184 to 191, raw 0 to 255; physical `raw*0.1`, 0 to 25.5.
 
     Largest standard deviation with which ASGP4 works.
 
-    Note ACP-179 (open): Augmented SGP4: limits have no units.
+    Note ACP-179 (open): see Maximum position error.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
     """
-    velocity_sd: int
+    position_sd_physical: float = _base.scaled(1, 0, 10, default=0.0)
+    """Position sd, as a physical value: 0 to 25.5."""
+    position_sd_milli: int = _base.whole(100, 0)
+    """Position sd in thousandths, exact: 0 to 25500."""
+
+    velocity_sd: int = _base.field("Velocity sd", 192, 8, "uint", default=0)
     """Velocity sd: bits 192 to 199, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
 
     Largest standard deviation with which ASGP4 works.
 
-    Note ACP-179 (open): Augmented SGP4: limits have no units.
+    Note ACP-179 (open): see Maximum position error.
     """
-    min_satellites: int
+    velocity_sd_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """Velocity sd, as a physical value: 0 to 2.55."""
+    velocity_sd_milli: int = _base.whole(10, 0)
+    """Velocity sd in thousandths, exact: 0 to 2550."""
+
+    min_satellites: int = _base.field("Min. satellites", 200, 8, "uint", default=0)
     """Min. satellites: bits 200 to 207, raw 0 to 255.
 
     Fewest satellites with which ASGP4 works.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
     """
-    time_gain: int
+
+    time_gain: int = _base.field("Time gain", 208, 8, "uint", default=0)
     """Time gain: bits 208 to 215, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
 
     Of the compensation of the time offset.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
-    max_lag: int
+    time_gain_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """Time gain, as a physical value: 0 to 2.55."""
+    time_gain_milli: int = _base.whole(10, 0)
+    """Time gain in thousandths, exact: 0 to 2550."""
+
+    max_lag: int = _base.field("Max. lag", 216, 8, "uint", default=0)
     """Max. lag: bits 216 to 223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
 
     Largest lag of the time stamps that are still used.
 
-    Note ACP-179 (open): Augmented SGP4: limits have no units.
+    Note ACP-179 (open): see Maximum position error.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
     """
-    min_samples: int
+    max_lag_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """Max. lag, as a physical value: 0 to 2.55."""
+    max_lag_milli: int = _base.whole(10, 0)
+    """Max. lag in thousandths, exact: 0 to 2550."""
+
+    min_samples: int = _base.field("Min. samples", 224, 16, "uint", default=0)
     """Min. samples: bits 224 to 239, raw 0 to 65535.
 
     Fewest samples for an ASGP4 run.
     """
-
-    def __init__(
-        self,
-        *,
-        incl_coefficient: int = 0,
-        raan_coefficient: int = 0,
-        ecc_coefficient: int = 0,
-        aop_coefficient: int = 0,
-        time_coefficient: int = 0,
-        pos_coefficient: int = 0,
-        maximum_position_error: int = 0,
-        asgp4_filter: AsgpFilter = AsgpFilter.LPF,
-        xp_coefficient: int = 0,
-        yp_coefficient: int = 0,
-        gps_roll_over: int = 0,
-        position_sd: int = 0,
-        velocity_sd: int = 0,
-        min_satellites: int = 0,
-        time_gain: int = 0,
-        max_lag: int = 0,
-        min_samples: int = 0,
-    ) -> None:
-        self.incl_coefficient = incl_coefficient
-        self.raan_coefficient = raan_coefficient
-        self.ecc_coefficient = ecc_coefficient
-        self.aop_coefficient = aop_coefficient
-        self.time_coefficient = time_coefficient
-        self.pos_coefficient = pos_coefficient
-        self.maximum_position_error = maximum_position_error
-        self.asgp4_filter = asgp4_filter
-        self.xp_coefficient = xp_coefficient
-        self.yp_coefficient = yp_coefficient
-        self.gps_roll_over = gps_roll_over
-        self.position_sd = position_sd
-        self.velocity_sd = velocity_sd
-        self.min_satellites = min_satellites
-        self.time_gain = time_gain
-        self.max_lag = max_lag
-        self.min_samples = min_samples
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        incl_coefficient_physical: float = 0.0,
-        raan_coefficient_physical: float = 0.0,
-        ecc_coefficient_physical: float = 0.0,
-        aop_coefficient_physical: float = 0.0,
-        time_coefficient_physical: float = 0.0,
-        pos_coefficient_physical: float = 0.0,
-        maximum_position_error_physical: float = 0.0,
-        asgp4_filter: AsgpFilter = AsgpFilter.LPF,
-        xp_coefficient_physical: float = 0.0,
-        yp_coefficient_physical: float = 0.0,
-        gps_roll_over: int = 0,
-        position_sd_physical: float = 0.0,
-        velocity_sd_physical: float = 0.0,
-        min_satellites: int = 0,
-        time_gain_physical: float = 0.0,
-        max_lag_physical: float = 0.0,
-        min_samples: int = 0,
-    ) -> AugmentedSgp4Parameters:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.incl_coefficient_physical = incl_coefficient_physical
-        self.raan_coefficient_physical = raan_coefficient_physical
-        self.ecc_coefficient_physical = ecc_coefficient_physical
-        self.aop_coefficient_physical = aop_coefficient_physical
-        self.time_coefficient_physical = time_coefficient_physical
-        self.pos_coefficient_physical = pos_coefficient_physical
-        self.maximum_position_error_physical = maximum_position_error_physical
-        self.asgp4_filter = asgp4_filter
-        self.xp_coefficient_physical = xp_coefficient_physical
-        self.yp_coefficient_physical = yp_coefficient_physical
-        self.gps_roll_over = gps_roll_over
-        self.position_sd_physical = position_sd_physical
-        self.velocity_sd_physical = velocity_sd_physical
-        self.min_satellites = min_satellites
-        self.time_gain_physical = time_gain_physical
-        self.max_lag_physical = max_lag_physical
-        self.min_samples = min_samples
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> AugmentedSgp4Parameters:
-        """The message in a frame of exactly 30 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.incl_coefficient,
-                self.raan_coefficient,
-                self.ecc_coefficient,
-                self.aop_coefficient,
-                self.time_coefficient,
-                self.pos_coefficient,
-                self.maximum_position_error,
-                v13,
-                self.xp_coefficient,
-                self.yp_coefficient,
-                self.gps_roll_over,
-                self.position_sd,
-                self.velocity_sd,
-                self.min_satellites,
-                self.time_gain,
-                self.max_lag,
-                self.min_samples,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.asgp4_filter = _BITS_0[v13]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.incl_coefficient,
-                self.raan_coefficient,
-                self.ecc_coefficient,
-                self.aop_coefficient,
-                self.time_coefficient,
-                self.pos_coefficient,
-                self.maximum_position_error,
-                self.asgp4_filter,
-                self.xp_coefficient,
-                self.yp_coefficient,
-                self.gps_roll_over,
-                self.position_sd,
-                self.velocity_sd,
-                self.min_satellites,
-                self.time_gain,
-                self.max_lag,
-                self.min_samples,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def incl_coefficient_physical(self) -> float:
-        """Incl. coefficient, as a physical value: 0 to 65.535."""
-        return self.incl_coefficient / 1000
-
-    @incl_coefficient_physical.setter
-    def incl_coefficient_physical(self, value: float) -> None:
-        self.incl_coefficient = _codec.raw_value(
-            value,
-            "incl_coefficient",
-            (1, 0, 1000),
-            0,
-            65535,
-        )
-
-    @property
-    def raan_coefficient_physical(self) -> float:
-        """Raan coefficient, as a physical value: 0 to 65.535."""
-        return self.raan_coefficient / 1000
-
-    @raan_coefficient_physical.setter
-    def raan_coefficient_physical(self, value: float) -> None:
-        self.raan_coefficient = _codec.raw_value(
-            value,
-            "raan_coefficient",
-            (1, 0, 1000),
-            0,
-            65535,
-        )
-
-    @property
-    def ecc_coefficient_physical(self) -> float:
-        """Ecc coefficient, as a physical value: 0 to 65.535."""
-        return self.ecc_coefficient / 1000
-
-    @ecc_coefficient_physical.setter
-    def ecc_coefficient_physical(self, value: float) -> None:
-        self.ecc_coefficient = _codec.raw_value(
-            value,
-            "ecc_coefficient",
-            (1, 0, 1000),
-            0,
-            65535,
-        )
-
-    @property
-    def aop_coefficient_physical(self) -> float:
-        """Aop coefficient, as a physical value: 0 to 65.535."""
-        return self.aop_coefficient / 1000
-
-    @aop_coefficient_physical.setter
-    def aop_coefficient_physical(self, value: float) -> None:
-        self.aop_coefficient = _codec.raw_value(
-            value,
-            "aop_coefficient",
-            (1, 0, 1000),
-            0,
-            65535,
-        )
-
-    @property
-    def time_coefficient_physical(self) -> float:
-        """Time coefficient, as a physical value: 0 to 65.535."""
-        return self.time_coefficient / 1000
-
-    @time_coefficient_physical.setter
-    def time_coefficient_physical(self, value: float) -> None:
-        self.time_coefficient = _codec.raw_value(
-            value,
-            "time_coefficient",
-            (1, 0, 1000),
-            0,
-            65535,
-        )
-
-    @property
-    def pos_coefficient_physical(self) -> float:
-        """Pos coefficient, as a physical value: 0 to 65.535."""
-        return self.pos_coefficient / 1000
-
-    @pos_coefficient_physical.setter
-    def pos_coefficient_physical(self, value: float) -> None:
-        self.pos_coefficient = _codec.raw_value(
-            value,
-            "pos_coefficient",
-            (1, 0, 1000),
-            0,
-            65535,
-        )
-
-    @property
-    def maximum_position_error_physical(self) -> float:
-        """Maximum position error, as a physical value: 0 to 25.5."""
-        return self.maximum_position_error / 10
-
-    @maximum_position_error_physical.setter
-    def maximum_position_error_physical(self, value: float) -> None:
-        self.maximum_position_error = _codec.raw_value(
-            value,
-            "maximum_position_error",
-            (1, 0, 10),
-            0,
-            255,
-        )
-
-    @property
-    def xp_coefficient_physical(self) -> float:
-        """xp coefficient, as a physical value: -214.7483648 to 214.7483647."""
-        return self.xp_coefficient / 10000000
-
-    @xp_coefficient_physical.setter
-    def xp_coefficient_physical(self, value: float) -> None:
-        self.xp_coefficient = _codec.raw_value(
-            value,
-            "xp_coefficient",
-            (1, 0, 10000000),
-            -2147483648,
-            2147483647,
-        )
-
-    @property
-    def yp_coefficient_physical(self) -> float:
-        """yp coefficient, as a physical value: -214.7483648 to 214.7483647."""
-        return self.yp_coefficient / 10000000
-
-    @yp_coefficient_physical.setter
-    def yp_coefficient_physical(self, value: float) -> None:
-        self.yp_coefficient = _codec.raw_value(
-            value,
-            "yp_coefficient",
-            (1, 0, 10000000),
-            -2147483648,
-            2147483647,
-        )
-
-    @property
-    def position_sd_physical(self) -> float:
-        """Position sd, as a physical value: 0 to 25.5."""
-        return self.position_sd / 10
-
-    @position_sd_physical.setter
-    def position_sd_physical(self, value: float) -> None:
-        self.position_sd = _codec.raw_value(value, "position_sd", (1, 0, 10), 0, 255)
-
-    @property
-    def velocity_sd_physical(self) -> float:
-        """Velocity sd, as a physical value: 0 to 2.55."""
-        return self.velocity_sd / 100
-
-    @velocity_sd_physical.setter
-    def velocity_sd_physical(self, value: float) -> None:
-        self.velocity_sd = _codec.raw_value(value, "velocity_sd", (1, 0, 100), 0, 255)
-
-    @property
-    def time_gain_physical(self) -> float:
-        """Time gain, as a physical value: 0 to 2.55."""
-        return self.time_gain / 100
-
-    @time_gain_physical.setter
-    def time_gain_physical(self, value: float) -> None:
-        self.time_gain = _codec.raw_value(value, "time_gain", (1, 0, 100), 0, 255)
-
-    @property
-    def max_lag_physical(self) -> float:
-        """Max. lag, as a physical value: 0 to 2.55."""
-        return self.max_lag / 100
-
-    @max_lag_physical.setter
-    def max_lag_physical(self, value: float) -> None:
-        self.max_lag = _codec.raw_value(value, "max_lag", (1, 0, 100), 0, 255)

@@ -5,30 +5,17 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool), (1, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class ClearErrors(_base.Message):
     """Clear Errors: telecommand 12, 1 byte. Table 76.
 
     Clears the latched error flags that are selected.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
     """
-
-    __slots__ = (
-        "adcs_error_flags",
-        "hk_error_flags",
-    )
 
     NODE = "cubeacp"
     NAME = "Clear Errors"
@@ -37,48 +24,20 @@ class ClearErrors(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 76
-    FIELDS = (
-        _base.FieldInfo("adcs_error_flags", "ADCS Error Flags", 0, 1, "bool"),
-        _base.FieldInfo("hk_error_flags", "HK Error Flags", 1, 1, "bool"),
-    )
 
-    adcs_error_flags: bool
+    adcs_error_flags: bool = _base.field("ADCS Error Flags", 0, 1, "bool", default=False)
     """ADCS Error Flags: bit 0.
 
-    Note ACP-021 (open): Clear Errors: which flags.
+    Note ACP-021 (open): Clear Errors: which flags. The two bits clear ADCS and HK
+    errors. HK is not explained, and no frame says to which of the two its flags belong;
+    those of frame 144 are cleared by this telecommand by the text, by neither bit by
+    the table.
     """
-    hk_error_flags: bool
+
+    hk_error_flags: bool = _base.field("HK Error Flags", 1, 1, "bool", default=False)
     """HK Error Flags: bit 1.
 
     Housekeeping errors.
 
-    Note ACP-021 (open): Clear Errors: which flags.
+    Note ACP-021 (open): see ADCS Error Flags.
     """
-
-    def __init__(
-        self,
-        *,
-        adcs_error_flags: bool = False,
-        hk_error_flags: bool = False,
-    ) -> None:
-        self.adcs_error_flags = adcs_error_flags
-        self.hk_error_flags = hk_error_flags
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> ClearErrors:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.adcs_error_flags, self.hk_error_flags = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.adcs_error_flags, self.hk_error_flags]
-            return _pack(v0)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class CoarseSunVector(_base.Message):
     """Coarse Sun Vector: telemetry 152, 6 bytes. Table 108.
 
@@ -22,14 +15,11 @@ class CoarseSunVector(_base.Message):
 
     Bit 10 of the log mask.
 
-    Note ACP-069 (open): Reference frames of measured vectors are not named.
+    Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled
+    vectors are in the orbit frame, estimated rates relative to it. Of the measured
+    field, sun, nadir and rate vectors nothing is said; SBC for the body frame is in the
+    list of acronyms and used nowhere.
     """
-
-    __slots__ = (
-        "coarse_sun_x",
-        "coarse_sun_y",
-        "coarse_sun_z",
-    )
 
     NODE = "cubeacp"
     NAME = "Coarse Sun Vector"
@@ -38,133 +28,30 @@ class CoarseSunVector(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 108
-    FIELDS = (
-        _base.FieldInfo(
-            "coarse_sun_x",
-            "Coarse Sun X",
-            0,
-            16,
-            "int",
-            physical="coarse_sun_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "coarse_sun_y",
-            "Coarse Sun Y",
-            16,
-            16,
-            "int",
-            physical="coarse_sun_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "coarse_sun_z",
-            "Coarse Sun Z",
-            32,
-            16,
-            "int",
-            physical="coarse_sun_z_physical",
-            scale=(1, 0, 10000),
-        ),
-    )
 
-    coarse_sun_x: int
+    coarse_sun_x: int = _base.field("Coarse Sun X", 0, 16, "int", default=0)
     """Coarse Sun X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     to 3.2767.
     """
-    coarse_sun_y: int
+    coarse_sun_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Coarse Sun X, as a physical value: -3.2768 to 3.2767."""
+    coarse_sun_x_micro: int = _base.whole(100, 0)
+    """Coarse Sun X in millionths, exact: -3276800 to 3276700."""
+
+    coarse_sun_y: int = _base.field("Coarse Sun Y", 16, 16, "int", default=0)
     """Coarse Sun Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     to 3.2767.
     """
-    coarse_sun_z: int
+    coarse_sun_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Coarse Sun Y, as a physical value: -3.2768 to 3.2767."""
+    coarse_sun_y_micro: int = _base.whole(100, 0)
+    """Coarse Sun Y in millionths, exact: -3276800 to 3276700."""
+
+    coarse_sun_z: int = _base.field("Coarse Sun Z", 32, 16, "int", default=0)
     """Coarse Sun Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     to 3.2767.
     """
-
-    def __init__(
-        self,
-        *,
-        coarse_sun_x: int = 0,
-        coarse_sun_y: int = 0,
-        coarse_sun_z: int = 0,
-    ) -> None:
-        self.coarse_sun_x = coarse_sun_x
-        self.coarse_sun_y = coarse_sun_y
-        self.coarse_sun_z = coarse_sun_z
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        coarse_sun_x_physical: float = 0.0,
-        coarse_sun_y_physical: float = 0.0,
-        coarse_sun_z_physical: float = 0.0,
-    ) -> CoarseSunVector:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.coarse_sun_x_physical = coarse_sun_x_physical
-        self.coarse_sun_y_physical = coarse_sun_y_physical
-        self.coarse_sun_z_physical = coarse_sun_z_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CoarseSunVector:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.coarse_sun_x, self.coarse_sun_y, self.coarse_sun_z = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.coarse_sun_x, self.coarse_sun_y, self.coarse_sun_z)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def coarse_sun_x_physical(self) -> float:
-        """Coarse Sun X, as a physical value: -3.2768 to 3.2767."""
-        return self.coarse_sun_x / 10000
-
-    @coarse_sun_x_physical.setter
-    def coarse_sun_x_physical(self, value: float) -> None:
-        self.coarse_sun_x = _codec.raw_value(
-            value,
-            "coarse_sun_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def coarse_sun_y_physical(self) -> float:
-        """Coarse Sun Y, as a physical value: -3.2768 to 3.2767."""
-        return self.coarse_sun_y / 10000
-
-    @coarse_sun_y_physical.setter
-    def coarse_sun_y_physical(self, value: float) -> None:
-        self.coarse_sun_y = _codec.raw_value(
-            value,
-            "coarse_sun_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def coarse_sun_z_physical(self) -> float:
-        """Coarse Sun Z, as a physical value: -3.2768 to 3.2767."""
-        return self.coarse_sun_z / 10000
-
-    @coarse_sun_z_physical.setter
-    def coarse_sun_z_physical(self, value: float) -> None:
-        self.coarse_sun_z = _codec.raw_value(
-            value,
-            "coarse_sun_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
+    coarse_sun_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Coarse Sun Z, as a physical value: -3.2768 to 3.2767."""
+    coarse_sun_z_micro: int = _base.whole(100, 0)
+    """Coarse Sun Z in millionths, exact: -3276800 to 3276700."""

@@ -5,28 +5,17 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class CommandedAttitudeAngles(_base.Message):
     """Commanded Attitude Angles: configuration, set by telecommand 15, got by telemetry
     199, 6 bytes. Table 186.
 
-    Note ACP-066 (open): Attitude angles: order of rotation and frame.
+    Note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and
+    yaw need a sequence and a reference. Neither is given, for estimated or for
+    commanded angles.
     """
-
-    __slots__ = (
-        "commanded_roll_angle",
-        "commanded_pitch_angle",
-        "commanded_yaw_angle",
-    )
 
     NODE = "cubeacp"
     NAME = "Commanded Attitude Angles"
@@ -36,144 +25,30 @@ class CommandedAttitudeAngles(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 6
     TABLE = 186
-    FIELDS = (
-        _base.FieldInfo(
-            "commanded_roll_angle",
-            "Commanded Roll Angle",
-            0,
-            16,
-            "int",
-            unit="deg",
-            physical="commanded_roll_angle_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "commanded_pitch_angle",
-            "Commanded Pitch Angle",
-            16,
-            16,
-            "int",
-            unit="deg",
-            physical="commanded_pitch_angle_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "commanded_yaw_angle",
-            "Commanded Yaw Angle",
-            32,
-            16,
-            "int",
-            unit="deg",
-            physical="commanded_yaw_angle_deg",
-            scale=(1, 0, 100),
-        ),
-    )
 
-    commanded_roll_angle: int
+    commanded_roll_angle: int = _base.field("Commanded Roll Angle", 0, 16, "int", default=0, unit="deg")
     """Commanded Roll Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 deg.
     """
-    commanded_pitch_angle: int
+    commanded_roll_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Commanded Roll Angle in deg: -327.68 to 327.67."""
+    commanded_roll_angle_mdeg: int = _base.whole(10, 0)
+    """Commanded Roll Angle in thousandths of deg, exact: -327680 to 327670."""
+
+    commanded_pitch_angle: int = _base.field("Commanded Pitch Angle", 16, 16, "int", default=0, unit="deg")
     """Commanded Pitch Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 deg.
     """
-    commanded_yaw_angle: int
+    commanded_pitch_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Commanded Pitch Angle in deg: -327.68 to 327.67."""
+    commanded_pitch_angle_mdeg: int = _base.whole(10, 0)
+    """Commanded Pitch Angle in thousandths of deg, exact: -327680 to 327670."""
+
+    commanded_yaw_angle: int = _base.field("Commanded Yaw Angle", 32, 16, "int", default=0, unit="deg")
     """Commanded Yaw Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 deg.
     """
-
-    def __init__(
-        self,
-        *,
-        commanded_roll_angle: int = 0,
-        commanded_pitch_angle: int = 0,
-        commanded_yaw_angle: int = 0,
-    ) -> None:
-        self.commanded_roll_angle = commanded_roll_angle
-        self.commanded_pitch_angle = commanded_pitch_angle
-        self.commanded_yaw_angle = commanded_yaw_angle
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        commanded_roll_angle_deg: float = 0.0,
-        commanded_pitch_angle_deg: float = 0.0,
-        commanded_yaw_angle_deg: float = 0.0,
-    ) -> CommandedAttitudeAngles:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.commanded_roll_angle_deg = commanded_roll_angle_deg
-        self.commanded_pitch_angle_deg = commanded_pitch_angle_deg
-        self.commanded_yaw_angle_deg = commanded_yaw_angle_deg
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CommandedAttitudeAngles:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.commanded_roll_angle,
-                self.commanded_pitch_angle,
-                self.commanded_yaw_angle,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.commanded_roll_angle,
-                self.commanded_pitch_angle,
-                self.commanded_yaw_angle,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def commanded_roll_angle_deg(self) -> float:
-        """Commanded Roll Angle in deg: -327.68 to 327.67."""
-        return self.commanded_roll_angle / 100
-
-    @commanded_roll_angle_deg.setter
-    def commanded_roll_angle_deg(self, value: float) -> None:
-        self.commanded_roll_angle = _codec.raw_value(
-            value,
-            "commanded_roll_angle",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def commanded_pitch_angle_deg(self) -> float:
-        """Commanded Pitch Angle in deg: -327.68 to 327.67."""
-        return self.commanded_pitch_angle / 100
-
-    @commanded_pitch_angle_deg.setter
-    def commanded_pitch_angle_deg(self, value: float) -> None:
-        self.commanded_pitch_angle = _codec.raw_value(
-            value,
-            "commanded_pitch_angle",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def commanded_yaw_angle_deg(self) -> float:
-        """Commanded Yaw Angle in deg: -327.68 to 327.67."""
-        return self.commanded_yaw_angle / 100
-
-    @commanded_yaw_angle_deg.setter
-    def commanded_yaw_angle_deg(self, value: float) -> None:
-        self.commanded_yaw_angle = _codec.raw_value(
-            value,
-            "commanded_yaw_angle",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
+    commanded_yaw_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Commanded Yaw Angle in deg: -327.68 to 327.67."""
+    commanded_yaw_angle_mdeg: int = _base.whole(10, 0)
+    """Commanded Yaw Angle in thousandths of deg, exact: -327680 to 327670."""

@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class ConvertToJpgFile(_base.Message):
     """Convert to JPG file: telecommand 57, 3 bytes. Table 91.
 
     The source is a raw or a BMP file.
     """
-
-    __slots__ = (
-        "source_file_counter",
-        "quality_factor",
-        "white_balance",
-    )
 
     NODE = "cubeacp"
     NAME = "Convert to JPG file"
@@ -34,60 +21,23 @@ class ConvertToJpgFile(_base.Message):
     IDS = (ID,)
     LENGTH = 3
     TABLE = 91
-    FIELDS = (
-        _base.FieldInfo("source_file_counter", "Source File Counter", 0, 8, "uint"),
-        _base.FieldInfo("quality_factor", "Quality Factor", 8, 8, "uint"),
-        _base.FieldInfo("white_balance", "White Balance", 16, 8, "uint"),
-    )
 
-    source_file_counter: int
+    source_file_counter: int = _base.field("Source File Counter", 0, 8, "uint", default=0)
     """Source File Counter: bits 0 to 7, raw 0 to 255.
 
-    Note ACP-052 (open): Convert to JPG: which file.
+    Note ACP-052 (open): Convert to JPG: which file. The source is given by a counter
+    without a type. Raw and BMP files are named, and the file types have no raw one.
     """
-    quality_factor: int
+
+    quality_factor: int = _base.field("Quality Factor", 8, 8, "uint", default=0)
     """Quality Factor: bits 8 to 15, raw 0 to 255.
 
     Note ACP-053 (open): Convert to JPG: quality and white balance have no scale.
+    Neither range nor meaning of the two parameters is given.
     """
-    white_balance: int
+
+    white_balance: int = _base.field("White Balance", 16, 8, "uint", default=0)
     """White Balance: bits 16 to 23, raw 0 to 255.
 
-    Note ACP-053 (open): Convert to JPG: quality and white balance have no scale.
+    Note ACP-053 (open): see Quality Factor.
     """
-
-    def __init__(
-        self,
-        *,
-        source_file_counter: int = 0,
-        quality_factor: int = 0,
-        white_balance: int = 0,
-    ) -> None:
-        self.source_file_counter = source_file_counter
-        self.quality_factor = quality_factor
-        self.white_balance = white_balance
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> ConvertToJpgFile:
-        """The message in a frame of exactly 3 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.source_file_counter,
-                self.quality_factor,
-                self.white_balance,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.source_file_counter,
-                self.quality_factor,
-                self.white_balance,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,48 +5,16 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .axis_select import AxisSelect
 
-_STRUCT = struct.Struct("<21B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, AxisSelect))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class CssConfiguration(_base.Message):
     """CSS Configuration: configuration, set by telecommand 24, got by telemetry 139, 21
     bytes. Table 183.
 
     Pointing direction and scale of each photodiode.
     """
-
-    __slots__ = (
-        "css1_configuration",
-        "css2_configuration",
-        "css3_configuration",
-        "css4_configuration",
-        "css5_configuration",
-        "css6_configuration",
-        "css7_configuration",
-        "css8_configuration",
-        "css9_configuration",
-        "css10_configuration",
-        "css1_relative_scale",
-        "css2_relative_scale",
-        "css3_relative_scale",
-        "css4_relative_scale",
-        "css5_relative_scale",
-        "css6_relative_scale",
-        "css7_relative_scale",
-        "css8_relative_scale",
-        "css9_relative_scale",
-        "css10_relative_scale",
-        "css_threshold",
-    )
 
     NODE = "cubeacp"
     NAME = "CSS Configuration"
@@ -56,559 +24,129 @@ class CssConfiguration(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 21
     TABLE = 183
-    FIELDS = (
-        _base.FieldInfo(
-            "css1_configuration",
-            "CSS1 Configuration",
-            0,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css2_configuration",
-            "CSS2 Configuration",
-            8,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css3_configuration",
-            "CSS3 Configuration",
-            16,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css4_configuration",
-            "CSS4 Configuration",
-            24,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css5_configuration",
-            "CSS5 Configuration",
-            32,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css6_configuration",
-            "CSS6 Configuration",
-            40,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css7_configuration",
-            "CSS7 Configuration",
-            48,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css8_configuration",
-            "CSS8 Configuration",
-            56,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css9_configuration",
-            "CSS9 Configuration",
-            64,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css10_configuration",
-            "CSS10 Configuration",
-            72,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "css1_relative_scale",
-            "CSS1 Relative Scale",
-            80,
-            8,
-            "uint",
-            physical="css1_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css2_relative_scale",
-            "CSS2 Relative Scale",
-            88,
-            8,
-            "uint",
-            physical="css2_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css3_relative_scale",
-            "CSS3 Relative Scale",
-            96,
-            8,
-            "uint",
-            physical="css3_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css4_relative_scale",
-            "CSS4 Relative Scale",
-            104,
-            8,
-            "uint",
-            physical="css4_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css5_relative_scale",
-            "CSS5 Relative Scale",
-            112,
-            8,
-            "uint",
-            physical="css5_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css6_relative_scale",
-            "CSS6 Relative Scale",
-            120,
-            8,
-            "uint",
-            physical="css6_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css7_relative_scale",
-            "CSS7 Relative Scale",
-            128,
-            8,
-            "uint",
-            physical="css7_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css8_relative_scale",
-            "CSS8 Relative Scale",
-            136,
-            8,
-            "uint",
-            physical="css8_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css9_relative_scale",
-            "CSS9 Relative Scale",
-            144,
-            8,
-            "uint",
-            physical="css9_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "css10_relative_scale",
-            "CSS10 Relative Scale",
-            152,
-            8,
-            "uint",
-            physical="css10_relative_scale_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo("css_threshold", "CSS Threshold", 160, 8, "uint"),
-    )
 
-    css1_configuration: AxisSelect
+    css1_configuration: AxisSelect = _base.field("CSS1 Configuration", 0, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS1 Configuration: bits 0 to 7."""
-    css2_configuration: AxisSelect
+
+    css2_configuration: AxisSelect = _base.field("CSS2 Configuration", 8, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS2 Configuration: bits 8 to 15."""
-    css3_configuration: AxisSelect
+
+    css3_configuration: AxisSelect = _base.field("CSS3 Configuration", 16, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS3 Configuration: bits 16 to 23."""
-    css4_configuration: AxisSelect
+
+    css4_configuration: AxisSelect = _base.field("CSS4 Configuration", 24, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS4 Configuration: bits 24 to 31."""
-    css5_configuration: AxisSelect
+
+    css5_configuration: AxisSelect = _base.field("CSS5 Configuration", 32, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS5 Configuration: bits 32 to 39."""
-    css6_configuration: AxisSelect
+
+    css6_configuration: AxisSelect = _base.field("CSS6 Configuration", 40, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS6 Configuration: bits 40 to 47."""
-    css7_configuration: AxisSelect
+
+    css7_configuration: AxisSelect = _base.field("CSS7 Configuration", 48, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS7 Configuration: bits 48 to 55."""
-    css8_configuration: AxisSelect
+
+    css8_configuration: AxisSelect = _base.field("CSS8 Configuration", 56, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS8 Configuration: bits 56 to 63."""
-    css9_configuration: AxisSelect
+
+    css9_configuration: AxisSelect = _base.field("CSS9 Configuration", 64, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS9 Configuration: bits 64 to 71."""
-    css10_configuration: AxisSelect
+
+    css10_configuration: AxisSelect = _base.field("CSS10 Configuration", 72, 8, "enum", default=AxisSelect.POSITIVE_X)
     """CSS10 Configuration: bits 72 to 79."""
-    css1_relative_scale: int
+
+    css1_relative_scale: int = _base.field("CSS1 Relative Scale", 80, 8, "uint", default=0)
     """CSS1 Relative Scale: bits 80 to 87, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     """
-    css2_relative_scale: int
+    css1_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS1 Relative Scale, as a physical value: 0 to 2.55."""
+    css1_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS1 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css2_relative_scale: int = _base.field("CSS2 Relative Scale", 88, 8, "uint", default=0)
     """CSS2 Relative Scale: bits 88 to 95, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     """
-    css3_relative_scale: int
+    css2_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS2 Relative Scale, as a physical value: 0 to 2.55."""
+    css2_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS2 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css3_relative_scale: int = _base.field("CSS3 Relative Scale", 96, 8, "uint", default=0)
     """CSS3 Relative Scale: bits 96 to 103, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css4_relative_scale: int
+    css3_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS3 Relative Scale, as a physical value: 0 to 2.55."""
+    css3_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS3 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css4_relative_scale: int = _base.field("CSS4 Relative Scale", 104, 8, "uint", default=0)
     """CSS4 Relative Scale: bits 104 to 111, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css5_relative_scale: int
+    css4_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS4 Relative Scale, as a physical value: 0 to 2.55."""
+    css4_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS4 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css5_relative_scale: int = _base.field("CSS5 Relative Scale", 112, 8, "uint", default=0)
     """CSS5 Relative Scale: bits 112 to 119, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css6_relative_scale: int
+    css5_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS5 Relative Scale, as a physical value: 0 to 2.55."""
+    css5_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS5 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css6_relative_scale: int = _base.field("CSS6 Relative Scale", 120, 8, "uint", default=0)
     """CSS6 Relative Scale: bits 120 to 127, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css7_relative_scale: int
+    css6_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS6 Relative Scale, as a physical value: 0 to 2.55."""
+    css6_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS6 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css7_relative_scale: int = _base.field("CSS7 Relative Scale", 128, 8, "uint", default=0)
     """CSS7 Relative Scale: bits 128 to 135, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css8_relative_scale: int
+    css7_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS7 Relative Scale, as a physical value: 0 to 2.55."""
+    css7_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS7 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css8_relative_scale: int = _base.field("CSS8 Relative Scale", 136, 8, "uint", default=0)
     """CSS8 Relative Scale: bits 136 to 143, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css9_relative_scale: int
+    css8_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS8 Relative Scale, as a physical value: 0 to 2.55."""
+    css8_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS8 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css9_relative_scale: int = _base.field("CSS9 Relative Scale", 144, 8, "uint", default=0)
     """CSS9 Relative Scale: bits 144 to 151, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css10_relative_scale: int
+    css9_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS9 Relative Scale, as a physical value: 0 to 2.55."""
+    css9_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS9 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css10_relative_scale: int = _base.field("CSS10 Relative Scale", 152, 8, "uint", default=0)
     """CSS10 Relative Scale: bits 152 to 159, raw 0 to 255; physical `raw*0.01`, 0 to
     2.55.
     """
-    css_threshold: int
+    css10_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """CSS10 Relative Scale, as a physical value: 0 to 2.55."""
+    css10_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS10 Relative Scale in thousandths, exact: 0 to 2550."""
+
+    css_threshold: int = _base.field("CSS Threshold", 160, 8, "uint", default=0)
     """CSS Threshold: bits 160 to 167, raw 0 to 255.
 
-    Note ACP-133 (open): CSS threshold has no description.
+    Note ACP-133 (open): CSS threshold has no description. The name is repeated; neither
+    unit nor what lies below it is said. The message is described as directions and
+    scale factors.
     """
-
-    def __init__(
-        self,
-        *,
-        css1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css4_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css5_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css6_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css7_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css8_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css9_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css10_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css1_relative_scale: int = 0,
-        css2_relative_scale: int = 0,
-        css3_relative_scale: int = 0,
-        css4_relative_scale: int = 0,
-        css5_relative_scale: int = 0,
-        css6_relative_scale: int = 0,
-        css7_relative_scale: int = 0,
-        css8_relative_scale: int = 0,
-        css9_relative_scale: int = 0,
-        css10_relative_scale: int = 0,
-        css_threshold: int = 0,
-    ) -> None:
-        self.css1_configuration = css1_configuration
-        self.css2_configuration = css2_configuration
-        self.css3_configuration = css3_configuration
-        self.css4_configuration = css4_configuration
-        self.css5_configuration = css5_configuration
-        self.css6_configuration = css6_configuration
-        self.css7_configuration = css7_configuration
-        self.css8_configuration = css8_configuration
-        self.css9_configuration = css9_configuration
-        self.css10_configuration = css10_configuration
-        self.css1_relative_scale = css1_relative_scale
-        self.css2_relative_scale = css2_relative_scale
-        self.css3_relative_scale = css3_relative_scale
-        self.css4_relative_scale = css4_relative_scale
-        self.css5_relative_scale = css5_relative_scale
-        self.css6_relative_scale = css6_relative_scale
-        self.css7_relative_scale = css7_relative_scale
-        self.css8_relative_scale = css8_relative_scale
-        self.css9_relative_scale = css9_relative_scale
-        self.css10_relative_scale = css10_relative_scale
-        self.css_threshold = css_threshold
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        css1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css4_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css5_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css6_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css7_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css8_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css9_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css10_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        css1_relative_scale_physical: float = 0.0,
-        css2_relative_scale_physical: float = 0.0,
-        css3_relative_scale_physical: float = 0.0,
-        css4_relative_scale_physical: float = 0.0,
-        css5_relative_scale_physical: float = 0.0,
-        css6_relative_scale_physical: float = 0.0,
-        css7_relative_scale_physical: float = 0.0,
-        css8_relative_scale_physical: float = 0.0,
-        css9_relative_scale_physical: float = 0.0,
-        css10_relative_scale_physical: float = 0.0,
-        css_threshold: int = 0,
-    ) -> CssConfiguration:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.css1_configuration = css1_configuration
-        self.css2_configuration = css2_configuration
-        self.css3_configuration = css3_configuration
-        self.css4_configuration = css4_configuration
-        self.css5_configuration = css5_configuration
-        self.css6_configuration = css6_configuration
-        self.css7_configuration = css7_configuration
-        self.css8_configuration = css8_configuration
-        self.css9_configuration = css9_configuration
-        self.css10_configuration = css10_configuration
-        self.css1_relative_scale_physical = css1_relative_scale_physical
-        self.css2_relative_scale_physical = css2_relative_scale_physical
-        self.css3_relative_scale_physical = css3_relative_scale_physical
-        self.css4_relative_scale_physical = css4_relative_scale_physical
-        self.css5_relative_scale_physical = css5_relative_scale_physical
-        self.css6_relative_scale_physical = css6_relative_scale_physical
-        self.css7_relative_scale_physical = css7_relative_scale_physical
-        self.css8_relative_scale_physical = css8_relative_scale_physical
-        self.css9_relative_scale_physical = css9_relative_scale_physical
-        self.css10_relative_scale_physical = css10_relative_scale_physical
-        self.css_threshold = css_threshold
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CssConfiguration:
-        """The message in a frame of exactly 21 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                v0,
-                v1,
-                v2,
-                v3,
-                v4,
-                v5,
-                v6,
-                v7,
-                v8,
-                v9,
-                self.css1_relative_scale,
-                self.css2_relative_scale,
-                self.css3_relative_scale,
-                self.css4_relative_scale,
-                self.css5_relative_scale,
-                self.css6_relative_scale,
-                self.css7_relative_scale,
-                self.css8_relative_scale,
-                self.css9_relative_scale,
-                self.css10_relative_scale,
-                self.css_threshold,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.css1_configuration = _BITS_0[v0]
-        self.css2_configuration = _BITS_0[v1]
-        self.css3_configuration = _BITS_0[v2]
-        self.css4_configuration = _BITS_0[v3]
-        self.css5_configuration = _BITS_0[v4]
-        self.css6_configuration = _BITS_0[v5]
-        self.css7_configuration = _BITS_0[v6]
-        self.css8_configuration = _BITS_0[v7]
-        self.css9_configuration = _BITS_0[v8]
-        self.css10_configuration = _BITS_0[v9]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.css1_configuration,
-                self.css2_configuration,
-                self.css3_configuration,
-                self.css4_configuration,
-                self.css5_configuration,
-                self.css6_configuration,
-                self.css7_configuration,
-                self.css8_configuration,
-                self.css9_configuration,
-                self.css10_configuration,
-                self.css1_relative_scale,
-                self.css2_relative_scale,
-                self.css3_relative_scale,
-                self.css4_relative_scale,
-                self.css5_relative_scale,
-                self.css6_relative_scale,
-                self.css7_relative_scale,
-                self.css8_relative_scale,
-                self.css9_relative_scale,
-                self.css10_relative_scale,
-                self.css_threshold,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def css1_relative_scale_physical(self) -> float:
-        """CSS1 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css1_relative_scale / 100
-
-    @css1_relative_scale_physical.setter
-    def css1_relative_scale_physical(self, value: float) -> None:
-        self.css1_relative_scale = _codec.raw_value(
-            value,
-            "css1_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css2_relative_scale_physical(self) -> float:
-        """CSS2 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css2_relative_scale / 100
-
-    @css2_relative_scale_physical.setter
-    def css2_relative_scale_physical(self, value: float) -> None:
-        self.css2_relative_scale = _codec.raw_value(
-            value,
-            "css2_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css3_relative_scale_physical(self) -> float:
-        """CSS3 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css3_relative_scale / 100
-
-    @css3_relative_scale_physical.setter
-    def css3_relative_scale_physical(self, value: float) -> None:
-        self.css3_relative_scale = _codec.raw_value(
-            value,
-            "css3_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css4_relative_scale_physical(self) -> float:
-        """CSS4 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css4_relative_scale / 100
-
-    @css4_relative_scale_physical.setter
-    def css4_relative_scale_physical(self, value: float) -> None:
-        self.css4_relative_scale = _codec.raw_value(
-            value,
-            "css4_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css5_relative_scale_physical(self) -> float:
-        """CSS5 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css5_relative_scale / 100
-
-    @css5_relative_scale_physical.setter
-    def css5_relative_scale_physical(self, value: float) -> None:
-        self.css5_relative_scale = _codec.raw_value(
-            value,
-            "css5_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css6_relative_scale_physical(self) -> float:
-        """CSS6 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css6_relative_scale / 100
-
-    @css6_relative_scale_physical.setter
-    def css6_relative_scale_physical(self, value: float) -> None:
-        self.css6_relative_scale = _codec.raw_value(
-            value,
-            "css6_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css7_relative_scale_physical(self) -> float:
-        """CSS7 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css7_relative_scale / 100
-
-    @css7_relative_scale_physical.setter
-    def css7_relative_scale_physical(self, value: float) -> None:
-        self.css7_relative_scale = _codec.raw_value(
-            value,
-            "css7_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css8_relative_scale_physical(self) -> float:
-        """CSS8 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css8_relative_scale / 100
-
-    @css8_relative_scale_physical.setter
-    def css8_relative_scale_physical(self, value: float) -> None:
-        self.css8_relative_scale = _codec.raw_value(
-            value,
-            "css8_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css9_relative_scale_physical(self) -> float:
-        """CSS9 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css9_relative_scale / 100
-
-    @css9_relative_scale_physical.setter
-    def css9_relative_scale_physical(self, value: float) -> None:
-        self.css9_relative_scale = _codec.raw_value(
-            value,
-            "css9_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def css10_relative_scale_physical(self) -> float:
-        """CSS10 Relative Scale, as a physical value: 0 to 2.55."""
-        return self.css10_relative_scale / 100
-
-    @css10_relative_scale_physical.setter
-    def css10_relative_scale_physical(self, value: float) -> None:
-        self.css10_relative_scale = _codec.raw_value(
-            value,
-            "css10_relative_scale",
-            (1, 0, 100),
-            0,
-            255,
-        )

@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3H")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class CubecontrolCurrents(_base.Message):
     """CubeControl Current Measurements: telemetry 172, 6 bytes. Table 130.
 
     Bit 22 of the log mask.
     """
-
-    __slots__ = (
-        "cubecontrol_3v3_current",
-        "cubecontrol_5v_current",
-        "cubecontrol_vbat_current",
-    )
 
     NODE = "cubeacp"
     NAME = "CubeControl Current Measurements"
@@ -34,144 +21,24 @@ class CubecontrolCurrents(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 130
-    FIELDS = (
-        _base.FieldInfo(
-            "cubecontrol_3v3_current",
-            "CubeControl 3V3 Current",
-            0,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubecontrol_3v3_current_ma",
-            scale=(125, 0, 256),
-        ),
-        _base.FieldInfo(
-            "cubecontrol_5v_current",
-            "CubeControl 5V Current",
-            16,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubecontrol_5v_current_ma",
-            scale=(125, 0, 256),
-        ),
-        _base.FieldInfo(
-            "cubecontrol_vbat_current",
-            "CubeControl Vbat Current",
-            32,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubecontrol_vbat_current_ma",
-            scale=(125, 0, 256),
-        ),
-    )
 
-    cubecontrol_3v3_current: int
+    cubecontrol_3v3_current: int = _base.field("CubeControl 3V3 Current", 0, 16, "uint", default=0, unit="mA")
     """CubeControl 3V3 Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.48828125`,
     0 to 31999.51171875 mA.
     """
-    cubecontrol_5v_current: int
+    cubecontrol_3v3_current_ma: float = _base.scaled(125, 0, 256, default=0.0)
+    """CubeControl 3V3 Current in mA: 0 to 31999.51171875."""
+
+    cubecontrol_5v_current: int = _base.field("CubeControl 5V Current", 16, 16, "uint", default=0, unit="mA")
     """CubeControl 5V Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.48828125`,
     0 to 31999.51171875 mA.
     """
-    cubecontrol_vbat_current: int
+    cubecontrol_5v_current_ma: float = _base.scaled(125, 0, 256, default=0.0)
+    """CubeControl 5V Current in mA: 0 to 31999.51171875."""
+
+    cubecontrol_vbat_current: int = _base.field("CubeControl Vbat Current", 32, 16, "uint", default=0, unit="mA")
     """CubeControl Vbat Current: bits 32 to 47, raw 0 to 65535; physical
     `raw*0.48828125`, 0 to 31999.51171875 mA.
     """
-
-    def __init__(
-        self,
-        *,
-        cubecontrol_3v3_current: int = 0,
-        cubecontrol_5v_current: int = 0,
-        cubecontrol_vbat_current: int = 0,
-    ) -> None:
-        self.cubecontrol_3v3_current = cubecontrol_3v3_current
-        self.cubecontrol_5v_current = cubecontrol_5v_current
-        self.cubecontrol_vbat_current = cubecontrol_vbat_current
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        cubecontrol_3v3_current_ma: float = 0.0,
-        cubecontrol_5v_current_ma: float = 0.0,
-        cubecontrol_vbat_current_ma: float = 0.0,
-    ) -> CubecontrolCurrents:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.cubecontrol_3v3_current_ma = cubecontrol_3v3_current_ma
-        self.cubecontrol_5v_current_ma = cubecontrol_5v_current_ma
-        self.cubecontrol_vbat_current_ma = cubecontrol_vbat_current_ma
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CubecontrolCurrents:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.cubecontrol_3v3_current,
-                self.cubecontrol_5v_current,
-                self.cubecontrol_vbat_current,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.cubecontrol_3v3_current,
-                self.cubecontrol_5v_current,
-                self.cubecontrol_vbat_current,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def cubecontrol_3v3_current_ma(self) -> float:
-        """CubeControl 3V3 Current in mA: 0 to 31999.51171875."""
-        return self.cubecontrol_3v3_current * 125 / 256
-
-    @cubecontrol_3v3_current_ma.setter
-    def cubecontrol_3v3_current_ma(self, value: float) -> None:
-        self.cubecontrol_3v3_current = _codec.raw_value(
-            value,
-            "cubecontrol_3v3_current",
-            (125, 0, 256),
-            0,
-            65535,
-        )
-
-    @property
-    def cubecontrol_5v_current_ma(self) -> float:
-        """CubeControl 5V Current in mA: 0 to 31999.51171875."""
-        return self.cubecontrol_5v_current * 125 / 256
-
-    @cubecontrol_5v_current_ma.setter
-    def cubecontrol_5v_current_ma(self, value: float) -> None:
-        self.cubecontrol_5v_current = _codec.raw_value(
-            value,
-            "cubecontrol_5v_current",
-            (125, 0, 256),
-            0,
-            65535,
-        )
-
-    @property
-    def cubecontrol_vbat_current_ma(self) -> float:
-        """CubeControl Vbat Current in mA: 0 to 31999.51171875."""
-        return self.cubecontrol_vbat_current * 125 / 256
-
-    @cubecontrol_vbat_current_ma.setter
-    def cubecontrol_vbat_current_ma(self, value: float) -> None:
-        self.cubecontrol_vbat_current = _codec.raw_value(
-            value,
-            "cubecontrol_vbat_current",
-            (125, 0, 256),
-            0,
-            65535,
-        )
+    cubecontrol_vbat_current_ma: float = _base.scaled(125, 0, 256, default=0.0)
+    """CubeControl Vbat Current in mA: 0 to 31999.51171875."""

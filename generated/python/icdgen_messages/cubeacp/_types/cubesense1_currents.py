@@ -5,28 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<2H")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class Cubesense1Currents(_base.Message):
     """CubeSense1 Current Measurements: telemetry 171, 4 bytes. Table 129.
 
     Bit 21 of the log mask.
 
-    Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
+    Note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to
+    have 10+6*(N+1)*M bytes, and the UART message 11+6*N. With a frame of 4 bytes in the
+    mask both hold only if it is filled up.
     """
-
-    __slots__ = (
-        "cubesense1_3v3_current",
-        "cubesense1_cam_sram_current",
-    )
 
     NODE = "cubeacp"
     NAME = "CubeSense1 Current Measurements"
@@ -35,106 +25,21 @@ class Cubesense1Currents(_base.Message):
     IDS = (ID,)
     LENGTH = 4
     TABLE = 129
-    FIELDS = (
-        _base.FieldInfo(
-            "cubesense1_3v3_current",
-            "CubeSense1 3V3 Current",
-            0,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubesense1_3v3_current_ma",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "cubesense1_cam_sram_current",
-            "CubeSense1 Cam SRAM Current",
-            16,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubesense1_cam_sram_current_ma",
-            scale=(1, 0, 10),
-        ),
-    )
 
-    cubesense1_3v3_current: int
+    cubesense1_3v3_current: int = _base.field("CubeSense1 3V3 Current", 0, 16, "uint", default=0, unit="mA")
     """CubeSense1 3V3 Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.1`, 0 to
     6553.5 mA.
     """
-    cubesense1_cam_sram_current: int
+    cubesense1_3v3_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
+    """CubeSense1 3V3 Current in mA: 0 to 6553.5."""
+    cubesense1_3v3_current_ua: int = _base.whole(100, 0)
+    """CubeSense1 3V3 Current in uA, exact: 0 to 6553500."""
+
+    cubesense1_cam_sram_current: int = _base.field("CubeSense1 Cam SRAM Current", 16, 16, "uint", default=0, unit="mA")
     """CubeSense1 Cam SRAM Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0
     to 6553.5 mA.
     """
-
-    def __init__(
-        self,
-        *,
-        cubesense1_3v3_current: int = 0,
-        cubesense1_cam_sram_current: int = 0,
-    ) -> None:
-        self.cubesense1_3v3_current = cubesense1_3v3_current
-        self.cubesense1_cam_sram_current = cubesense1_cam_sram_current
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        cubesense1_3v3_current_ma: float = 0.0,
-        cubesense1_cam_sram_current_ma: float = 0.0,
-    ) -> Cubesense1Currents:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.cubesense1_3v3_current_ma = cubesense1_3v3_current_ma
-        self.cubesense1_cam_sram_current_ma = cubesense1_cam_sram_current_ma
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> Cubesense1Currents:
-        """The message in a frame of exactly 4 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.cubesense1_3v3_current,
-                self.cubesense1_cam_sram_current,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.cubesense1_3v3_current, self.cubesense1_cam_sram_current)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def cubesense1_3v3_current_ma(self) -> float:
-        """CubeSense1 3V3 Current in mA: 0 to 6553.5."""
-        return self.cubesense1_3v3_current / 10
-
-    @cubesense1_3v3_current_ma.setter
-    def cubesense1_3v3_current_ma(self, value: float) -> None:
-        self.cubesense1_3v3_current = _codec.raw_value(
-            value,
-            "cubesense1_3v3_current",
-            (1, 0, 10),
-            0,
-            65535,
-        )
-
-    @property
-    def cubesense1_cam_sram_current_ma(self) -> float:
-        """CubeSense1 Cam SRAM Current in mA: 0 to 6553.5."""
-        return self.cubesense1_cam_sram_current / 10
-
-    @cubesense1_cam_sram_current_ma.setter
-    def cubesense1_cam_sram_current_ma(self, value: float) -> None:
-        self.cubesense1_cam_sram_current = _codec.raw_value(
-            value,
-            "cubesense1_cam_sram_current",
-            (1, 0, 10),
-            0,
-            65535,
-        )
+    cubesense1_cam_sram_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
+    """CubeSense1 Cam SRAM Current in mA: 0 to 6553.5."""
+    cubesense1_cam_sram_current_ua: int = _base.whole(100, 0)
+    """CubeSense1 Cam SRAM Current in uA, exact: 0 to 6553500."""

@@ -5,87 +5,16 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h2B3H3h2B3H4B40H")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class CubesenseConfiguration(_base.Message):
     """CubeSense Configuration: configuration, set by telecommand 25, got by telemetry
     203, 112 bytes. Table 189.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
     """
-
-    __slots__ = (
-        "cam1_mounting_alpha",
-        "cam1_mounting_beta",
-        "cam1_mounting_gamma",
-        "cam1_detection_threshold",
-        "cam1_sensor_auto_adjust_mode",
-        "cam1_sensor_exposure_time",
-        "cam1_boresight_x",
-        "cam1_boresight_y",
-        "cam2_mounting_alpha",
-        "cam2_mounting_beta",
-        "cam2_mounting_gamma",
-        "cam2_detection_threshold",
-        "cam2_sensor_auto_adjust_mode",
-        "cam2_sensor_exposure_time",
-        "cam2_boresight_x",
-        "cam2_boresight_y",
-        "nadir_max_deviation_percentage",
-        "nadir_max_bad_edges",
-        "nadir_max_radius",
-        "nadir_min_radius",
-        "cam_1_minimum_x_of_area_1",
-        "cam_1_maximum_x_of_area_1",
-        "cam_1_minimum_y_of_area_1",
-        "cam_1_maximum_y_of_area_1",
-        "cam_1_minimum_x_of_area_2",
-        "cam_1_maximum_x_of_area_2",
-        "cam_1_minimum_y_of_area_2",
-        "cam_1_maximum_y_of_area_2",
-        "cam_1_minimum_x_of_area_3",
-        "cam_1_maximum_x_of_area_3",
-        "cam_1_minimum_y_of_area_3",
-        "cam_1_maximum_y_of_area_3",
-        "cam_1_minimum_x_of_area_4",
-        "cam_1_maximum_x_of_area_4",
-        "cam_1_minimum_y_of_area_4",
-        "cam_1_maximum_y_of_area_4",
-        "cam_1_minimum_x_of_area_5",
-        "cam_1_maximum_x_of_area_5",
-        "cam_1_minimum_y_of_area_5",
-        "cam_1_maximum_y_of_area_5",
-        "cam_2_minimum_x_of_area_1",
-        "cam_2_maximum_x_of_area_1",
-        "cam_2_minimum_y_of_area_1",
-        "cam_2_maximum_y_of_area_1",
-        "cam_2_minimum_x_of_area_2",
-        "cam_2_maximum_x_of_area_2",
-        "cam_2_minimum_y_of_area_2",
-        "cam_2_maximum_y_of_area_2",
-        "cam_2_minimum_x_of_area_3",
-        "cam_2_maximum_x_of_area_3",
-        "cam_2_minimum_y_of_area_3",
-        "cam_2_maximum_y_of_area_3",
-        "cam_2_minimum_x_of_area_4",
-        "cam_2_maximum_x_of_area_4",
-        "cam_2_minimum_y_of_area_4",
-        "cam_2_maximum_y_of_area_4",
-        "cam_2_minimum_x_of_area_5",
-        "cam_2_maximum_x_of_area_5",
-        "cam_2_minimum_y_of_area_5",
-        "cam_2_maximum_y_of_area_5",
-    )
 
     NODE = "cubeacp"
     NAME = "CubeSense Configuration"
@@ -95,1315 +24,453 @@ class CubesenseConfiguration(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 112
     TABLE = 189
-    FIELDS = (
-        _base.FieldInfo(
-            "cam1_mounting_alpha",
-            "Cam1 Sensor Mounting Transform Alpha Angle",
-            0,
-            16,
-            "int",
-            unit="deg",
-            physical="cam1_mounting_alpha_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam1_mounting_beta",
-            "Cam1 Sensor Mounting Transform Beta Angle",
-            16,
-            16,
-            "int",
-            unit="deg",
-            physical="cam1_mounting_beta_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam1_mounting_gamma",
-            "Cam1 Sensor Mounting Transform Gamma Angle",
-            32,
-            16,
-            "int",
-            unit="deg",
-            physical="cam1_mounting_gamma_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam1_detection_threshold",
-            "Cam1 detection threshold",
-            48,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam1_sensor_auto_adjust_mode",
-            "Cam1 sensor auto adjust mode",
-            56,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam1_sensor_exposure_time",
-            "Cam1 sensor exposure time",
-            64,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam1_boresight_x",
-            "Cam1 Boresight X",
-            80,
-            16,
-            "uint",
-            unit="pixels",
-            physical="cam1_boresight_x_pixels",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam1_boresight_y",
-            "Cam1 Boresight Y",
-            96,
-            16,
-            "uint",
-            unit="pixels",
-            physical="cam1_boresight_y_pixels",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam2_mounting_alpha",
-            "Cam2 Sensor Mounting Transform Alpha Angle",
-            112,
-            16,
-            "int",
-            unit="deg",
-            physical="cam2_mounting_alpha_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam2_mounting_beta",
-            "Cam2 Sensor Mounting Transform Beta Angle",
-            128,
-            16,
-            "int",
-            unit="deg",
-            physical="cam2_mounting_beta_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam2_mounting_gamma",
-            "Cam2 Sensor Mounting Transform Gamma Angle",
-            144,
-            16,
-            "int",
-            unit="deg",
-            physical="cam2_mounting_gamma_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam2_detection_threshold",
-            "Cam2 detection threshold",
-            160,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam2_sensor_auto_adjust_mode",
-            "Cam2 sensor auto adjust mode",
-            168,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam2_sensor_exposure_time",
-            "Cam2 sensor exposure time",
-            176,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam2_boresight_x",
-            "Cam2 Boresight X",
-            192,
-            16,
-            "uint",
-            unit="pixels",
-            physical="cam2_boresight_x_pixels",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cam2_boresight_y",
-            "Cam2 Boresight Y",
-            208,
-            16,
-            "uint",
-            unit="pixels",
-            physical="cam2_boresight_y_pixels",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "nadir_max_deviation_percentage",
-            "Nadir Max Deviation Percentage",
-            224,
-            8,
-            "uint",
-            unit="%",
-        ),
-        _base.FieldInfo("nadir_max_bad_edges", "Nadir Max Bad Edges", 232, 8, "uint"),
-        _base.FieldInfo(
-            "nadir_max_radius",
-            "Nadir Max Radius",
-            240,
-            8,
-            "uint",
-            unit="deg",
-        ),
-        _base.FieldInfo(
-            "nadir_min_radius",
-            "Nadir Min Radius",
-            248,
-            8,
-            "uint",
-            unit="deg",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_x_of_area_1",
-            "Cam 1 Minimum X of area 1",
-            256,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_x_of_area_1",
-            "Cam 1 Maximum X of area 1",
-            272,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_y_of_area_1",
-            "Cam 1 Minimum Y of area 1",
-            288,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_y_of_area_1",
-            "Cam 1 Maximum Y of area 1",
-            304,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_x_of_area_2",
-            "Cam 1 Minimum X of area 2",
-            320,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_x_of_area_2",
-            "Cam 1 Maximum X of area 2",
-            336,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_y_of_area_2",
-            "Cam 1 Minimum Y of area 2",
-            352,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_y_of_area_2",
-            "Cam 1 Maximum Y of area 2",
-            368,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_x_of_area_3",
-            "Cam 1 Minimum X of area 3",
-            384,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_x_of_area_3",
-            "Cam 1 Maximum X of area 3",
-            400,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_y_of_area_3",
-            "Cam 1 Minimum Y of area 3",
-            416,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_y_of_area_3",
-            "Cam 1 Maximum Y of area 3",
-            432,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_x_of_area_4",
-            "Cam 1 Minimum X of area 4",
-            448,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_x_of_area_4",
-            "Cam 1 Maximum X of area 4",
-            464,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_y_of_area_4",
-            "Cam 1 Minimum Y of area 4",
-            480,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_y_of_area_4",
-            "Cam 1 Maximum Y of area 4",
-            496,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_x_of_area_5",
-            "Cam 1 Minimum X of area 5",
-            512,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_x_of_area_5",
-            "Cam 1 Maximum X of area 5",
-            528,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_minimum_y_of_area_5",
-            "Cam 1 Minimum Y of area 5",
-            544,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_1_maximum_y_of_area_5",
-            "Cam 1 Maximum Y of area 5",
-            560,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_x_of_area_1",
-            "Cam 2 Minimum X of area 1",
-            576,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_x_of_area_1",
-            "Cam 2 Maximum X of area 1",
-            592,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_y_of_area_1",
-            "Cam 2 Minimum Y of area 1",
-            608,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_y_of_area_1",
-            "Cam 2 Maximum Y of area 1",
-            624,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_x_of_area_2",
-            "Cam 2 Minimum X of area 2",
-            640,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_x_of_area_2",
-            "Cam 2 Maximum X of area 2",
-            656,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_y_of_area_2",
-            "Cam 2 Minimum Y of area 2",
-            672,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_y_of_area_2",
-            "Cam 2 Maximum Y of area 2",
-            688,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_x_of_area_3",
-            "Cam 2 Minimum X of area 3",
-            704,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_x_of_area_3",
-            "Cam 2 Maximum X of area 3",
-            720,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_y_of_area_3",
-            "Cam 2 Minimum Y of area 3",
-            736,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_y_of_area_3",
-            "Cam 2 Maximum Y of area 3",
-            752,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_x_of_area_4",
-            "Cam 2 Minimum X of area 4",
-            768,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_x_of_area_4",
-            "Cam 2 Maximum X of area 4",
-            784,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_y_of_area_4",
-            "Cam 2 Minimum Y of area 4",
-            800,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_y_of_area_4",
-            "Cam 2 Maximum Y of area 4",
-            816,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_x_of_area_5",
-            "Cam 2 Minimum X of area 5",
-            832,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_x_of_area_5",
-            "Cam 2 Maximum X of area 5",
-            848,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_minimum_y_of_area_5",
-            "Cam 2 Minimum Y of area 5",
-            864,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "cam_2_maximum_y_of_area_5",
-            "Cam 2 Maximum Y of area 5",
-            880,
-            16,
-            "uint",
-        ),
-    )
 
-    cam1_mounting_alpha: int
+    cam1_mounting_alpha: int = _base.field(
+        "Cam1 Sensor Mounting Transform Alpha Angle", 0, 16, "int", default=0, unit="deg"
+    )
     """Cam1 Sensor Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need
+    a sequence of axes and a direction. None is given.
     """
-    cam1_mounting_beta: int
+    cam1_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    cam1_mounting_beta: int = _base.field(
+        "Cam1 Sensor Mounting Transform Beta Angle", 16, 16, "int", default=0, unit="deg"
+    )
     """Cam1 Sensor Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
     """
-    cam1_mounting_gamma: int
+    cam1_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    cam1_mounting_gamma: int = _base.field(
+        "Cam1 Sensor Mounting Transform Gamma Angle", 32, 16, "int", default=0, unit="deg"
+    )
     """Cam1 Sensor Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
     """
-    cam1_detection_threshold: int
+    cam1_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    cam1_detection_threshold: int = _base.field("Cam1 detection threshold", 48, 8, "uint", default=0)
     """Cam1 detection threshold: bits 48 to 55, raw 0 to 255.
 
     Note ACP-150 (certain): Cam1 detection threshold has no description in one table.
+    The description is empty in the message and present in the whole configuration.
     """
-    cam1_sensor_auto_adjust_mode: bool
+
+    cam1_sensor_auto_adjust_mode: bool = _base.field("Cam1 sensor auto adjust mode", 56, 1, "bool", default=False)
     """Cam1 sensor auto adjust mode: bit 56."""
-    cam1_sensor_exposure_time: int
+
+    cam1_sensor_exposure_time: int = _base.field("Cam1 sensor exposure time", 64, 16, "uint", default=0)
     """Cam1 sensor exposure time: bits 64 to 79, raw 0 to 65535.
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): Exposure and gain are register values. Neither the register nor
+    its scale is given, so times and gains cannot be told from them.
     """
-    cam1_boresight_x: int
+
+    cam1_boresight_x: int = _base.field("Cam1 Boresight X", 80, 16, "uint", default=0, unit="pixels")
     """Cam1 Boresight X: bits 80 to 95, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     pixels.
 
     Where the boresight meets the image.
 
-    Note ACP-154 (certain): Cam1 and Cam 1.
+    Note ACP-154 (certain): Cam1 and Cam 1. Within one message the cameras are written
+    with and without a blank, area and Area too.
     """
-    cam1_boresight_y: int
+    cam1_boresight_x_pixels: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam1 Boresight X in pixels: 0 to 655.35."""
+    cam1_boresight_x_milli_pixels: int = _base.whole(10, 0)
+    """Cam1 Boresight X in thousandths of pixels, exact: 0 to 655350."""
+
+    cam1_boresight_y: int = _base.field("Cam1 Boresight Y", 96, 16, "uint", default=0, unit="pixels")
     """Cam1 Boresight Y: bits 96 to 111, raw 0 to 65535; physical `raw*0.01`, 0 to
     655.35 pixels.
 
     Where the boresight meets the image.
     """
-    cam2_mounting_alpha: int
+    cam1_boresight_y_pixels: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam1 Boresight Y in pixels: 0 to 655.35."""
+    cam1_boresight_y_milli_pixels: int = _base.whole(10, 0)
+    """Cam1 Boresight Y in thousandths of pixels, exact: 0 to 655350."""
+
+    cam2_mounting_alpha: int = _base.field(
+        "Cam2 Sensor Mounting Transform Alpha Angle", 112, 16, "int", default=0, unit="deg"
+    )
     """Cam2 Sensor Mounting Transform Alpha Angle: bits 112 to 127, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
     """
-    cam2_mounting_beta: int
+    cam2_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    cam2_mounting_beta: int = _base.field(
+        "Cam2 Sensor Mounting Transform Beta Angle", 128, 16, "int", default=0, unit="deg"
+    )
     """Cam2 Sensor Mounting Transform Beta Angle: bits 128 to 143, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
     """
-    cam2_mounting_gamma: int
+    cam2_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    cam2_mounting_gamma: int = _base.field(
+        "Cam2 Sensor Mounting Transform Gamma Angle", 144, 16, "int", default=0, unit="deg"
+    )
     """Cam2 Sensor Mounting Transform Gamma Angle: bits 144 to 159, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
     """
-    cam2_detection_threshold: int
+    cam2_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    cam2_detection_threshold: int = _base.field("Cam2 detection threshold", 160, 8, "uint", default=0)
     """Cam2 detection threshold: bits 160 to 167, raw 0 to 255."""
-    cam2_sensor_auto_adjust_mode: bool
+
+    cam2_sensor_auto_adjust_mode: bool = _base.field("Cam2 sensor auto adjust mode", 168, 1, "bool", default=False)
     """Cam2 sensor auto adjust mode: bit 168."""
-    cam2_sensor_exposure_time: int
+
+    cam2_sensor_exposure_time: int = _base.field("Cam2 sensor exposure time", 176, 16, "uint", default=0)
     """Cam2 sensor exposure time: bits 176 to 191, raw 0 to 65535.
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): see Cam1 sensor exposure time.
     """
-    cam2_boresight_x: int
+
+    cam2_boresight_x: int = _base.field("Cam2 Boresight X", 192, 16, "uint", default=0, unit="pixels")
     """Cam2 Boresight X: bits 192 to 207, raw 0 to 65535; physical `raw*0.01`, 0 to
     655.35 pixels.
 
     Where the boresight meets the image.
 
-    Note ACP-154 (certain): Cam1 and Cam 1.
+    Note ACP-154 (certain): see Cam1 Boresight X.
     """
-    cam2_boresight_y: int
+    cam2_boresight_x_pixels: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam2 Boresight X in pixels: 0 to 655.35."""
+    cam2_boresight_x_milli_pixels: int = _base.whole(10, 0)
+    """Cam2 Boresight X in thousandths of pixels, exact: 0 to 655350."""
+
+    cam2_boresight_y: int = _base.field("Cam2 Boresight Y", 208, 16, "uint", default=0, unit="pixels")
     """Cam2 Boresight Y: bits 208 to 223, raw 0 to 65535; physical `raw*0.01`, 0 to
     655.35 pixels.
 
     Where the boresight meets the image.
     """
-    nadir_max_deviation_percentage: int
+    cam2_boresight_y_pixels: float = _base.scaled(1, 0, 100, default=0.0)
+    """Cam2 Boresight Y in pixels: 0 to 655.35."""
+    cam2_boresight_y_milli_pixels: int = _base.whole(10, 0)
+    """Cam2 Boresight Y in thousandths of pixels, exact: 0 to 655350."""
+
+    nadir_max_deviation_percentage: int = _base.field(
+        "Nadir Max Deviation Percentage", 224, 8, "uint", default=0, unit="%"
+    )
     """Nadir Max Deviation Percentage: bits 224 to 231, raw 0 to 255, in %.
 
     Largest deviation of an edge, of the measured angular radius.
 
-    Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
+    Erratum ACP-151 (certain): Deviation percentage has its unit in words only. A
+    percentage of the measured angular radius by name and description, without the unit
+    of measure.
     """
-    nadir_max_bad_edges: int
+
+    nadir_max_bad_edges: int = _base.field("Nadir Max Bad Edges", 232, 8, "uint", default=0)
     """Nadir Max Bad Edges: bits 232 to 239, raw 0 to 255.
 
     Most edges that may deviate further. Above 50 the test is off.
     """
-    nadir_max_radius: int
+
+    nadir_max_radius: int = _base.field("Nadir Max Radius", 240, 8, "uint", default=0, unit="deg")
     """Nadir Max Radius: bits 240 to 247, raw 0 to 255, in deg.
 
-    Erratum ACP-148 (certain): Degree sign is deg.
+    Erratum ACP-148 (certain): Degree sign is deg. Two fields have the sign, all other
+    angles deg.
     """
-    nadir_min_radius: int
+
+    nadir_min_radius: int = _base.field("Nadir Min Radius", 248, 8, "uint", default=0, unit="deg")
     """Nadir Min Radius: bits 248 to 255, raw 0 to 255, in deg.
 
-    Erratum ACP-148 (certain): Degree sign is deg.
+    Erratum ACP-148 (certain): see Nadir Max Radius.
     """
-    cam_1_minimum_x_of_area_1: int
+
+    cam_1_minimum_x_of_area_1: int = _base.field("Cam 1 Minimum X of area 1", 256, 16, "uint", default=0)
     """Cam 1 Minimum X of area 1: bits 256 to 271, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): Masked areas: purpose, unit and an unused area. Forty limits in
+    16 bits have no unit and no purpose; whether pixels inside are ignored, and how an
+    area is switched off, is not said.
 
-    Note ACP-154 (certain): Cam1 and Cam 1.
+    Note ACP-154 (certain): see Cam1 Boresight X.
     """
-    cam_1_maximum_x_of_area_1: int
+
+    cam_1_maximum_x_of_area_1: int = _base.field("Cam 1 Maximum X of area 1", 272, 16, "uint", default=0)
     """Cam 1 Maximum X of area 1: bits 272 to 287, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_minimum_y_of_area_1: int
+
+    cam_1_minimum_y_of_area_1: int = _base.field("Cam 1 Minimum Y of area 1", 288, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 1: bits 288 to 303, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_maximum_y_of_area_1: int
+
+    cam_1_maximum_y_of_area_1: int = _base.field("Cam 1 Maximum Y of area 1", 304, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 1: bits 304 to 319, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_minimum_x_of_area_2: int
+
+    cam_1_minimum_x_of_area_2: int = _base.field("Cam 1 Minimum X of area 2", 320, 16, "uint", default=0)
     """Cam 1 Minimum X of area 2: bits 320 to 335, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_maximum_x_of_area_2: int
+
+    cam_1_maximum_x_of_area_2: int = _base.field("Cam 1 Maximum X of area 2", 336, 16, "uint", default=0)
     """Cam 1 Maximum X of area 2: bits 336 to 351, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_minimum_y_of_area_2: int
+
+    cam_1_minimum_y_of_area_2: int = _base.field("Cam 1 Minimum Y of area 2", 352, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 2: bits 352 to 367, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_maximum_y_of_area_2: int
+
+    cam_1_maximum_y_of_area_2: int = _base.field("Cam 1 Maximum Y of area 2", 368, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 2: bits 368 to 383, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_minimum_x_of_area_3: int
+
+    cam_1_minimum_x_of_area_3: int = _base.field("Cam 1 Minimum X of area 3", 384, 16, "uint", default=0)
     """Cam 1 Minimum X of area 3: bits 384 to 399, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_maximum_x_of_area_3: int
+
+    cam_1_maximum_x_of_area_3: int = _base.field("Cam 1 Maximum X of area 3", 400, 16, "uint", default=0)
     """Cam 1 Maximum X of area 3: bits 400 to 415, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_minimum_y_of_area_3: int
+
+    cam_1_minimum_y_of_area_3: int = _base.field("Cam 1 Minimum Y of area 3", 416, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 3: bits 416 to 431, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_maximum_y_of_area_3: int
+
+    cam_1_maximum_y_of_area_3: int = _base.field("Cam 1 Maximum Y of area 3", 432, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 3: bits 432 to 447, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_minimum_x_of_area_4: int
+
+    cam_1_minimum_x_of_area_4: int = _base.field("Cam 1 Minimum X of area 4", 448, 16, "uint", default=0)
     """Cam 1 Minimum X of area 4: bits 448 to 463, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_maximum_x_of_area_4: int
+
+    cam_1_maximum_x_of_area_4: int = _base.field("Cam 1 Maximum X of area 4", 464, 16, "uint", default=0)
     """Cam 1 Maximum X of area 4: bits 464 to 479, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_minimum_y_of_area_4: int
+
+    cam_1_minimum_y_of_area_4: int = _base.field("Cam 1 Minimum Y of area 4", 480, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 4: bits 480 to 495, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_maximum_y_of_area_4: int
+
+    cam_1_maximum_y_of_area_4: int = _base.field("Cam 1 Maximum Y of area 4", 496, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 4: bits 496 to 511, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_minimum_x_of_area_5: int
+
+    cam_1_minimum_x_of_area_5: int = _base.field("Cam 1 Minimum X of area 5", 512, 16, "uint", default=0)
     """Cam 1 Minimum X of area 5: bits 512 to 527, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_maximum_x_of_area_5: int
+
+    cam_1_maximum_x_of_area_5: int = _base.field("Cam 1 Maximum X of area 5", 528, 16, "uint", default=0)
     """Cam 1 Maximum X of area 5: bits 528 to 543, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_minimum_y_of_area_5: int
+
+    cam_1_minimum_y_of_area_5: int = _base.field("Cam 1 Minimum Y of area 5", 544, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 5: bits 544 to 559, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_1_maximum_y_of_area_5: int
+
+    cam_1_maximum_y_of_area_5: int = _base.field("Cam 1 Maximum Y of area 5", 560, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 5: bits 560 to 575, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_minimum_x_of_area_1: int
+
+    cam_2_minimum_x_of_area_1: int = _base.field("Cam 2 Minimum X of area 1", 576, 16, "uint", default=0)
     """Cam 2 Minimum X of area 1: bits 576 to 591, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
 
-    Note ACP-154 (certain): Cam1 and Cam 1.
+    Note ACP-154 (certain): see Cam1 Boresight X.
     """
-    cam_2_maximum_x_of_area_1: int
+
+    cam_2_maximum_x_of_area_1: int = _base.field("Cam 2 Maximum X of area 1", 592, 16, "uint", default=0)
     """Cam 2 Maximum X of area 1: bits 592 to 607, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_minimum_y_of_area_1: int
+
+    cam_2_minimum_y_of_area_1: int = _base.field("Cam 2 Minimum Y of area 1", 608, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 1: bits 608 to 623, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_maximum_y_of_area_1: int
+
+    cam_2_maximum_y_of_area_1: int = _base.field("Cam 2 Maximum Y of area 1", 624, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 1: bits 624 to 639, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_minimum_x_of_area_2: int
+
+    cam_2_minimum_x_of_area_2: int = _base.field("Cam 2 Minimum X of area 2", 640, 16, "uint", default=0)
     """Cam 2 Minimum X of area 2: bits 640 to 655, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_maximum_x_of_area_2: int
+
+    cam_2_maximum_x_of_area_2: int = _base.field("Cam 2 Maximum X of area 2", 656, 16, "uint", default=0)
     """Cam 2 Maximum X of area 2: bits 656 to 671, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_minimum_y_of_area_2: int
+
+    cam_2_minimum_y_of_area_2: int = _base.field("Cam 2 Minimum Y of area 2", 672, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 2: bits 672 to 687, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_maximum_y_of_area_2: int
+
+    cam_2_maximum_y_of_area_2: int = _base.field("Cam 2 Maximum Y of area 2", 688, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 2: bits 688 to 703, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_minimum_x_of_area_3: int
+
+    cam_2_minimum_x_of_area_3: int = _base.field("Cam 2 Minimum X of area 3", 704, 16, "uint", default=0)
     """Cam 2 Minimum X of area 3: bits 704 to 719, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_maximum_x_of_area_3: int
+
+    cam_2_maximum_x_of_area_3: int = _base.field("Cam 2 Maximum X of area 3", 720, 16, "uint", default=0)
     """Cam 2 Maximum X of area 3: bits 720 to 735, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_minimum_y_of_area_3: int
+
+    cam_2_minimum_y_of_area_3: int = _base.field("Cam 2 Minimum Y of area 3", 736, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 3: bits 736 to 751, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_maximum_y_of_area_3: int
+
+    cam_2_maximum_y_of_area_3: int = _base.field("Cam 2 Maximum Y of area 3", 752, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 3: bits 752 to 767, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_minimum_x_of_area_4: int
+
+    cam_2_minimum_x_of_area_4: int = _base.field("Cam 2 Minimum X of area 4", 768, 16, "uint", default=0)
     """Cam 2 Minimum X of area 4: bits 768 to 783, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_maximum_x_of_area_4: int
+
+    cam_2_maximum_x_of_area_4: int = _base.field("Cam 2 Maximum X of area 4", 784, 16, "uint", default=0)
     """Cam 2 Maximum X of area 4: bits 784 to 799, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_minimum_y_of_area_4: int
+
+    cam_2_minimum_y_of_area_4: int = _base.field("Cam 2 Minimum Y of area 4", 800, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 4: bits 800 to 815, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_maximum_y_of_area_4: int
+
+    cam_2_maximum_y_of_area_4: int = _base.field("Cam 2 Maximum Y of area 4", 816, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 4: bits 816 to 831, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_minimum_x_of_area_5: int
+
+    cam_2_minimum_x_of_area_5: int = _base.field("Cam 2 Minimum X of area 5", 832, 16, "uint", default=0)
     """Cam 2 Minimum X of area 5: bits 832 to 847, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_maximum_x_of_area_5: int
+
+    cam_2_maximum_x_of_area_5: int = _base.field("Cam 2 Maximum X of area 5", 848, 16, "uint", default=0)
     """Cam 2 Maximum X of area 5: bits 848 to 863, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_minimum_y_of_area_5: int
+
+    cam_2_minimum_y_of_area_5: int = _base.field("Cam 2 Minimum Y of area 5", 864, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 5: bits 864 to 879, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-    cam_2_maximum_y_of_area_5: int
+
+    cam_2_maximum_y_of_area_5: int = _base.field("Cam 2 Maximum Y of area 5", 880, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 5: bits 880 to 895, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
-
-    def __init__(
-        self,
-        *,
-        cam1_mounting_alpha: int = 0,
-        cam1_mounting_beta: int = 0,
-        cam1_mounting_gamma: int = 0,
-        cam1_detection_threshold: int = 0,
-        cam1_sensor_auto_adjust_mode: bool = False,
-        cam1_sensor_exposure_time: int = 0,
-        cam1_boresight_x: int = 0,
-        cam1_boresight_y: int = 0,
-        cam2_mounting_alpha: int = 0,
-        cam2_mounting_beta: int = 0,
-        cam2_mounting_gamma: int = 0,
-        cam2_detection_threshold: int = 0,
-        cam2_sensor_auto_adjust_mode: bool = False,
-        cam2_sensor_exposure_time: int = 0,
-        cam2_boresight_x: int = 0,
-        cam2_boresight_y: int = 0,
-        nadir_max_deviation_percentage: int = 0,
-        nadir_max_bad_edges: int = 0,
-        nadir_max_radius: int = 0,
-        nadir_min_radius: int = 0,
-        cam_1_minimum_x_of_area_1: int = 0,
-        cam_1_maximum_x_of_area_1: int = 0,
-        cam_1_minimum_y_of_area_1: int = 0,
-        cam_1_maximum_y_of_area_1: int = 0,
-        cam_1_minimum_x_of_area_2: int = 0,
-        cam_1_maximum_x_of_area_2: int = 0,
-        cam_1_minimum_y_of_area_2: int = 0,
-        cam_1_maximum_y_of_area_2: int = 0,
-        cam_1_minimum_x_of_area_3: int = 0,
-        cam_1_maximum_x_of_area_3: int = 0,
-        cam_1_minimum_y_of_area_3: int = 0,
-        cam_1_maximum_y_of_area_3: int = 0,
-        cam_1_minimum_x_of_area_4: int = 0,
-        cam_1_maximum_x_of_area_4: int = 0,
-        cam_1_minimum_y_of_area_4: int = 0,
-        cam_1_maximum_y_of_area_4: int = 0,
-        cam_1_minimum_x_of_area_5: int = 0,
-        cam_1_maximum_x_of_area_5: int = 0,
-        cam_1_minimum_y_of_area_5: int = 0,
-        cam_1_maximum_y_of_area_5: int = 0,
-        cam_2_minimum_x_of_area_1: int = 0,
-        cam_2_maximum_x_of_area_1: int = 0,
-        cam_2_minimum_y_of_area_1: int = 0,
-        cam_2_maximum_y_of_area_1: int = 0,
-        cam_2_minimum_x_of_area_2: int = 0,
-        cam_2_maximum_x_of_area_2: int = 0,
-        cam_2_minimum_y_of_area_2: int = 0,
-        cam_2_maximum_y_of_area_2: int = 0,
-        cam_2_minimum_x_of_area_3: int = 0,
-        cam_2_maximum_x_of_area_3: int = 0,
-        cam_2_minimum_y_of_area_3: int = 0,
-        cam_2_maximum_y_of_area_3: int = 0,
-        cam_2_minimum_x_of_area_4: int = 0,
-        cam_2_maximum_x_of_area_4: int = 0,
-        cam_2_minimum_y_of_area_4: int = 0,
-        cam_2_maximum_y_of_area_4: int = 0,
-        cam_2_minimum_x_of_area_5: int = 0,
-        cam_2_maximum_x_of_area_5: int = 0,
-        cam_2_minimum_y_of_area_5: int = 0,
-        cam_2_maximum_y_of_area_5: int = 0,
-    ) -> None:
-        self.cam1_mounting_alpha = cam1_mounting_alpha
-        self.cam1_mounting_beta = cam1_mounting_beta
-        self.cam1_mounting_gamma = cam1_mounting_gamma
-        self.cam1_detection_threshold = cam1_detection_threshold
-        self.cam1_sensor_auto_adjust_mode = cam1_sensor_auto_adjust_mode
-        self.cam1_sensor_exposure_time = cam1_sensor_exposure_time
-        self.cam1_boresight_x = cam1_boresight_x
-        self.cam1_boresight_y = cam1_boresight_y
-        self.cam2_mounting_alpha = cam2_mounting_alpha
-        self.cam2_mounting_beta = cam2_mounting_beta
-        self.cam2_mounting_gamma = cam2_mounting_gamma
-        self.cam2_detection_threshold = cam2_detection_threshold
-        self.cam2_sensor_auto_adjust_mode = cam2_sensor_auto_adjust_mode
-        self.cam2_sensor_exposure_time = cam2_sensor_exposure_time
-        self.cam2_boresight_x = cam2_boresight_x
-        self.cam2_boresight_y = cam2_boresight_y
-        self.nadir_max_deviation_percentage = nadir_max_deviation_percentage
-        self.nadir_max_bad_edges = nadir_max_bad_edges
-        self.nadir_max_radius = nadir_max_radius
-        self.nadir_min_radius = nadir_min_radius
-        self.cam_1_minimum_x_of_area_1 = cam_1_minimum_x_of_area_1
-        self.cam_1_maximum_x_of_area_1 = cam_1_maximum_x_of_area_1
-        self.cam_1_minimum_y_of_area_1 = cam_1_minimum_y_of_area_1
-        self.cam_1_maximum_y_of_area_1 = cam_1_maximum_y_of_area_1
-        self.cam_1_minimum_x_of_area_2 = cam_1_minimum_x_of_area_2
-        self.cam_1_maximum_x_of_area_2 = cam_1_maximum_x_of_area_2
-        self.cam_1_minimum_y_of_area_2 = cam_1_minimum_y_of_area_2
-        self.cam_1_maximum_y_of_area_2 = cam_1_maximum_y_of_area_2
-        self.cam_1_minimum_x_of_area_3 = cam_1_minimum_x_of_area_3
-        self.cam_1_maximum_x_of_area_3 = cam_1_maximum_x_of_area_3
-        self.cam_1_minimum_y_of_area_3 = cam_1_minimum_y_of_area_3
-        self.cam_1_maximum_y_of_area_3 = cam_1_maximum_y_of_area_3
-        self.cam_1_minimum_x_of_area_4 = cam_1_minimum_x_of_area_4
-        self.cam_1_maximum_x_of_area_4 = cam_1_maximum_x_of_area_4
-        self.cam_1_minimum_y_of_area_4 = cam_1_minimum_y_of_area_4
-        self.cam_1_maximum_y_of_area_4 = cam_1_maximum_y_of_area_4
-        self.cam_1_minimum_x_of_area_5 = cam_1_minimum_x_of_area_5
-        self.cam_1_maximum_x_of_area_5 = cam_1_maximum_x_of_area_5
-        self.cam_1_minimum_y_of_area_5 = cam_1_minimum_y_of_area_5
-        self.cam_1_maximum_y_of_area_5 = cam_1_maximum_y_of_area_5
-        self.cam_2_minimum_x_of_area_1 = cam_2_minimum_x_of_area_1
-        self.cam_2_maximum_x_of_area_1 = cam_2_maximum_x_of_area_1
-        self.cam_2_minimum_y_of_area_1 = cam_2_minimum_y_of_area_1
-        self.cam_2_maximum_y_of_area_1 = cam_2_maximum_y_of_area_1
-        self.cam_2_minimum_x_of_area_2 = cam_2_minimum_x_of_area_2
-        self.cam_2_maximum_x_of_area_2 = cam_2_maximum_x_of_area_2
-        self.cam_2_minimum_y_of_area_2 = cam_2_minimum_y_of_area_2
-        self.cam_2_maximum_y_of_area_2 = cam_2_maximum_y_of_area_2
-        self.cam_2_minimum_x_of_area_3 = cam_2_minimum_x_of_area_3
-        self.cam_2_maximum_x_of_area_3 = cam_2_maximum_x_of_area_3
-        self.cam_2_minimum_y_of_area_3 = cam_2_minimum_y_of_area_3
-        self.cam_2_maximum_y_of_area_3 = cam_2_maximum_y_of_area_3
-        self.cam_2_minimum_x_of_area_4 = cam_2_minimum_x_of_area_4
-        self.cam_2_maximum_x_of_area_4 = cam_2_maximum_x_of_area_4
-        self.cam_2_minimum_y_of_area_4 = cam_2_minimum_y_of_area_4
-        self.cam_2_maximum_y_of_area_4 = cam_2_maximum_y_of_area_4
-        self.cam_2_minimum_x_of_area_5 = cam_2_minimum_x_of_area_5
-        self.cam_2_maximum_x_of_area_5 = cam_2_maximum_x_of_area_5
-        self.cam_2_minimum_y_of_area_5 = cam_2_minimum_y_of_area_5
-        self.cam_2_maximum_y_of_area_5 = cam_2_maximum_y_of_area_5
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        cam1_mounting_alpha_deg: float = 0.0,
-        cam1_mounting_beta_deg: float = 0.0,
-        cam1_mounting_gamma_deg: float = 0.0,
-        cam1_detection_threshold: int = 0,
-        cam1_sensor_auto_adjust_mode: bool = False,
-        cam1_sensor_exposure_time: int = 0,
-        cam1_boresight_x_pixels: float = 0.0,
-        cam1_boresight_y_pixels: float = 0.0,
-        cam2_mounting_alpha_deg: float = 0.0,
-        cam2_mounting_beta_deg: float = 0.0,
-        cam2_mounting_gamma_deg: float = 0.0,
-        cam2_detection_threshold: int = 0,
-        cam2_sensor_auto_adjust_mode: bool = False,
-        cam2_sensor_exposure_time: int = 0,
-        cam2_boresight_x_pixels: float = 0.0,
-        cam2_boresight_y_pixels: float = 0.0,
-        nadir_max_deviation_percentage: int = 0,
-        nadir_max_bad_edges: int = 0,
-        nadir_max_radius: int = 0,
-        nadir_min_radius: int = 0,
-        cam_1_minimum_x_of_area_1: int = 0,
-        cam_1_maximum_x_of_area_1: int = 0,
-        cam_1_minimum_y_of_area_1: int = 0,
-        cam_1_maximum_y_of_area_1: int = 0,
-        cam_1_minimum_x_of_area_2: int = 0,
-        cam_1_maximum_x_of_area_2: int = 0,
-        cam_1_minimum_y_of_area_2: int = 0,
-        cam_1_maximum_y_of_area_2: int = 0,
-        cam_1_minimum_x_of_area_3: int = 0,
-        cam_1_maximum_x_of_area_3: int = 0,
-        cam_1_minimum_y_of_area_3: int = 0,
-        cam_1_maximum_y_of_area_3: int = 0,
-        cam_1_minimum_x_of_area_4: int = 0,
-        cam_1_maximum_x_of_area_4: int = 0,
-        cam_1_minimum_y_of_area_4: int = 0,
-        cam_1_maximum_y_of_area_4: int = 0,
-        cam_1_minimum_x_of_area_5: int = 0,
-        cam_1_maximum_x_of_area_5: int = 0,
-        cam_1_minimum_y_of_area_5: int = 0,
-        cam_1_maximum_y_of_area_5: int = 0,
-        cam_2_minimum_x_of_area_1: int = 0,
-        cam_2_maximum_x_of_area_1: int = 0,
-        cam_2_minimum_y_of_area_1: int = 0,
-        cam_2_maximum_y_of_area_1: int = 0,
-        cam_2_minimum_x_of_area_2: int = 0,
-        cam_2_maximum_x_of_area_2: int = 0,
-        cam_2_minimum_y_of_area_2: int = 0,
-        cam_2_maximum_y_of_area_2: int = 0,
-        cam_2_minimum_x_of_area_3: int = 0,
-        cam_2_maximum_x_of_area_3: int = 0,
-        cam_2_minimum_y_of_area_3: int = 0,
-        cam_2_maximum_y_of_area_3: int = 0,
-        cam_2_minimum_x_of_area_4: int = 0,
-        cam_2_maximum_x_of_area_4: int = 0,
-        cam_2_minimum_y_of_area_4: int = 0,
-        cam_2_maximum_y_of_area_4: int = 0,
-        cam_2_minimum_x_of_area_5: int = 0,
-        cam_2_maximum_x_of_area_5: int = 0,
-        cam_2_minimum_y_of_area_5: int = 0,
-        cam_2_maximum_y_of_area_5: int = 0,
-    ) -> CubesenseConfiguration:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.cam1_mounting_alpha_deg = cam1_mounting_alpha_deg
-        self.cam1_mounting_beta_deg = cam1_mounting_beta_deg
-        self.cam1_mounting_gamma_deg = cam1_mounting_gamma_deg
-        self.cam1_detection_threshold = cam1_detection_threshold
-        self.cam1_sensor_auto_adjust_mode = cam1_sensor_auto_adjust_mode
-        self.cam1_sensor_exposure_time = cam1_sensor_exposure_time
-        self.cam1_boresight_x_pixels = cam1_boresight_x_pixels
-        self.cam1_boresight_y_pixels = cam1_boresight_y_pixels
-        self.cam2_mounting_alpha_deg = cam2_mounting_alpha_deg
-        self.cam2_mounting_beta_deg = cam2_mounting_beta_deg
-        self.cam2_mounting_gamma_deg = cam2_mounting_gamma_deg
-        self.cam2_detection_threshold = cam2_detection_threshold
-        self.cam2_sensor_auto_adjust_mode = cam2_sensor_auto_adjust_mode
-        self.cam2_sensor_exposure_time = cam2_sensor_exposure_time
-        self.cam2_boresight_x_pixels = cam2_boresight_x_pixels
-        self.cam2_boresight_y_pixels = cam2_boresight_y_pixels
-        self.nadir_max_deviation_percentage = nadir_max_deviation_percentage
-        self.nadir_max_bad_edges = nadir_max_bad_edges
-        self.nadir_max_radius = nadir_max_radius
-        self.nadir_min_radius = nadir_min_radius
-        self.cam_1_minimum_x_of_area_1 = cam_1_minimum_x_of_area_1
-        self.cam_1_maximum_x_of_area_1 = cam_1_maximum_x_of_area_1
-        self.cam_1_minimum_y_of_area_1 = cam_1_minimum_y_of_area_1
-        self.cam_1_maximum_y_of_area_1 = cam_1_maximum_y_of_area_1
-        self.cam_1_minimum_x_of_area_2 = cam_1_minimum_x_of_area_2
-        self.cam_1_maximum_x_of_area_2 = cam_1_maximum_x_of_area_2
-        self.cam_1_minimum_y_of_area_2 = cam_1_minimum_y_of_area_2
-        self.cam_1_maximum_y_of_area_2 = cam_1_maximum_y_of_area_2
-        self.cam_1_minimum_x_of_area_3 = cam_1_minimum_x_of_area_3
-        self.cam_1_maximum_x_of_area_3 = cam_1_maximum_x_of_area_3
-        self.cam_1_minimum_y_of_area_3 = cam_1_minimum_y_of_area_3
-        self.cam_1_maximum_y_of_area_3 = cam_1_maximum_y_of_area_3
-        self.cam_1_minimum_x_of_area_4 = cam_1_minimum_x_of_area_4
-        self.cam_1_maximum_x_of_area_4 = cam_1_maximum_x_of_area_4
-        self.cam_1_minimum_y_of_area_4 = cam_1_minimum_y_of_area_4
-        self.cam_1_maximum_y_of_area_4 = cam_1_maximum_y_of_area_4
-        self.cam_1_minimum_x_of_area_5 = cam_1_minimum_x_of_area_5
-        self.cam_1_maximum_x_of_area_5 = cam_1_maximum_x_of_area_5
-        self.cam_1_minimum_y_of_area_5 = cam_1_minimum_y_of_area_5
-        self.cam_1_maximum_y_of_area_5 = cam_1_maximum_y_of_area_5
-        self.cam_2_minimum_x_of_area_1 = cam_2_minimum_x_of_area_1
-        self.cam_2_maximum_x_of_area_1 = cam_2_maximum_x_of_area_1
-        self.cam_2_minimum_y_of_area_1 = cam_2_minimum_y_of_area_1
-        self.cam_2_maximum_y_of_area_1 = cam_2_maximum_y_of_area_1
-        self.cam_2_minimum_x_of_area_2 = cam_2_minimum_x_of_area_2
-        self.cam_2_maximum_x_of_area_2 = cam_2_maximum_x_of_area_2
-        self.cam_2_minimum_y_of_area_2 = cam_2_minimum_y_of_area_2
-        self.cam_2_maximum_y_of_area_2 = cam_2_maximum_y_of_area_2
-        self.cam_2_minimum_x_of_area_3 = cam_2_minimum_x_of_area_3
-        self.cam_2_maximum_x_of_area_3 = cam_2_maximum_x_of_area_3
-        self.cam_2_minimum_y_of_area_3 = cam_2_minimum_y_of_area_3
-        self.cam_2_maximum_y_of_area_3 = cam_2_maximum_y_of_area_3
-        self.cam_2_minimum_x_of_area_4 = cam_2_minimum_x_of_area_4
-        self.cam_2_maximum_x_of_area_4 = cam_2_maximum_x_of_area_4
-        self.cam_2_minimum_y_of_area_4 = cam_2_minimum_y_of_area_4
-        self.cam_2_maximum_y_of_area_4 = cam_2_maximum_y_of_area_4
-        self.cam_2_minimum_x_of_area_5 = cam_2_minimum_x_of_area_5
-        self.cam_2_maximum_x_of_area_5 = cam_2_maximum_x_of_area_5
-        self.cam_2_minimum_y_of_area_5 = cam_2_minimum_y_of_area_5
-        self.cam_2_maximum_y_of_area_5 = cam_2_maximum_y_of_area_5
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CubesenseConfiguration:
-        """The message in a frame of exactly 112 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.cam1_mounting_alpha,
-                self.cam1_mounting_beta,
-                self.cam1_mounting_gamma,
-                self.cam1_detection_threshold,
-                v7,
-                self.cam1_sensor_exposure_time,
-                self.cam1_boresight_x,
-                self.cam1_boresight_y,
-                self.cam2_mounting_alpha,
-                self.cam2_mounting_beta,
-                self.cam2_mounting_gamma,
-                self.cam2_detection_threshold,
-                v21,
-                self.cam2_sensor_exposure_time,
-                self.cam2_boresight_x,
-                self.cam2_boresight_y,
-                self.nadir_max_deviation_percentage,
-                self.nadir_max_bad_edges,
-                self.nadir_max_radius,
-                self.nadir_min_radius,
-                self.cam_1_minimum_x_of_area_1,
-                self.cam_1_maximum_x_of_area_1,
-                self.cam_1_minimum_y_of_area_1,
-                self.cam_1_maximum_y_of_area_1,
-                self.cam_1_minimum_x_of_area_2,
-                self.cam_1_maximum_x_of_area_2,
-                self.cam_1_minimum_y_of_area_2,
-                self.cam_1_maximum_y_of_area_2,
-                self.cam_1_minimum_x_of_area_3,
-                self.cam_1_maximum_x_of_area_3,
-                self.cam_1_minimum_y_of_area_3,
-                self.cam_1_maximum_y_of_area_3,
-                self.cam_1_minimum_x_of_area_4,
-                self.cam_1_maximum_x_of_area_4,
-                self.cam_1_minimum_y_of_area_4,
-                self.cam_1_maximum_y_of_area_4,
-                self.cam_1_minimum_x_of_area_5,
-                self.cam_1_maximum_x_of_area_5,
-                self.cam_1_minimum_y_of_area_5,
-                self.cam_1_maximum_y_of_area_5,
-                self.cam_2_minimum_x_of_area_1,
-                self.cam_2_maximum_x_of_area_1,
-                self.cam_2_minimum_y_of_area_1,
-                self.cam_2_maximum_y_of_area_1,
-                self.cam_2_minimum_x_of_area_2,
-                self.cam_2_maximum_x_of_area_2,
-                self.cam_2_minimum_y_of_area_2,
-                self.cam_2_maximum_y_of_area_2,
-                self.cam_2_minimum_x_of_area_3,
-                self.cam_2_maximum_x_of_area_3,
-                self.cam_2_minimum_y_of_area_3,
-                self.cam_2_maximum_y_of_area_3,
-                self.cam_2_minimum_x_of_area_4,
-                self.cam_2_maximum_x_of_area_4,
-                self.cam_2_minimum_y_of_area_4,
-                self.cam_2_maximum_y_of_area_4,
-                self.cam_2_minimum_x_of_area_5,
-                self.cam_2_maximum_x_of_area_5,
-                self.cam_2_minimum_y_of_area_5,
-                self.cam_2_maximum_y_of_area_5,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.cam1_sensor_auto_adjust_mode = _BITS_0[v7]
-        self.cam2_sensor_auto_adjust_mode = _BITS_0[v21]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v7 = _BYTES_0[self.cam1_sensor_auto_adjust_mode]
-            v21 = _BYTES_0[self.cam2_sensor_auto_adjust_mode]
-            return _pack(
-                self.cam1_mounting_alpha,
-                self.cam1_mounting_beta,
-                self.cam1_mounting_gamma,
-                self.cam1_detection_threshold,
-                v7,
-                self.cam1_sensor_exposure_time,
-                self.cam1_boresight_x,
-                self.cam1_boresight_y,
-                self.cam2_mounting_alpha,
-                self.cam2_mounting_beta,
-                self.cam2_mounting_gamma,
-                self.cam2_detection_threshold,
-                v21,
-                self.cam2_sensor_exposure_time,
-                self.cam2_boresight_x,
-                self.cam2_boresight_y,
-                self.nadir_max_deviation_percentage,
-                self.nadir_max_bad_edges,
-                self.nadir_max_radius,
-                self.nadir_min_radius,
-                self.cam_1_minimum_x_of_area_1,
-                self.cam_1_maximum_x_of_area_1,
-                self.cam_1_minimum_y_of_area_1,
-                self.cam_1_maximum_y_of_area_1,
-                self.cam_1_minimum_x_of_area_2,
-                self.cam_1_maximum_x_of_area_2,
-                self.cam_1_minimum_y_of_area_2,
-                self.cam_1_maximum_y_of_area_2,
-                self.cam_1_minimum_x_of_area_3,
-                self.cam_1_maximum_x_of_area_3,
-                self.cam_1_minimum_y_of_area_3,
-                self.cam_1_maximum_y_of_area_3,
-                self.cam_1_minimum_x_of_area_4,
-                self.cam_1_maximum_x_of_area_4,
-                self.cam_1_minimum_y_of_area_4,
-                self.cam_1_maximum_y_of_area_4,
-                self.cam_1_minimum_x_of_area_5,
-                self.cam_1_maximum_x_of_area_5,
-                self.cam_1_minimum_y_of_area_5,
-                self.cam_1_maximum_y_of_area_5,
-                self.cam_2_minimum_x_of_area_1,
-                self.cam_2_maximum_x_of_area_1,
-                self.cam_2_minimum_y_of_area_1,
-                self.cam_2_maximum_y_of_area_1,
-                self.cam_2_minimum_x_of_area_2,
-                self.cam_2_maximum_x_of_area_2,
-                self.cam_2_minimum_y_of_area_2,
-                self.cam_2_maximum_y_of_area_2,
-                self.cam_2_minimum_x_of_area_3,
-                self.cam_2_maximum_x_of_area_3,
-                self.cam_2_minimum_y_of_area_3,
-                self.cam_2_maximum_y_of_area_3,
-                self.cam_2_minimum_x_of_area_4,
-                self.cam_2_maximum_x_of_area_4,
-                self.cam_2_minimum_y_of_area_4,
-                self.cam_2_maximum_y_of_area_4,
-                self.cam_2_minimum_x_of_area_5,
-                self.cam_2_maximum_x_of_area_5,
-                self.cam_2_minimum_y_of_area_5,
-                self.cam_2_maximum_y_of_area_5,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def cam1_mounting_alpha_deg(self) -> float:
-        """Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.cam1_mounting_alpha / 100
-
-    @cam1_mounting_alpha_deg.setter
-    def cam1_mounting_alpha_deg(self, value: float) -> None:
-        self.cam1_mounting_alpha = _codec.raw_value(
-            value,
-            "cam1_mounting_alpha",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def cam1_mounting_beta_deg(self) -> float:
-        """Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.cam1_mounting_beta / 100
-
-    @cam1_mounting_beta_deg.setter
-    def cam1_mounting_beta_deg(self, value: float) -> None:
-        self.cam1_mounting_beta = _codec.raw_value(
-            value,
-            "cam1_mounting_beta",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def cam1_mounting_gamma_deg(self) -> float:
-        """Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.cam1_mounting_gamma / 100
-
-    @cam1_mounting_gamma_deg.setter
-    def cam1_mounting_gamma_deg(self, value: float) -> None:
-        self.cam1_mounting_gamma = _codec.raw_value(
-            value,
-            "cam1_mounting_gamma",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def cam1_boresight_x_pixels(self) -> float:
-        """Cam1 Boresight X in pixels: 0 to 655.35."""
-        return self.cam1_boresight_x / 100
-
-    @cam1_boresight_x_pixels.setter
-    def cam1_boresight_x_pixels(self, value: float) -> None:
-        self.cam1_boresight_x = _codec.raw_value(
-            value,
-            "cam1_boresight_x",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def cam1_boresight_y_pixels(self) -> float:
-        """Cam1 Boresight Y in pixels: 0 to 655.35."""
-        return self.cam1_boresight_y / 100
-
-    @cam1_boresight_y_pixels.setter
-    def cam1_boresight_y_pixels(self, value: float) -> None:
-        self.cam1_boresight_y = _codec.raw_value(
-            value,
-            "cam1_boresight_y",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def cam2_mounting_alpha_deg(self) -> float:
-        """Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.cam2_mounting_alpha / 100
-
-    @cam2_mounting_alpha_deg.setter
-    def cam2_mounting_alpha_deg(self, value: float) -> None:
-        self.cam2_mounting_alpha = _codec.raw_value(
-            value,
-            "cam2_mounting_alpha",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def cam2_mounting_beta_deg(self) -> float:
-        """Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.cam2_mounting_beta / 100
-
-    @cam2_mounting_beta_deg.setter
-    def cam2_mounting_beta_deg(self, value: float) -> None:
-        self.cam2_mounting_beta = _codec.raw_value(
-            value,
-            "cam2_mounting_beta",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def cam2_mounting_gamma_deg(self) -> float:
-        """Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.cam2_mounting_gamma / 100
-
-    @cam2_mounting_gamma_deg.setter
-    def cam2_mounting_gamma_deg(self, value: float) -> None:
-        self.cam2_mounting_gamma = _codec.raw_value(
-            value,
-            "cam2_mounting_gamma",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def cam2_boresight_x_pixels(self) -> float:
-        """Cam2 Boresight X in pixels: 0 to 655.35."""
-        return self.cam2_boresight_x / 100
-
-    @cam2_boresight_x_pixels.setter
-    def cam2_boresight_x_pixels(self, value: float) -> None:
-        self.cam2_boresight_x = _codec.raw_value(
-            value,
-            "cam2_boresight_x",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def cam2_boresight_y_pixels(self) -> float:
-        """Cam2 Boresight Y in pixels: 0 to 655.35."""
-        return self.cam2_boresight_y / 100
-
-    @cam2_boresight_y_pixels.setter
-    def cam2_boresight_y_pixels(self, value: float) -> None:
-        self.cam2_boresight_y = _codec.raw_value(
-            value,
-            "cam2_boresight_y",
-            (1, 0, 100),
-            0,
-            65535,
-        )

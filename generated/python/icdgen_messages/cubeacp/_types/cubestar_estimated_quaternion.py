@@ -5,29 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class CubestarEstimatedQuaternion(_base.Message):
     """CubeStar Estimated Quaternion: telemetry 230, 6 bytes. Table 173.
 
     Bit 63 of the log mask.
 
-    Note ACP-075 (open): Quaternions: the fourth component.
+    Note ACP-075 (open): Quaternions: the fourth component. Three of four components are
+    sent. The fourth follows up to its sign only, and which component is the scalar is
+    not said.
     """
-
-    __slots__ = (
-        "q0",
-        "q1",
-        "q2",
-    )
 
     NODE = "cubeacp"
     NAME = "CubeStar Estimated Quaternion"
@@ -36,126 +25,43 @@ class CubestarEstimatedQuaternion(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 173
-    FIELDS = (
-        _base.FieldInfo(
-            "q0",
-            "Q0",
-            0,
-            16,
-            "int",
-            physical="q0_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "q1",
-            "Q1",
-            16,
-            16,
-            "int",
-            physical="q1_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "q2",
-            "Q2",
-            32,
-            16,
-            "int",
-            physical="q2_physical",
-            scale=(1, 0, 10000),
-        ),
-    )
 
-    q0: int
+    q0: int = _base.field("Q0", 0, 16, "int", default=0)
     """Q0: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
 
     Of the attitude estimated by CubeStar, described as Q1.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names
+    and descriptions count differently. Q1 to Q3 agree with the other quaternions; if Q0
+    were the scalar, the third vector component would be missing.
     """
-    q1: int
+    q0_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Q0, as a physical value: -3.2768 to 3.2767."""
+    q0_micro: int = _base.whole(100, 0)
+    """Q0 in millionths, exact: -3276800 to 3276700."""
+
+    q1: int = _base.field("Q1", 16, 16, "int", default=0)
     """Q1: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Of the attitude estimated by CubeStar, described as Q2.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): see Q0.
     """
-    q2: int
+    q1_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Q1, as a physical value: -3.2768 to 3.2767."""
+    q1_micro: int = _base.whole(100, 0)
+    """Q1 in millionths, exact: -3276800 to 3276700."""
+
+    q2: int = _base.field("Q2", 32, 16, "int", default=0)
     """Q2: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Of the attitude estimated by CubeStar, described as Q3.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): see Q0.
     """
-
-    def __init__(
-        self,
-        *,
-        q0: int = 0,
-        q1: int = 0,
-        q2: int = 0,
-    ) -> None:
-        self.q0 = q0
-        self.q1 = q1
-        self.q2 = q2
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        q0_physical: float = 0.0,
-        q1_physical: float = 0.0,
-        q2_physical: float = 0.0,
-    ) -> CubestarEstimatedQuaternion:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.q0_physical = q0_physical
-        self.q1_physical = q1_physical
-        self.q2_physical = q2_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CubestarEstimatedQuaternion:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.q0, self.q1, self.q2 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.q0, self.q1, self.q2)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def q0_physical(self) -> float:
-        """Q0, as a physical value: -3.2768 to 3.2767."""
-        return self.q0 / 10000
-
-    @q0_physical.setter
-    def q0_physical(self, value: float) -> None:
-        self.q0 = _codec.raw_value(value, "q0", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def q1_physical(self) -> float:
-        """Q1, as a physical value: -3.2768 to 3.2767."""
-        return self.q1 / 10000
-
-    @q1_physical.setter
-    def q1_physical(self, value: float) -> None:
-        self.q1 = _codec.raw_value(value, "q1", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def q2_physical(self) -> float:
-        """Q2, as a physical value: -3.2768 to 3.2767."""
-        return self.q2 / 10000
-
-    @q2_physical.setter
-    def q2_physical(self, value: float) -> None:
-        self.q2 = _codec.raw_value(value, "q2", (1, 0, 10000), -32768, 32767)
+    q2_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Q2, as a physical value: -3.2768 to 3.2767."""
+    q2_micro: int = _base.whole(100, 0)
+    """Q2 in millionths, exact: -3276800 to 3276700."""

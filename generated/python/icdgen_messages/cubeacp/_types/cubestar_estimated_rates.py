@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class CubestarEstimatedRates(_base.Message):
     """CubeStar Estimated Rates: telemetry 229, 6 bytes. Table 172.
 
     Bit 62 of the log mask.
     """
-
-    __slots__ = (
-        "x_axis_rate",
-        "y_axis_rate",
-        "z_axis_rate",
-    )
 
     NODE = "cubeacp"
     NAME = "CubeStar Estimated Rates"
@@ -34,145 +21,43 @@ class CubestarEstimatedRates(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 172
-    FIELDS = (
-        _base.FieldInfo(
-            "x_axis_rate",
-            "x-Axis rate",
-            0,
-            16,
-            "int",
-            physical="x_axis_rate_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "y_axis_rate",
-            "y-Axis rate",
-            16,
-            16,
-            "int",
-            physical="y_axis_rate_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "z_axis_rate",
-            "z-Axis rate",
-            32,
-            16,
-            "int",
-            physical="z_axis_rate_physical",
-            scale=(1, 0, 10000),
-        ),
-    )
 
-    x_axis_rate: int
+    x_axis_rate: int = _base.field("x-Axis rate", 0, 16, "int", default=0)
     """x-Axis rate: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     to 3.2767.
 
     Estimated by CubeStar, about its own X axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given
+    without a unit. The other rates are in deg/s; rad/s would fit the range as well.
     """
-    y_axis_rate: int
+    x_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """x-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    x_axis_rate_micro: int = _base.whole(100, 0)
+    """x-Axis rate in millionths, exact: -3276800 to 3276700."""
+
+    y_axis_rate: int = _base.field("y-Axis rate", 16, 16, "int", default=0)
     """y-Axis rate: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     to 3.2767.
 
     Estimated by CubeStar, about its own Y axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): see x-Axis rate.
     """
-    z_axis_rate: int
+    y_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """y-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    y_axis_rate_micro: int = _base.whole(100, 0)
+    """y-Axis rate in millionths, exact: -3276800 to 3276700."""
+
+    z_axis_rate: int = _base.field("z-Axis rate", 32, 16, "int", default=0)
     """z-Axis rate: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     to 3.2767.
 
     Estimated by CubeStar, about its own Z axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): see x-Axis rate.
     """
-
-    def __init__(
-        self,
-        *,
-        x_axis_rate: int = 0,
-        y_axis_rate: int = 0,
-        z_axis_rate: int = 0,
-    ) -> None:
-        self.x_axis_rate = x_axis_rate
-        self.y_axis_rate = y_axis_rate
-        self.z_axis_rate = z_axis_rate
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        x_axis_rate_physical: float = 0.0,
-        y_axis_rate_physical: float = 0.0,
-        z_axis_rate_physical: float = 0.0,
-    ) -> CubestarEstimatedRates:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.x_axis_rate_physical = x_axis_rate_physical
-        self.y_axis_rate_physical = y_axis_rate_physical
-        self.z_axis_rate_physical = z_axis_rate_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CubestarEstimatedRates:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.x_axis_rate, self.y_axis_rate, self.z_axis_rate = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.x_axis_rate, self.y_axis_rate, self.z_axis_rate)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def x_axis_rate_physical(self) -> float:
-        """x-Axis rate, as a physical value: -3.2768 to 3.2767."""
-        return self.x_axis_rate / 10000
-
-    @x_axis_rate_physical.setter
-    def x_axis_rate_physical(self, value: float) -> None:
-        self.x_axis_rate = _codec.raw_value(
-            value,
-            "x_axis_rate",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def y_axis_rate_physical(self) -> float:
-        """y-Axis rate, as a physical value: -3.2768 to 3.2767."""
-        return self.y_axis_rate / 10000
-
-    @y_axis_rate_physical.setter
-    def y_axis_rate_physical(self, value: float) -> None:
-        self.y_axis_rate = _codec.raw_value(
-            value,
-            "y_axis_rate",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def z_axis_rate_physical(self) -> float:
-        """z-Axis rate, as a physical value: -3.2768 to 3.2767."""
-        return self.z_axis_rate / 10000
-
-    @z_axis_rate_physical.setter
-    def z_axis_rate_physical(self, value: float) -> None:
-        self.z_axis_rate = _codec.raw_value(
-            value,
-            "z_axis_rate",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
+    z_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """z-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    z_axis_rate_micro: int = _base.whole(100, 0)
+    """z-Axis rate in millionths, exact: -3276800 to 3276700."""

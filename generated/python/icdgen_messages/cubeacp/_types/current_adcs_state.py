@@ -5,42 +5,13 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .adcs_run_mode import AdcsRunMode
 from .asgp4_mode_select import Asgp4ModeSelect
 from .con_mode_select import ConModeSelect
 from .estim_mode_select import EstimModeSelect
 
-_STRUCT = struct.Struct("<6B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 4, EstimModeSelect), (4, 4, ConModeSelect))
-_BYTES_0 = _codec.Inverse(_BITS_0)
-_BITS_1 = _codec.bit_table(
-    (0, 2, AdcsRunMode),
-    (2, 2, Asgp4ModeSelect),
-    (4, 1, bool),
-    (5, 1, bool),
-    (6, 1, bool),
-    (7, 1, bool),
-)
-_BYTES_1 = _codec.Inverse(_BITS_1)
-_BITS_2 = _codec.bit_table(
-    (0, 1, bool),
-    (1, 1, bool),
-    (2, 1, bool),
-    (3, 1, bool),
-    (4, 1, bool),
-    (5, 1, bool),
-    (6, 1, bool),
-    (7, 1, bool),
-)
-_BYTES_2 = _codec.Inverse(_BITS_2)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class CurrentAdcsState(_base.Message):
     """Current ADCS State: telemetry 132, 6 bytes. Table 98.
 
@@ -49,57 +20,19 @@ class CurrentAdcsState(_base.Message):
     Bit 27 of the log mask.
 
     Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the
-    bootloader.
+    bootloader. A telecommand or request sent to the wrong program is taken for another
+    one.
 
-    Note ACP-057 (certain): ACP stands for two things.
+    Note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS
+    Control Program, the state frames have Attitude Control Processor.
 
-    Note ACP-059 (certain): Current ADCS State and ADCS State.
+    Note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called
+    Current ADCS State, and frame 190, which holds it and much more, ADCS State with the
+    description current ADCS state.
 
-    Note ACP-064 (open): Which flags are latched.
+    Note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but
+    the state frames do not tell latched flags from present states.
     """
-
-    __slots__ = (
-        "attitude_estimation_mode",
-        "control_mode",
-        "adcs_run_mode",
-        "asgp4_mode",
-        "cubecontrol_signal_enabled",
-        "cubecontrol_motor_enabled",
-        "cubesense1_enabled",
-        "cubesense2_enabled",
-        "cubewheel1_enabled",
-        "cubewheel2_enabled",
-        "cubewheel3_enabled",
-        "cubestar_enabled",
-        "gps_receiver_enabled",
-        "gps_lna_power_enabled",
-        "motor_driver_enabled",
-        "sun_is_above_local_horizon",
-        "cubesense1_communications_error",
-        "cubesense2_communications_error",
-        "cubecontrol_signal_communications_error",
-        "cubecontrol_motor_communications_error",
-        "cubewheel1_communications_error",
-        "cubewheel2_communications_error",
-        "cubewheel3_communications_error",
-        "cubestar_communications_error",
-        "magnetometer_range_error",
-        "cam1_sram_overcurrent_detected",
-        "cam1_3v3_overcurrent_detected",
-        "cam1_sensor_busy_error",
-        "cam1_sensor_detection_error",
-        "sun_sensor_range_error",
-        "cam2_sram_overcurrent_detected",
-        "cam2_3v3_overcurrent_detected",
-        "cam2_sensor_busy_error",
-        "cam2_sensor_detection_error",
-        "nadir_sensor_range_error",
-        "rate_sensor_range_error",
-        "wheel_speed_range_error",
-        "coarse_sun_sensor_error",
-        "star_tracker_match_error",
-        "star_tracker_overcurrent_detected",
-    )
 
     NODE = "cubeacp"
     NAME = "Current ADCS State"
@@ -108,573 +41,204 @@ class CurrentAdcsState(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 98
-    FIELDS = (
-        _base.FieldInfo(
-            "attitude_estimation_mode",
-            "Attitude Estimation Mode",
-            0,
-            4,
-            "enum",
-            enum=EstimModeSelect,
-        ),
-        _base.FieldInfo(
-            "control_mode",
-            "Control Mode",
-            4,
-            4,
-            "enum",
-            enum=ConModeSelect,
-        ),
-        _base.FieldInfo(
-            "adcs_run_mode",
-            "ADCS Run Mode",
-            8,
-            2,
-            "enum",
-            enum=AdcsRunMode,
-        ),
-        _base.FieldInfo("asgp4_mode", "ASGP4 Mode", 10, 2, "enum", enum=Asgp4ModeSelect),
-        _base.FieldInfo(
-            "cubecontrol_signal_enabled",
-            "CubeControl Signal Enabled",
-            12,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubecontrol_motor_enabled",
-            "CubeControl Motor Enabled",
-            13,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("cubesense1_enabled", "CubeSense1 Enabled", 14, 1, "bool"),
-        _base.FieldInfo("cubesense2_enabled", "CubeSense2 Enabled", 15, 1, "bool"),
-        _base.FieldInfo("cubewheel1_enabled", "CubeWheel1 Enabled", 16, 1, "bool"),
-        _base.FieldInfo("cubewheel2_enabled", "CubeWheel2 Enabled", 17, 1, "bool"),
-        _base.FieldInfo("cubewheel3_enabled", "CubeWheel3 Enabled", 18, 1, "bool"),
-        _base.FieldInfo("cubestar_enabled", "CubeStar Enabled", 19, 1, "bool"),
-        _base.FieldInfo("gps_receiver_enabled", "GPS Receiver Enabled", 20, 1, "bool"),
-        _base.FieldInfo("gps_lna_power_enabled", "GPS LNA Power Enabled", 21, 1, "bool"),
-        _base.FieldInfo("motor_driver_enabled", "Motor Driver Enabled", 22, 1, "bool"),
-        _base.FieldInfo(
-            "sun_is_above_local_horizon",
-            "Sun is Above Local Horizon",
-            23,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubesense1_communications_error",
-            "CubeSense1 Communications Error",
-            24,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubesense2_communications_error",
-            "CubeSense2 Communications Error",
-            25,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubecontrol_signal_communications_error",
-            "CubeControl Signal Communications Error",
-            26,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubecontrol_motor_communications_error",
-            "CubeControl Motor Communications Error",
-            27,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubewheel1_communications_error",
-            "CubeWheel1 Communications Error",
-            28,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubewheel2_communications_error",
-            "CubeWheel2 Communications Error",
-            29,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubewheel3_communications_error",
-            "CubeWheel3 Communications Error",
-            30,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubestar_communications_error",
-            "CubeStar Communications Error",
-            31,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "magnetometer_range_error",
-            "Magnetometer Range Error",
-            32,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam1_sram_overcurrent_detected",
-            "Cam1 SRAM Overcurrent Detected",
-            33,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam1_3v3_overcurrent_detected",
-            "Cam1 3V3 Overcurrent Detected",
-            34,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam1_sensor_busy_error",
-            "Cam1 Sensor Busy Error",
-            35,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam1_sensor_detection_error",
-            "Cam1 Sensor Detection Error",
-            36,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "sun_sensor_range_error",
-            "Sun Sensor Range Error",
-            37,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam2_sram_overcurrent_detected",
-            "Cam2 SRAM Overcurrent Detected",
-            38,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam2_3v3_overcurrent_detected",
-            "Cam2 3V3 Overcurrent Detected",
-            39,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam2_sensor_busy_error",
-            "Cam2 Sensor Busy Error",
-            40,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cam2_sensor_detection_error",
-            "Cam2 Sensor Detection Error",
-            41,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "nadir_sensor_range_error",
-            "Nadir Sensor Range Error",
-            42,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "rate_sensor_range_error",
-            "Rate Sensor Range Error",
-            43,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "wheel_speed_range_error",
-            "Wheel Speed Range Error",
-            44,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "coarse_sun_sensor_error",
-            "Coarse Sun Sensor Error",
-            45,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "star_tracker_match_error",
-            "StarTracker Match Error",
-            46,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "star_tracker_overcurrent_detected",
-            "Star Tracker Overcurrent Detected",
-            47,
-            1,
-            "bool",
-        ),
-    )
 
-    attitude_estimation_mode: EstimModeSelect
+    attitude_estimation_mode: EstimModeSelect = _base.field(
+        "Attitude Estimation Mode", 0, 4, "enum", default=EstimModeSelect.NO_ATTITUDE_ESTIMATION
+    )
     """Attitude Estimation Mode: bits 0 to 3."""
-    control_mode: ConModeSelect
+
+    control_mode: ConModeSelect = _base.field("Control Mode", 4, 4, "enum", default=ConModeSelect.NO_CONTROL)
     """Control Mode: bits 4 to 7."""
-    adcs_run_mode: AdcsRunMode
+
+    adcs_run_mode: AdcsRunMode = _base.field("ADCS Run Mode", 8, 2, "enum", default=AdcsRunMode.OFF)
     """ADCS Run Mode: bits 8 to 9."""
-    asgp4_mode: Asgp4ModeSelect
+
+    asgp4_mode: Asgp4ModeSelect = _base.field("ASGP4 Mode", 10, 2, "enum", default=Asgp4ModeSelect.OFF)
     """ASGP4 Mode: bits 10 to 11.
 
-    Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold
+    a mode with four values; the description has an enabled state.
     """
-    cubecontrol_signal_enabled: bool
+
+    cubecontrol_signal_enabled: bool = _base.field("CubeControl Signal Enabled", 12, 1, "bool", default=False)
     """CubeControl Signal Enabled: bit 12."""
-    cubecontrol_motor_enabled: bool
+
+    cubecontrol_motor_enabled: bool = _base.field("CubeControl Motor Enabled", 13, 1, "bool", default=False)
     """CubeControl Motor Enabled: bit 13."""
-    cubesense1_enabled: bool
+
+    cubesense1_enabled: bool = _base.field("CubeSense1 Enabled", 14, 1, "bool", default=False)
     """CubeSense1 Enabled: bit 14."""
-    cubesense2_enabled: bool
+
+    cubesense2_enabled: bool = _base.field("CubeSense2 Enabled", 15, 1, "bool", default=False)
     """CubeSense2 Enabled: bit 15."""
-    cubewheel1_enabled: bool
+
+    cubewheel1_enabled: bool = _base.field("CubeWheel1 Enabled", 16, 1, "bool", default=False)
     """CubeWheel1 Enabled: bit 16."""
-    cubewheel2_enabled: bool
+
+    cubewheel2_enabled: bool = _base.field("CubeWheel2 Enabled", 17, 1, "bool", default=False)
     """CubeWheel2 Enabled: bit 17."""
-    cubewheel3_enabled: bool
+
+    cubewheel3_enabled: bool = _base.field("CubeWheel3 Enabled", 18, 1, "bool", default=False)
     """CubeWheel3 Enabled: bit 18."""
-    cubestar_enabled: bool
+
+    cubestar_enabled: bool = _base.field("CubeStar Enabled", 19, 1, "bool", default=False)
     """CubeStar Enabled: bit 19.
 
-    Note ACP-063 (certain): Star tracker has four spellings.
+    Note ACP-063 (certain): Star tracker has four spellings. StarTracker Match Error
+    stands beside Star Tracker Overcurrent Detected; elsewhere CubeStar and star
+    tracking.
     """
-    gps_receiver_enabled: bool
+
+    gps_receiver_enabled: bool = _base.field("GPS Receiver Enabled", 20, 1, "bool", default=False)
     """GPS Receiver Enabled: bit 20.
 
-    Note ACP-062 (open): Power switches and enabled flags do not match.
+    Note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is
+    reported as Motor Driver Enabled, GPS Power switches the antenna amplifier and is
+    reported as GPS LNA Power Enabled. GPS Receiver Enabled has no switch.
     """
-    gps_lna_power_enabled: bool
+
+    gps_lna_power_enabled: bool = _base.field("GPS LNA Power Enabled", 21, 1, "bool", default=False)
     """GPS LNA Power Enabled: bit 21.
 
     Amplifier of the GPS antenna.
 
-    Note ACP-062 (open): Power switches and enabled flags do not match.
+    Note ACP-062 (open): see GPS Receiver Enabled.
     """
-    motor_driver_enabled: bool
+
+    motor_driver_enabled: bool = _base.field("Motor Driver Enabled", 22, 1, "bool", default=False)
     """Motor Driver Enabled: bit 22.
 
-    Note ACP-062 (open): Power switches and enabled flags do not match.
+    Note ACP-062 (open): see GPS Receiver Enabled.
     """
-    sun_is_above_local_horizon: bool
+
+    sun_is_above_local_horizon: bool = _base.field("Sun is Above Local Horizon", 23, 1, "bool", default=False)
     """Sun is Above Local Horizon: bit 23.
 
     The elevation is above 0.
     """
-    cubesense1_communications_error: bool
+
+    cubesense1_communications_error: bool = _base.field("CubeSense1 Communications Error", 24, 1, "bool", default=False)
     """CubeSense1 Communications Error: bit 24."""
-    cubesense2_communications_error: bool
+
+    cubesense2_communications_error: bool = _base.field("CubeSense2 Communications Error", 25, 1, "bool", default=False)
     """CubeSense2 Communications Error: bit 25."""
-    cubecontrol_signal_communications_error: bool
+
+    cubecontrol_signal_communications_error: bool = _base.field(
+        "CubeControl Signal Communications Error", 26, 1, "bool", default=False
+    )
     """CubeControl Signal Communications Error: bit 26."""
-    cubecontrol_motor_communications_error: bool
+
+    cubecontrol_motor_communications_error: bool = _base.field(
+        "CubeControl Motor Communications Error", 27, 1, "bool", default=False
+    )
     """CubeControl Motor Communications Error: bit 27."""
-    cubewheel1_communications_error: bool
+
+    cubewheel1_communications_error: bool = _base.field("CubeWheel1 Communications Error", 28, 1, "bool", default=False)
     """CubeWheel1 Communications Error: bit 28."""
-    cubewheel2_communications_error: bool
+
+    cubewheel2_communications_error: bool = _base.field("CubeWheel2 Communications Error", 29, 1, "bool", default=False)
     """CubeWheel2 Communications Error: bit 29."""
-    cubewheel3_communications_error: bool
+
+    cubewheel3_communications_error: bool = _base.field("CubeWheel3 Communications Error", 30, 1, "bool", default=False)
     """CubeWheel3 Communications Error: bit 30."""
-    cubestar_communications_error: bool
+
+    cubestar_communications_error: bool = _base.field("CubeStar Communications Error", 31, 1, "bool", default=False)
     """CubeStar Communications Error: bit 31."""
-    magnetometer_range_error: bool
+
+    magnetometer_range_error: bool = _base.field("Magnetometer Range Error", 32, 1, "bool", default=False)
     """Magnetometer Range Error: bit 32.
 
     About a measured field of 65 uT. Whether above or below is not printed.
 
-    Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
+    Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is
+    set when the field has a size 65 uT. Above is likely, since the field of the earth
+    hardly reaches it.
     """
-    cam1_sram_overcurrent_detected: bool
+
+    cam1_sram_overcurrent_detected: bool = _base.field("Cam1 SRAM Overcurrent Detected", 33, 1, "bool", default=False)
     """Cam1 SRAM Overcurrent Detected: bit 33."""
-    cam1_3v3_overcurrent_detected: bool
+
+    cam1_3v3_overcurrent_detected: bool = _base.field("Cam1 3V3 Overcurrent Detected", 34, 1, "bool", default=False)
     """Cam1 3V3 Overcurrent Detected: bit 34."""
-    cam1_sensor_busy_error: bool
+
+    cam1_sensor_busy_error: bool = _base.field("Cam1 Sensor Busy Error", 35, 1, "bool", default=False)
     """Cam1 Sensor Busy Error: bit 35.
 
     Cam1 sensor was still busy when the control loop began.
     """
-    cam1_sensor_detection_error: bool
+
+    cam1_sensor_detection_error: bool = _base.field("Cam1 Sensor Detection Error", 36, 1, "bool", default=False)
     """Cam1 Sensor Detection Error: bit 36.
 
     No angles could be computed. The target may have been out of view.
     """
-    sun_sensor_range_error: bool
+
+    sun_sensor_range_error: bool = _base.field("Sun Sensor Range Error", 37, 1, "bool", default=False)
     """Sun Sensor Range Error: bit 37.
 
     A detected sun angle was beyond +/-90 deg.
 
-    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag
+    each is for the sun and the nadir sensor; the cameras are numbered, and which of
+    them is which is a setting. With two sun sensors one flag serves both.
     """
-    cam2_sram_overcurrent_detected: bool
+
+    cam2_sram_overcurrent_detected: bool = _base.field("Cam2 SRAM Overcurrent Detected", 38, 1, "bool", default=False)
     """Cam2 SRAM Overcurrent Detected: bit 38."""
-    cam2_3v3_overcurrent_detected: bool
+
+    cam2_3v3_overcurrent_detected: bool = _base.field("Cam2 3V3 Overcurrent Detected", 39, 1, "bool", default=False)
     """Cam2 3V3 Overcurrent Detected: bit 39."""
-    cam2_sensor_busy_error: bool
+
+    cam2_sensor_busy_error: bool = _base.field("Cam2 Sensor Busy Error", 40, 1, "bool", default=False)
     """Cam2 Sensor Busy Error: bit 40.
 
     Cam2 sensor was still busy when the control loop began.
     """
-    cam2_sensor_detection_error: bool
+
+    cam2_sensor_detection_error: bool = _base.field("Cam2 Sensor Detection Error", 41, 1, "bool", default=False)
     """Cam2 Sensor Detection Error: bit 41.
 
     No angles could be computed. The target may have been out of view.
     """
-    nadir_sensor_range_error: bool
+
+    nadir_sensor_range_error: bool = _base.field("Nadir Sensor Range Error", 42, 1, "bool", default=False)
     """Nadir Sensor Range Error: bit 42.
 
     A detected nadir angle was beyond +/-60 deg.
 
-    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    Note ACP-061 (open): see Sun Sensor Range Error.
     """
-    rate_sensor_range_error: bool
+
+    rate_sensor_range_error: bool = _base.field("Rate Sensor Range Error", 43, 1, "bool", default=False)
     """Rate Sensor Range Error: bit 43.
 
     A measured body rate was beyond +/-20 deg/s.
     """
-    wheel_speed_range_error: bool
+
+    wheel_speed_range_error: bool = _base.field("Wheel Speed Range Error", 44, 1, "bool", default=False)
     """Wheel Speed Range Error: bit 44.
 
     A measured wheel speed was beyond +/-8500 rpm.
     """
-    coarse_sun_sensor_error: bool
+
+    coarse_sun_sensor_error: bool = _base.field("Coarse Sun Sensor Error", 45, 1, "bool", default=False)
     """Coarse Sun Sensor Error: bit 45.
 
     No vector could be computed. The sun may have been out of view.
     """
-    star_tracker_match_error: bool
+
+    star_tracker_match_error: bool = _base.field("StarTracker Match Error", 46, 1, "bool", default=False)
     """StarTracker Match Error: bit 46.
 
     Too few stars were matched.
 
-    Note ACP-063 (certain): Star tracker has four spellings.
+    Note ACP-063 (certain): see CubeStar Enabled.
     """
-    star_tracker_overcurrent_detected: bool
+
+    star_tracker_overcurrent_detected: bool = _base.field(
+        "Star Tracker Overcurrent Detected", 47, 1, "bool", default=False
+    )
     """Star Tracker Overcurrent Detected: bit 47.
 
-    Note ACP-063 (certain): Star tracker has four spellings.
+    Note ACP-063 (certain): see CubeStar Enabled.
     """
-
-    def __init__(
-        self,
-        *,
-        attitude_estimation_mode: EstimModeSelect = EstimModeSelect.NO_ATTITUDE_ESTIMATION,
-        control_mode: ConModeSelect = ConModeSelect.NO_CONTROL,
-        adcs_run_mode: AdcsRunMode = AdcsRunMode.OFF,
-        asgp4_mode: Asgp4ModeSelect = Asgp4ModeSelect.OFF,
-        cubecontrol_signal_enabled: bool = False,
-        cubecontrol_motor_enabled: bool = False,
-        cubesense1_enabled: bool = False,
-        cubesense2_enabled: bool = False,
-        cubewheel1_enabled: bool = False,
-        cubewheel2_enabled: bool = False,
-        cubewheel3_enabled: bool = False,
-        cubestar_enabled: bool = False,
-        gps_receiver_enabled: bool = False,
-        gps_lna_power_enabled: bool = False,
-        motor_driver_enabled: bool = False,
-        sun_is_above_local_horizon: bool = False,
-        cubesense1_communications_error: bool = False,
-        cubesense2_communications_error: bool = False,
-        cubecontrol_signal_communications_error: bool = False,
-        cubecontrol_motor_communications_error: bool = False,
-        cubewheel1_communications_error: bool = False,
-        cubewheel2_communications_error: bool = False,
-        cubewheel3_communications_error: bool = False,
-        cubestar_communications_error: bool = False,
-        magnetometer_range_error: bool = False,
-        cam1_sram_overcurrent_detected: bool = False,
-        cam1_3v3_overcurrent_detected: bool = False,
-        cam1_sensor_busy_error: bool = False,
-        cam1_sensor_detection_error: bool = False,
-        sun_sensor_range_error: bool = False,
-        cam2_sram_overcurrent_detected: bool = False,
-        cam2_3v3_overcurrent_detected: bool = False,
-        cam2_sensor_busy_error: bool = False,
-        cam2_sensor_detection_error: bool = False,
-        nadir_sensor_range_error: bool = False,
-        rate_sensor_range_error: bool = False,
-        wheel_speed_range_error: bool = False,
-        coarse_sun_sensor_error: bool = False,
-        star_tracker_match_error: bool = False,
-        star_tracker_overcurrent_detected: bool = False,
-    ) -> None:
-        self.attitude_estimation_mode = attitude_estimation_mode
-        self.control_mode = control_mode
-        self.adcs_run_mode = adcs_run_mode
-        self.asgp4_mode = asgp4_mode
-        self.cubecontrol_signal_enabled = cubecontrol_signal_enabled
-        self.cubecontrol_motor_enabled = cubecontrol_motor_enabled
-        self.cubesense1_enabled = cubesense1_enabled
-        self.cubesense2_enabled = cubesense2_enabled
-        self.cubewheel1_enabled = cubewheel1_enabled
-        self.cubewheel2_enabled = cubewheel2_enabled
-        self.cubewheel3_enabled = cubewheel3_enabled
-        self.cubestar_enabled = cubestar_enabled
-        self.gps_receiver_enabled = gps_receiver_enabled
-        self.gps_lna_power_enabled = gps_lna_power_enabled
-        self.motor_driver_enabled = motor_driver_enabled
-        self.sun_is_above_local_horizon = sun_is_above_local_horizon
-        self.cubesense1_communications_error = cubesense1_communications_error
-        self.cubesense2_communications_error = cubesense2_communications_error
-        self.cubecontrol_signal_communications_error = cubecontrol_signal_communications_error
-        self.cubecontrol_motor_communications_error = cubecontrol_motor_communications_error
-        self.cubewheel1_communications_error = cubewheel1_communications_error
-        self.cubewheel2_communications_error = cubewheel2_communications_error
-        self.cubewheel3_communications_error = cubewheel3_communications_error
-        self.cubestar_communications_error = cubestar_communications_error
-        self.magnetometer_range_error = magnetometer_range_error
-        self.cam1_sram_overcurrent_detected = cam1_sram_overcurrent_detected
-        self.cam1_3v3_overcurrent_detected = cam1_3v3_overcurrent_detected
-        self.cam1_sensor_busy_error = cam1_sensor_busy_error
-        self.cam1_sensor_detection_error = cam1_sensor_detection_error
-        self.sun_sensor_range_error = sun_sensor_range_error
-        self.cam2_sram_overcurrent_detected = cam2_sram_overcurrent_detected
-        self.cam2_3v3_overcurrent_detected = cam2_3v3_overcurrent_detected
-        self.cam2_sensor_busy_error = cam2_sensor_busy_error
-        self.cam2_sensor_detection_error = cam2_sensor_detection_error
-        self.nadir_sensor_range_error = nadir_sensor_range_error
-        self.rate_sensor_range_error = rate_sensor_range_error
-        self.wheel_speed_range_error = wheel_speed_range_error
-        self.coarse_sun_sensor_error = coarse_sun_sensor_error
-        self.star_tracker_match_error = star_tracker_match_error
-        self.star_tracker_overcurrent_detected = star_tracker_overcurrent_detected
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CurrentAdcsState:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, v1, v2, v3, v4, v5 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.attitude_estimation_mode, self.control_mode = _BITS_0[v0]
-        (
-            self.adcs_run_mode,
-            self.asgp4_mode,
-            self.cubecontrol_signal_enabled,
-            self.cubecontrol_motor_enabled,
-            self.cubesense1_enabled,
-            self.cubesense2_enabled,
-        ) = _BITS_1[v1]
-        (
-            self.cubewheel1_enabled,
-            self.cubewheel2_enabled,
-            self.cubewheel3_enabled,
-            self.cubestar_enabled,
-            self.gps_receiver_enabled,
-            self.gps_lna_power_enabled,
-            self.motor_driver_enabled,
-            self.sun_is_above_local_horizon,
-        ) = _BITS_2[v2]
-        (
-            self.cubesense1_communications_error,
-            self.cubesense2_communications_error,
-            self.cubecontrol_signal_communications_error,
-            self.cubecontrol_motor_communications_error,
-            self.cubewheel1_communications_error,
-            self.cubewheel2_communications_error,
-            self.cubewheel3_communications_error,
-            self.cubestar_communications_error,
-        ) = _BITS_2[v3]
-        (
-            self.magnetometer_range_error,
-            self.cam1_sram_overcurrent_detected,
-            self.cam1_3v3_overcurrent_detected,
-            self.cam1_sensor_busy_error,
-            self.cam1_sensor_detection_error,
-            self.sun_sensor_range_error,
-            self.cam2_sram_overcurrent_detected,
-            self.cam2_3v3_overcurrent_detected,
-        ) = _BITS_2[v4]
-        (
-            self.cam2_sensor_busy_error,
-            self.cam2_sensor_detection_error,
-            self.nadir_sensor_range_error,
-            self.rate_sensor_range_error,
-            self.wheel_speed_range_error,
-            self.coarse_sun_sensor_error,
-            self.star_tracker_match_error,
-            self.star_tracker_overcurrent_detected,
-        ) = _BITS_2[v5]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.attitude_estimation_mode, self.control_mode]
-            v1 = _BYTES_1[
-                self.adcs_run_mode,
-                self.asgp4_mode,
-                self.cubecontrol_signal_enabled,
-                self.cubecontrol_motor_enabled,
-                self.cubesense1_enabled,
-                self.cubesense2_enabled,
-            ]
-            v2 = _BYTES_2[
-                self.cubewheel1_enabled,
-                self.cubewheel2_enabled,
-                self.cubewheel3_enabled,
-                self.cubestar_enabled,
-                self.gps_receiver_enabled,
-                self.gps_lna_power_enabled,
-                self.motor_driver_enabled,
-                self.sun_is_above_local_horizon,
-            ]
-            v3 = _BYTES_2[
-                self.cubesense1_communications_error,
-                self.cubesense2_communications_error,
-                self.cubecontrol_signal_communications_error,
-                self.cubecontrol_motor_communications_error,
-                self.cubewheel1_communications_error,
-                self.cubewheel2_communications_error,
-                self.cubewheel3_communications_error,
-                self.cubestar_communications_error,
-            ]
-            v4 = _BYTES_2[
-                self.magnetometer_range_error,
-                self.cam1_sram_overcurrent_detected,
-                self.cam1_3v3_overcurrent_detected,
-                self.cam1_sensor_busy_error,
-                self.cam1_sensor_detection_error,
-                self.sun_sensor_range_error,
-                self.cam2_sram_overcurrent_detected,
-                self.cam2_3v3_overcurrent_detected,
-            ]
-            v5 = _BYTES_2[
-                self.cam2_sensor_busy_error,
-                self.cam2_sensor_detection_error,
-                self.nadir_sensor_range_error,
-                self.rate_sensor_range_error,
-                self.wheel_speed_range_error,
-                self.coarse_sun_sensor_error,
-                self.star_tracker_match_error,
-                self.star_tracker_overcurrent_detected,
-            ]
-            return _pack(v0, v1, v2, v3, v4, v5)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

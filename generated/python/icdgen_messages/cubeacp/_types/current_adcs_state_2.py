@@ -5,40 +5,10 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .mag_mode_val import MagModeVal
 
-_STRUCT = struct.Struct("<3B3x")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table(
-    (0, 1, bool),
-    (1, 1, bool),
-    (2, 1, bool),
-    (3, 1, bool),
-    (4, 2, MagModeVal),
-    (6, 1, bool),
-    (7, 1, bool),
-)
-_BYTES_0 = _codec.Inverse(_BITS_0)
-_BITS_1 = _codec.bit_table(
-    (0, 1, bool),
-    (1, 1, bool),
-    (2, 1, bool),
-    (3, 1, bool),
-    (4, 1, bool),
-    (5, 1, bool),
-    (6, 1, bool),
-    (7, 1, bool),
-)
-_BYTES_1 = _codec.Inverse(_BITS_1)
-_BITS_2 = _codec.bit_table((0, 1, bool), (1, 1, bool))
-_BYTES_2 = _codec.Inverse(_BITS_2)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class CurrentAdcsState2(_base.Message):
     """Current ADCS State 2: telemetry 224, 6 bytes. Table 169.
 
@@ -47,31 +17,15 @@ class CurrentAdcsState2(_base.Message):
     Bit 61 of the log mask.
 
     Erratum ACP-120 (open): Current ADCS State 2: 6 bytes announced, 18 bits described.
+    More than half of the frame is not explained. It is held as reserved, here and where
+    frame 190 repeats it.
 
-    Note ACP-057 (certain): ACP stands for two things.
+    Note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS
+    Control Program, the state frames have Attitude Control Processor.
 
-    Note ACP-064 (open): Which flags are latched.
+    Note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but
+    the state frames do not tell latched flags from present states.
     """
-
-    __slots__ = (
-        "orbit_parameters_are_invalid",
-        "configuration_is_invalid",
-        "control_mode_change_is_not_allowed",
-        "estimator_change_is_not_allowed",
-        "current_magnetometer_sampling_mode",
-        "magnetic_field_size_mismatch",
-        "node_recovery_error",
-        "cubesense1_runtime_error",
-        "cubesense2_runtime_error",
-        "cubecontrol_signal_runtime_error",
-        "cubecontrol_motor_runtime_error",
-        "cubewheel1_runtime_error",
-        "cubewheel2_runtime_error",
-        "cubewheel3_runtime_error",
-        "cubestar_runtime_error",
-        "magnetometer_error",
-        "rate_sensor_failure",
-    )
 
     NODE = "cubeacp"
     NAME = "Current ADCS State 2"
@@ -80,265 +34,92 @@ class CurrentAdcsState2(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 169
-    FIELDS = (
-        _base.FieldInfo(
-            "orbit_parameters_are_invalid",
-            "Orbit Parameters are Invalid",
-            0,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "configuration_is_invalid",
-            "Configuration is Invalid",
-            1,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "control_mode_change_is_not_allowed",
-            "Control Mode Change is not allowed",
-            2,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "estimator_change_is_not_allowed",
-            "Estimator Change is not allowed",
-            3,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "current_magnetometer_sampling_mode",
-            "Current Magnetometer Sampling Mode",
-            4,
-            2,
-            "enum",
-            enum=MagModeVal,
-        ),
-        _base.FieldInfo(
-            "magnetic_field_size_mismatch",
-            "Modelled and measured magnetic field differs in size",
-            6,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("node_recovery_error", "Node Recovery Error", 7, 1, "bool"),
-        _base.FieldInfo(
-            "cubesense1_runtime_error",
-            "CubeSense1 Runtime Error",
-            8,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubesense2_runtime_error",
-            "CubeSense2 Runtime Error",
-            9,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubecontrol_signal_runtime_error",
-            "CubeControl Signal Runtime Error",
-            10,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubecontrol_motor_runtime_error",
-            "CubeControl Motor Runtime Error",
-            11,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubewheel1_runtime_error",
-            "CubeWheel1 Runtime Error",
-            12,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubewheel2_runtime_error",
-            "CubeWheel2 Runtime Error",
-            13,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubewheel3_runtime_error",
-            "CubeWheel3 Runtime Error",
-            14,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "cubestar_runtime_error",
-            "CubeStar Runtime Error",
-            15,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("magnetometer_error", "Magnetometer Error", 16, 1, "bool"),
-        _base.FieldInfo("rate_sensor_failure", "Rate Sensor Failure", 17, 1, "bool"),
-    )
 
-    orbit_parameters_are_invalid: bool
+    orbit_parameters_are_invalid: bool = _base.field("Orbit Parameters are Invalid", 0, 1, "bool", default=False)
     """Orbit Parameters are Invalid: bit 0.
 
     A parameter is out of bounds, or the SGP4 propagator could not start from them.
 
-    Note ACP-104 (open): Orbit parameter flag has two reasons.
+    Note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds,
+    or a propagator that failed to start, are told as two sentences for one bit.
     """
-    configuration_is_invalid: bool
+
+    configuration_is_invalid: bool = _base.field("Configuration is Invalid", 1, 1, "bool", default=False)
     """Configuration is Invalid: bit 1.
 
     Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at
     least one CSS.
 
-    Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
+    Note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames
+    differ by a letter in the description, and principle stands for principal twice in
+    each.
     """
-    control_mode_change_is_not_allowed: bool
+
+    control_mode_change_is_not_allowed: bool = _base.field(
+        "Control Mode Change is not allowed", 2, 1, "bool", default=False
+    )
     """Control Mode Change is not allowed: bit 2.
 
     The mode asked for needs another estimator, or Y-momentum was asked for outside
     steady-state Y-Thomson.
     """
-    estimator_change_is_not_allowed: bool
+
+    estimator_change_is_not_allowed: bool = _base.field("Estimator Change is not allowed", 3, 1, "bool", default=False)
     """Estimator Change is not allowed: bit 3.
 
     The estimation mode asked for does not suit the current control mode.
     """
-    current_magnetometer_sampling_mode: MagModeVal
+
+    current_magnetometer_sampling_mode: MagModeVal = _base.field(
+        "Current Magnetometer Sampling Mode", 4, 2, "enum", default=MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL
+    )
     """Current Magnetometer Sampling Mode: bits 4 to 5."""
-    magnetic_field_size_mismatch: bool
+
+    magnetic_field_size_mismatch: bool = _base.field(
+        "Modelled and measured magnetic field differs in size", 6, 1, "bool", default=False
+    )
     """Modelled and measured magnetic field differs in size: bit 6.
 
     By more than 5000 nT.
     """
-    node_recovery_error: bool
+
+    node_recovery_error: bool = _base.field("Node Recovery Error", 7, 1, "bool", default=False)
     """Node Recovery Error: bit 7.
 
     An ADCS node could not be recovered by repeated resets.
     """
-    cubesense1_runtime_error: bool
+
+    cubesense1_runtime_error: bool = _base.field("CubeSense1 Runtime Error", 8, 1, "bool", default=False)
     """CubeSense1 Runtime Error: bit 8."""
-    cubesense2_runtime_error: bool
+
+    cubesense2_runtime_error: bool = _base.field("CubeSense2 Runtime Error", 9, 1, "bool", default=False)
     """CubeSense2 Runtime Error: bit 9."""
-    cubecontrol_signal_runtime_error: bool
+
+    cubecontrol_signal_runtime_error: bool = _base.field(
+        "CubeControl Signal Runtime Error", 10, 1, "bool", default=False
+    )
     """CubeControl Signal Runtime Error: bit 10."""
-    cubecontrol_motor_runtime_error: bool
+
+    cubecontrol_motor_runtime_error: bool = _base.field("CubeControl Motor Runtime Error", 11, 1, "bool", default=False)
     """CubeControl Motor Runtime Error: bit 11."""
-    cubewheel1_runtime_error: bool
+
+    cubewheel1_runtime_error: bool = _base.field("CubeWheel1 Runtime Error", 12, 1, "bool", default=False)
     """CubeWheel1 Runtime Error: bit 12."""
-    cubewheel2_runtime_error: bool
+
+    cubewheel2_runtime_error: bool = _base.field("CubeWheel2 Runtime Error", 13, 1, "bool", default=False)
     """CubeWheel2 Runtime Error: bit 13."""
-    cubewheel3_runtime_error: bool
+
+    cubewheel3_runtime_error: bool = _base.field("CubeWheel3 Runtime Error", 14, 1, "bool", default=False)
     """CubeWheel3 Runtime Error: bit 14."""
-    cubestar_runtime_error: bool
+
+    cubestar_runtime_error: bool = _base.field("CubeStar Runtime Error", 15, 1, "bool", default=False)
     """CubeStar Runtime Error: bit 15."""
-    magnetometer_error: bool
+
+    magnetometer_error: bool = _base.field("Magnetometer Error", 16, 1, "bool", default=False)
     """Magnetometer Error: bit 16.
 
     The magnetometer failed.
     """
-    rate_sensor_failure: bool
+
+    rate_sensor_failure: bool = _base.field("Rate Sensor Failure", 17, 1, "bool", default=False)
     """Rate Sensor Failure: bit 17."""
-
-    def __init__(
-        self,
-        *,
-        orbit_parameters_are_invalid: bool = False,
-        configuration_is_invalid: bool = False,
-        control_mode_change_is_not_allowed: bool = False,
-        estimator_change_is_not_allowed: bool = False,
-        current_magnetometer_sampling_mode: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
-        magnetic_field_size_mismatch: bool = False,
-        node_recovery_error: bool = False,
-        cubesense1_runtime_error: bool = False,
-        cubesense2_runtime_error: bool = False,
-        cubecontrol_signal_runtime_error: bool = False,
-        cubecontrol_motor_runtime_error: bool = False,
-        cubewheel1_runtime_error: bool = False,
-        cubewheel2_runtime_error: bool = False,
-        cubewheel3_runtime_error: bool = False,
-        cubestar_runtime_error: bool = False,
-        magnetometer_error: bool = False,
-        rate_sensor_failure: bool = False,
-    ) -> None:
-        self.orbit_parameters_are_invalid = orbit_parameters_are_invalid
-        self.configuration_is_invalid = configuration_is_invalid
-        self.control_mode_change_is_not_allowed = control_mode_change_is_not_allowed
-        self.estimator_change_is_not_allowed = estimator_change_is_not_allowed
-        self.current_magnetometer_sampling_mode = current_magnetometer_sampling_mode
-        self.magnetic_field_size_mismatch = magnetic_field_size_mismatch
-        self.node_recovery_error = node_recovery_error
-        self.cubesense1_runtime_error = cubesense1_runtime_error
-        self.cubesense2_runtime_error = cubesense2_runtime_error
-        self.cubecontrol_signal_runtime_error = cubecontrol_signal_runtime_error
-        self.cubecontrol_motor_runtime_error = cubecontrol_motor_runtime_error
-        self.cubewheel1_runtime_error = cubewheel1_runtime_error
-        self.cubewheel2_runtime_error = cubewheel2_runtime_error
-        self.cubewheel3_runtime_error = cubewheel3_runtime_error
-        self.cubestar_runtime_error = cubestar_runtime_error
-        self.magnetometer_error = magnetometer_error
-        self.rate_sensor_failure = rate_sensor_failure
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CurrentAdcsState2:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, v1, v2 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        (
-            self.orbit_parameters_are_invalid,
-            self.configuration_is_invalid,
-            self.control_mode_change_is_not_allowed,
-            self.estimator_change_is_not_allowed,
-            self.current_magnetometer_sampling_mode,
-            self.magnetic_field_size_mismatch,
-            self.node_recovery_error,
-        ) = _BITS_0[v0]
-        (
-            self.cubesense1_runtime_error,
-            self.cubesense2_runtime_error,
-            self.cubecontrol_signal_runtime_error,
-            self.cubecontrol_motor_runtime_error,
-            self.cubewheel1_runtime_error,
-            self.cubewheel2_runtime_error,
-            self.cubewheel3_runtime_error,
-            self.cubestar_runtime_error,
-        ) = _BITS_1[v1]
-        self.magnetometer_error, self.rate_sensor_failure = _BITS_2[v2]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[
-                self.orbit_parameters_are_invalid,
-                self.configuration_is_invalid,
-                self.control_mode_change_is_not_allowed,
-                self.estimator_change_is_not_allowed,
-                self.current_magnetometer_sampling_mode,
-                self.magnetic_field_size_mismatch,
-                self.node_recovery_error,
-            ]
-            v1 = _BYTES_1[
-                self.cubesense1_runtime_error,
-                self.cubesense2_runtime_error,
-                self.cubecontrol_signal_runtime_error,
-                self.cubecontrol_motor_runtime_error,
-                self.cubewheel1_runtime_error,
-                self.cubewheel2_runtime_error,
-                self.cubewheel3_runtime_error,
-                self.cubestar_runtime_error,
-            ]
-            v2 = _BYTES_2[self.magnetometer_error, self.rate_sensor_failure]
-            return _pack(v0, v1, v2)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

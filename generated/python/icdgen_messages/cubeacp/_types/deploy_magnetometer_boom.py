@@ -5,28 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class DeployMagnetometerBoom(_base.Message):
     """Deploy Magnetometer Boom: telecommand 7, 1 byte. Table 73.
 
     Dangerous: The boom stays deployed.
 
     Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the
-    bootloader.
+    bootloader. A telecommand or request sent to the wrong program is taken for another
+    one.
     """
-
-    __slots__ = (
-        "timeout",
-    )
 
     NODE = "cubeacp"
     NAME = "Deploy Magnetometer Boom"
@@ -35,38 +25,13 @@ class DeployMagnetometerBoom(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 73
-    FIELDS = (
-        _base.FieldInfo("timeout", "Timeout", 0, 8, "uint", unit="s"),
-    )
 
-    timeout: int
+    timeout: int = _base.field("Timeout", 0, 8, "uint", default=0, unit="s")
     """Timeout: bits 0 to 7, raw 0 to 255, in s.
 
     Of the deployment actuation.
 
-    Note ACP-016 (open): Deployment timeout: range and default.
+    Note ACP-016 (open): Deployment timeout: range and default. The field has 8 bits of
+    seconds; whether 0 means none, for ever or a default is not said. The telecommand
+    has no magic number, unlike a reset.
     """
-
-    def __init__(
-        self,
-        *,
-        timeout: int = 0,
-    ) -> None:
-        self.timeout = timeout
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> DeployMagnetometerBoom:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (self.timeout,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.timeout)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class EcefPosition(_base.Message):
     """ECEF Position: telemetry 219, 6 bytes. Table 166.
 
     Bit 34 of the log mask.
     """
-
-    __slots__ = (
-        "ecef_position_x",
-        "ecef_position_y",
-        "ecef_position_z",
-    )
 
     NODE = "cubeacp"
     NAME = "ECEF Position"
@@ -34,66 +21,32 @@ class EcefPosition(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 166
-    FIELDS = (
-        _base.FieldInfo("ecef_position_x", "ECEF Position X", 0, 16, "int"),
-        _base.FieldInfo("ecef_position_y", "ECEF Position Y", 16, 16, "int"),
-        _base.FieldInfo("ecef_position_z", "ECEF Position Z", 32, 16, "int"),
-    )
 
-    ecef_position_x: int
+    ecef_position_x: int = _base.field("ECEF Position X", 0, 16, "int", default=0)
     """ECEF Position X: bits 0 to 15, raw -32768 to 32767.
 
-    Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    Erratum ACP-098 (likely): ECEF position: 16 bits in metres. In metres the field
+    reaches 32.767 km, a position some 7000 km. A factor is missing; 0.25 km as in the
+    inertial position is one possibility, km another. No unit is held, so nothing is
+    converted.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z
+    have 16 bits in the state frames and 32 bits in the GPS frames and the simulated
+    data, with the same name, description and unit.
     """
-    ecef_position_y: int
+
+    ecef_position_y: int = _base.field("ECEF Position Y", 16, 16, "int", default=0)
     """ECEF Position Y: bits 16 to 31, raw -32768 to 32767.
 
-    Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    Erratum ACP-098 (likely): see ECEF Position X.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
-    ecef_position_z: int
+
+    ecef_position_z: int = _base.field("ECEF Position Z", 32, 16, "int", default=0)
     """ECEF Position Z: bits 32 to 47, raw -32768 to 32767.
 
-    Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    Erratum ACP-098 (likely): see ECEF Position X.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
-
-    def __init__(
-        self,
-        *,
-        ecef_position_x: int = 0,
-        ecef_position_y: int = 0,
-        ecef_position_z: int = 0,
-    ) -> None:
-        self.ecef_position_x = ecef_position_x
-        self.ecef_position_y = ecef_position_y
-        self.ecef_position_z = ecef_position_z
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> EcefPosition:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.ecef_position_x,
-                self.ecef_position_y,
-                self.ecef_position_z,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.ecef_position_x,
-                self.ecef_position_y,
-                self.ecef_position_z,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class EstimatedAngularRates(_base.Message):
     """Estimated Angular Rates: telemetry 147, 6 bytes. Table 103.
 
@@ -23,12 +16,6 @@ class EstimatedAngularRates(_base.Message):
     Bit 30 of the log mask.
     """
 
-    __slots__ = (
-        "estimated_x_angular_rate",
-        "estimated_y_angular_rate",
-        "estimated_z_angular_rate",
-    )
-
     NODE = "cubeacp"
     NAME = "Estimated Angular Rates"
     KIND = "telemetry"
@@ -36,144 +23,30 @@ class EstimatedAngularRates(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 103
-    FIELDS = (
-        _base.FieldInfo(
-            "estimated_x_angular_rate",
-            "Estimated X Angular Rate",
-            0,
-            16,
-            "int",
-            unit="deg/s",
-            physical="estimated_x_angular_rate_deg_per_s",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "estimated_y_angular_rate",
-            "Estimated Y Angular Rate",
-            16,
-            16,
-            "int",
-            unit="deg/s",
-            physical="estimated_y_angular_rate_deg_per_s",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "estimated_z_angular_rate",
-            "Estimated Z Angular Rate",
-            32,
-            16,
-            "int",
-            unit="deg/s",
-            physical="estimated_z_angular_rate_deg_per_s",
-            scale=(1, 0, 100),
-        ),
-    )
 
-    estimated_x_angular_rate: int
+    estimated_x_angular_rate: int = _base.field("Estimated X Angular Rate", 0, 16, "int", default=0, unit="deg/s")
     """Estimated X Angular Rate: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 deg/s.
     """
-    estimated_y_angular_rate: int
+    estimated_x_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
+    """Estimated X Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_x_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated X Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
+
+    estimated_y_angular_rate: int = _base.field("Estimated Y Angular Rate", 16, 16, "int", default=0, unit="deg/s")
     """Estimated Y Angular Rate: bits 16 to 31, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 deg/s.
     """
-    estimated_z_angular_rate: int
+    estimated_y_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
+    """Estimated Y Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_y_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated Y Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
+
+    estimated_z_angular_rate: int = _base.field("Estimated Z Angular Rate", 32, 16, "int", default=0, unit="deg/s")
     """Estimated Z Angular Rate: bits 32 to 47, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 deg/s.
     """
-
-    def __init__(
-        self,
-        *,
-        estimated_x_angular_rate: int = 0,
-        estimated_y_angular_rate: int = 0,
-        estimated_z_angular_rate: int = 0,
-    ) -> None:
-        self.estimated_x_angular_rate = estimated_x_angular_rate
-        self.estimated_y_angular_rate = estimated_y_angular_rate
-        self.estimated_z_angular_rate = estimated_z_angular_rate
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        estimated_x_angular_rate_deg_per_s: float = 0.0,
-        estimated_y_angular_rate_deg_per_s: float = 0.0,
-        estimated_z_angular_rate_deg_per_s: float = 0.0,
-    ) -> EstimatedAngularRates:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.estimated_x_angular_rate_deg_per_s = estimated_x_angular_rate_deg_per_s
-        self.estimated_y_angular_rate_deg_per_s = estimated_y_angular_rate_deg_per_s
-        self.estimated_z_angular_rate_deg_per_s = estimated_z_angular_rate_deg_per_s
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> EstimatedAngularRates:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.estimated_x_angular_rate,
-                self.estimated_y_angular_rate,
-                self.estimated_z_angular_rate,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.estimated_x_angular_rate,
-                self.estimated_y_angular_rate,
-                self.estimated_z_angular_rate,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def estimated_x_angular_rate_deg_per_s(self) -> float:
-        """Estimated X Angular Rate in deg/s: -327.68 to 327.67."""
-        return self.estimated_x_angular_rate / 100
-
-    @estimated_x_angular_rate_deg_per_s.setter
-    def estimated_x_angular_rate_deg_per_s(self, value: float) -> None:
-        self.estimated_x_angular_rate = _codec.raw_value(
-            value,
-            "estimated_x_angular_rate",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_y_angular_rate_deg_per_s(self) -> float:
-        """Estimated Y Angular Rate in deg/s: -327.68 to 327.67."""
-        return self.estimated_y_angular_rate / 100
-
-    @estimated_y_angular_rate_deg_per_s.setter
-    def estimated_y_angular_rate_deg_per_s(self, value: float) -> None:
-        self.estimated_y_angular_rate = _codec.raw_value(
-            value,
-            "estimated_y_angular_rate",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_z_angular_rate_deg_per_s(self) -> float:
-        """Estimated Z Angular Rate in deg/s: -327.68 to 327.67."""
-        return self.estimated_z_angular_rate / 100
-
-    @estimated_z_angular_rate_deg_per_s.setter
-    def estimated_z_angular_rate_deg_per_s(self, value: float) -> None:
-        self.estimated_z_angular_rate = _codec.raw_value(
-            value,
-            "estimated_z_angular_rate",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
+    estimated_z_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
+    """Estimated Z Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_z_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated Z Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""

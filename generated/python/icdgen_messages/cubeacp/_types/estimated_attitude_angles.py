@@ -5,29 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class EstimatedAttitudeAngles(_base.Message):
     """Estimated Attitude Angles: telemetry 146, 6 bytes. Table 102.
 
     Bit 28 of the log mask.
 
-    Note ACP-066 (open): Attitude angles: order of rotation and frame.
+    Note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and
+    yaw need a sequence and a reference. Neither is given, for estimated or for
+    commanded angles.
     """
-
-    __slots__ = (
-        "estimated_roll_angle",
-        "estimated_pitch_angle",
-        "estimated_yaw_angle",
-    )
 
     NODE = "cubeacp"
     NAME = "Estimated Attitude Angles"
@@ -36,144 +25,30 @@ class EstimatedAttitudeAngles(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 102
-    FIELDS = (
-        _base.FieldInfo(
-            "estimated_roll_angle",
-            "Estimated Roll Angle",
-            0,
-            16,
-            "int",
-            unit="deg",
-            physical="estimated_roll_angle_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "estimated_pitch_angle",
-            "Estimated Pitch Angle",
-            16,
-            16,
-            "int",
-            unit="deg",
-            physical="estimated_pitch_angle_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "estimated_yaw_angle",
-            "Estimated Yaw Angle",
-            32,
-            16,
-            "int",
-            unit="deg",
-            physical="estimated_yaw_angle_deg",
-            scale=(1, 0, 100),
-        ),
-    )
 
-    estimated_roll_angle: int
+    estimated_roll_angle: int = _base.field("Estimated Roll Angle", 0, 16, "int", default=0, unit="deg")
     """Estimated Roll Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 deg.
     """
-    estimated_pitch_angle: int
+    estimated_roll_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Estimated Roll Angle in deg: -327.68 to 327.67."""
+    estimated_roll_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Roll Angle in thousandths of deg, exact: -327680 to 327670."""
+
+    estimated_pitch_angle: int = _base.field("Estimated Pitch Angle", 16, 16, "int", default=0, unit="deg")
     """Estimated Pitch Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 deg.
     """
-    estimated_yaw_angle: int
+    estimated_pitch_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Estimated Pitch Angle in deg: -327.68 to 327.67."""
+    estimated_pitch_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Pitch Angle in thousandths of deg, exact: -327680 to 327670."""
+
+    estimated_yaw_angle: int = _base.field("Estimated Yaw Angle", 32, 16, "int", default=0, unit="deg")
     """Estimated Yaw Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 deg.
     """
-
-    def __init__(
-        self,
-        *,
-        estimated_roll_angle: int = 0,
-        estimated_pitch_angle: int = 0,
-        estimated_yaw_angle: int = 0,
-    ) -> None:
-        self.estimated_roll_angle = estimated_roll_angle
-        self.estimated_pitch_angle = estimated_pitch_angle
-        self.estimated_yaw_angle = estimated_yaw_angle
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        estimated_roll_angle_deg: float = 0.0,
-        estimated_pitch_angle_deg: float = 0.0,
-        estimated_yaw_angle_deg: float = 0.0,
-    ) -> EstimatedAttitudeAngles:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.estimated_roll_angle_deg = estimated_roll_angle_deg
-        self.estimated_pitch_angle_deg = estimated_pitch_angle_deg
-        self.estimated_yaw_angle_deg = estimated_yaw_angle_deg
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> EstimatedAttitudeAngles:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.estimated_roll_angle,
-                self.estimated_pitch_angle,
-                self.estimated_yaw_angle,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.estimated_roll_angle,
-                self.estimated_pitch_angle,
-                self.estimated_yaw_angle,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def estimated_roll_angle_deg(self) -> float:
-        """Estimated Roll Angle in deg: -327.68 to 327.67."""
-        return self.estimated_roll_angle / 100
-
-    @estimated_roll_angle_deg.setter
-    def estimated_roll_angle_deg(self, value: float) -> None:
-        self.estimated_roll_angle = _codec.raw_value(
-            value,
-            "estimated_roll_angle",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_pitch_angle_deg(self) -> float:
-        """Estimated Pitch Angle in deg: -327.68 to 327.67."""
-        return self.estimated_pitch_angle / 100
-
-    @estimated_pitch_angle_deg.setter
-    def estimated_pitch_angle_deg(self, value: float) -> None:
-        self.estimated_pitch_angle = _codec.raw_value(
-            value,
-            "estimated_pitch_angle",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_yaw_angle_deg(self) -> float:
-        """Estimated Yaw Angle in deg: -327.68 to 327.67."""
-        return self.estimated_yaw_angle / 100
-
-    @estimated_yaw_angle_deg.setter
-    def estimated_yaw_angle_deg(self, value: float) -> None:
-        self.estimated_yaw_angle = _codec.raw_value(
-            value,
-            "estimated_yaw_angle",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
+    estimated_yaw_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Estimated Yaw Angle in deg: -327.68 to 327.67."""
+    estimated_yaw_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Yaw Angle in thousandths of deg, exact: -327680 to 327670."""

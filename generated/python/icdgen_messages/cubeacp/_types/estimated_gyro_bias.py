@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class EstimatedGyroBias(_base.Message):
     """Estimated Gyro Bias: telemetry 161, 6 bytes. Table 117.
 
@@ -23,12 +16,6 @@ class EstimatedGyroBias(_base.Message):
     Bit 37 of the log mask.
     """
 
-    __slots__ = (
-        "estimated_x_gyro_bias",
-        "estimated_y_gyro_bias",
-        "estimated_z_gyro_bias",
-    )
-
     NODE = "cubeacp"
     NAME = "Estimated Gyro Bias"
     KIND = "telemetry"
@@ -36,144 +23,30 @@ class EstimatedGyroBias(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 117
-    FIELDS = (
-        _base.FieldInfo(
-            "estimated_x_gyro_bias",
-            "Estimated X-gyro Bias",
-            0,
-            16,
-            "int",
-            unit="deg/s",
-            physical="estimated_x_gyro_bias_deg_per_s",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "estimated_y_gyro_bias",
-            "Estimated Y-gyro Bias",
-            16,
-            16,
-            "int",
-            unit="deg/s",
-            physical="estimated_y_gyro_bias_deg_per_s",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "estimated_z_gyro_bias",
-            "Estimated Z-gyro Bias",
-            32,
-            16,
-            "int",
-            unit="deg/s",
-            physical="estimated_z_gyro_bias_deg_per_s",
-            scale=(1, 0, 1000),
-        ),
-    )
 
-    estimated_x_gyro_bias: int
+    estimated_x_gyro_bias: int = _base.field("Estimated X-gyro Bias", 0, 16, "int", default=0, unit="deg/s")
     """Estimated X-gyro Bias: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
     """
-    estimated_y_gyro_bias: int
+    estimated_x_gyro_bias_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Estimated X-gyro Bias in deg/s: -32.768 to 32.767."""
+    estimated_x_gyro_bias_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated X-gyro Bias in thousandths of deg/s, exact: -32768 to 32767."""
+
+    estimated_y_gyro_bias: int = _base.field("Estimated Y-gyro Bias", 16, 16, "int", default=0, unit="deg/s")
     """Estimated Y-gyro Bias: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
     """
-    estimated_z_gyro_bias: int
+    estimated_y_gyro_bias_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Estimated Y-gyro Bias in deg/s: -32.768 to 32.767."""
+    estimated_y_gyro_bias_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated Y-gyro Bias in thousandths of deg/s, exact: -32768 to 32767."""
+
+    estimated_z_gyro_bias: int = _base.field("Estimated Z-gyro Bias", 32, 16, "int", default=0, unit="deg/s")
     """Estimated Z-gyro Bias: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
     """
-
-    def __init__(
-        self,
-        *,
-        estimated_x_gyro_bias: int = 0,
-        estimated_y_gyro_bias: int = 0,
-        estimated_z_gyro_bias: int = 0,
-    ) -> None:
-        self.estimated_x_gyro_bias = estimated_x_gyro_bias
-        self.estimated_y_gyro_bias = estimated_y_gyro_bias
-        self.estimated_z_gyro_bias = estimated_z_gyro_bias
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        estimated_x_gyro_bias_deg_per_s: float = 0.0,
-        estimated_y_gyro_bias_deg_per_s: float = 0.0,
-        estimated_z_gyro_bias_deg_per_s: float = 0.0,
-    ) -> EstimatedGyroBias:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.estimated_x_gyro_bias_deg_per_s = estimated_x_gyro_bias_deg_per_s
-        self.estimated_y_gyro_bias_deg_per_s = estimated_y_gyro_bias_deg_per_s
-        self.estimated_z_gyro_bias_deg_per_s = estimated_z_gyro_bias_deg_per_s
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> EstimatedGyroBias:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.estimated_x_gyro_bias,
-                self.estimated_y_gyro_bias,
-                self.estimated_z_gyro_bias,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.estimated_x_gyro_bias,
-                self.estimated_y_gyro_bias,
-                self.estimated_z_gyro_bias,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def estimated_x_gyro_bias_deg_per_s(self) -> float:
-        """Estimated X-gyro Bias in deg/s: -32.768 to 32.767."""
-        return self.estimated_x_gyro_bias / 1000
-
-    @estimated_x_gyro_bias_deg_per_s.setter
-    def estimated_x_gyro_bias_deg_per_s(self, value: float) -> None:
-        self.estimated_x_gyro_bias = _codec.raw_value(
-            value,
-            "estimated_x_gyro_bias",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_y_gyro_bias_deg_per_s(self) -> float:
-        """Estimated Y-gyro Bias in deg/s: -32.768 to 32.767."""
-        return self.estimated_y_gyro_bias / 1000
-
-    @estimated_y_gyro_bias_deg_per_s.setter
-    def estimated_y_gyro_bias_deg_per_s(self, value: float) -> None:
-        self.estimated_y_gyro_bias = _codec.raw_value(
-            value,
-            "estimated_y_gyro_bias",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_z_gyro_bias_deg_per_s(self) -> float:
-        """Estimated Z-gyro Bias in deg/s: -32.768 to 32.767."""
-        return self.estimated_z_gyro_bias / 1000
-
-    @estimated_z_gyro_bias_deg_per_s.setter
-    def estimated_z_gyro_bias_deg_per_s(self, value: float) -> None:
-        self.estimated_z_gyro_bias = _codec.raw_value(
-            value,
-            "estimated_z_gyro_bias",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
+    estimated_z_gyro_bias_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Estimated Z-gyro Bias in deg/s: -32.768 to 32.767."""
+    estimated_z_gyro_bias_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated Z-gyro Bias in thousandths of deg/s, exact: -32768 to 32767."""

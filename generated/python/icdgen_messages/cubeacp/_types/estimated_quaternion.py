@@ -5,29 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class EstimatedQuaternion(_base.Message):
     """Estimated Quaternion: telemetry 218, 6 bytes. Table 165.
 
     Bit 29 of the log mask.
 
-    Note ACP-075 (open): Quaternions: the fourth component.
+    Note ACP-075 (open): Quaternions: the fourth component. Three of four components are
+    sent. The fourth follows up to its sign only, and which component is the scalar is
+    not said.
     """
-
-    __slots__ = (
-        "estimated_q1",
-        "estimated_q2",
-        "estimated_q3",
-    )
 
     NODE = "cubeacp"
     NAME = "Estimated Quaternion"
@@ -36,52 +25,23 @@ class EstimatedQuaternion(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 165
-    FIELDS = (
-        _base.FieldInfo("estimated_q1", "Estimated q1", 0, 16, "int"),
-        _base.FieldInfo("estimated_q2", "Estimated q2", 16, 16, "int"),
-        _base.FieldInfo("estimated_q3", "Estimated q3", 32, 16, "int"),
-    )
 
-    estimated_q1: int
+    estimated_q1: int = _base.field("Estimated q1", 0, 16, "int", default=0)
     """Estimated q1: bits 0 to 15, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): Estimated quaternion has no formula. Components of a unit
+    quaternion in 16 bits need a factor; all other quaternions have one of 1/10000. It
+    is likely here too, but not printed, so the raw value is all that is offered.
     """
-    estimated_q2: int
+
+    estimated_q2: int = _base.field("Estimated q2", 16, 16, "int", default=0)
     """Estimated q2: bits 16 to 31, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): see Estimated q1.
     """
-    estimated_q3: int
+
+    estimated_q3: int = _base.field("Estimated q3", 32, 16, "int", default=0)
     """Estimated q3: bits 32 to 47, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): see Estimated q1.
     """
-
-    def __init__(
-        self,
-        *,
-        estimated_q1: int = 0,
-        estimated_q2: int = 0,
-        estimated_q3: int = 0,
-    ) -> None:
-        self.estimated_q1 = estimated_q1
-        self.estimated_q2 = estimated_q2
-        self.estimated_q3 = estimated_q3
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> EstimatedQuaternion:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.estimated_q1, self.estimated_q2, self.estimated_q3 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.estimated_q1, self.estimated_q2, self.estimated_q3)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

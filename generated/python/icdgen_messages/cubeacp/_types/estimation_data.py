@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<21h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class EstimationData(_base.Message):
     """Estimation Data: telemetry 193, 42 bytes. Table 152.
 
@@ -26,30 +19,6 @@ class EstimationData(_base.Message):
     Quaternion Covariance from byte 30. Repeats Angular Rate Covariance from byte 36.
     """
 
-    __slots__ = (
-        "igrf_modelled_magnetic_field_x",
-        "igrf_modelled_magnetic_field_y",
-        "igrf_modelled_magnetic_field_z",
-        "modelled_sun_vector_x",
-        "modelled_sun_vector_y",
-        "modelled_sun_vector_z",
-        "estimated_x_gyro_bias",
-        "estimated_y_gyro_bias",
-        "estimated_z_gyro_bias",
-        "innovation_vector_x",
-        "innovation_vector_y",
-        "innovation_vector_z",
-        "quaternion_error_q1",
-        "quaternion_error_q2",
-        "quaternion_error_q3",
-        "quaternion_covariance_q1_rms",
-        "quaternion_covariance_q2_rms",
-        "quaternion_covariance_q3_rms",
-        "x_angular_rate_covariance",
-        "y_angular_rate_covariance",
-        "z_angular_rate_covariance",
-    )
-
     NODE = "cubeacp"
     NAME = "Estimation Data"
     KIND = "telemetry"
@@ -57,777 +26,220 @@ class EstimationData(_base.Message):
     IDS = (ID,)
     LENGTH = 42
     TABLE = 152
-    FIELDS = (
-        _base.FieldInfo(
-            "igrf_modelled_magnetic_field_x",
-            "IGRF Modelled Magnetic Field X",
-            0,
-            16,
-            "int",
-            unit="uT",
-            physical="igrf_modelled_magnetic_field_x_ut",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "igrf_modelled_magnetic_field_y",
-            "IGRF Modelled Magnetic Field Y",
-            16,
-            16,
-            "int",
-            unit="uT",
-            physical="igrf_modelled_magnetic_field_y_ut",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "igrf_modelled_magnetic_field_z",
-            "IGRF Modelled Magnetic Field Z",
-            32,
-            16,
-            "int",
-            unit="uT",
-            physical="igrf_modelled_magnetic_field_z_ut",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "modelled_sun_vector_x",
-            "Modelled Sun Vector X",
-            48,
-            16,
-            "int",
-            physical="modelled_sun_vector_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "modelled_sun_vector_y",
-            "Modelled Sun Vector Y",
-            64,
-            16,
-            "int",
-            physical="modelled_sun_vector_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "modelled_sun_vector_z",
-            "Modelled Sun Vector Z",
-            80,
-            16,
-            "int",
-            physical="modelled_sun_vector_z_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "estimated_x_gyro_bias",
-            "Estimated X-gyro Bias",
-            96,
-            16,
-            "int",
-            unit="deg/s",
-            physical="estimated_x_gyro_bias_deg_per_s",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "estimated_y_gyro_bias",
-            "Estimated Y-gyro Bias",
-            112,
-            16,
-            "int",
-            unit="deg/s",
-            physical="estimated_y_gyro_bias_deg_per_s",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "estimated_z_gyro_bias",
-            "Estimated Z-gyro Bias",
-            128,
-            16,
-            "int",
-            unit="deg/s",
-            physical="estimated_z_gyro_bias_deg_per_s",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "innovation_vector_x",
-            "Innovation Vector X",
-            144,
-            16,
-            "int",
-            physical="innovation_vector_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "innovation_vector_y",
-            "Innovation Vector Y",
-            160,
-            16,
-            "int",
-            physical="innovation_vector_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "innovation_vector_z",
-            "Innovation Vector Z",
-            176,
-            16,
-            "int",
-            physical="innovation_vector_z_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "quaternion_error_q1",
-            "Quaternion Error - Q1",
-            192,
-            16,
-            "int",
-            physical="quaternion_error_q1_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "quaternion_error_q2",
-            "Quaternion Error - Q2",
-            208,
-            16,
-            "int",
-            physical="quaternion_error_q2_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "quaternion_error_q3",
-            "Quaternion Error - Q3",
-            224,
-            16,
-            "int",
-            physical="quaternion_error_q3_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "quaternion_covariance_q1_rms",
-            "Quaternion Covariance - Q1 RMS",
-            240,
-            16,
-            "int",
-            physical="quaternion_covariance_q1_rms_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "quaternion_covariance_q2_rms",
-            "Quaternion Covariance - Q2 RMS",
-            256,
-            16,
-            "int",
-            physical="quaternion_covariance_q2_rms_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "quaternion_covariance_q3_rms",
-            "Quaternion Covariance - Q3 RMS",
-            272,
-            16,
-            "int",
-            physical="quaternion_covariance_q3_rms_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "x_angular_rate_covariance",
-            "X Angular Rate Covariance",
-            288,
-            16,
-            "int",
-            physical="x_angular_rate_covariance_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "y_angular_rate_covariance",
-            "Y Angular Rate Covariance",
-            304,
-            16,
-            "int",
-            physical="y_angular_rate_covariance_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "z_angular_rate_covariance",
-            "Z Angular Rate Covariance",
-            320,
-            16,
-            "int",
-            physical="z_angular_rate_covariance_physical",
-            scale=(1, 0, 1000),
-        ),
-    )
 
-    igrf_modelled_magnetic_field_x: int
+    igrf_modelled_magnetic_field_x: int = _base.field(
+        "IGRF Modelled Magnetic Field X", 0, 16, "int", default=0, unit="uT"
+    )
     """IGRF Modelled Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 uT.
     """
-    igrf_modelled_magnetic_field_y: int
+    igrf_modelled_magnetic_field_x_ut: float = _base.scaled(1, 0, 100, default=0.0)
+    """IGRF Modelled Magnetic Field X in uT: -327.68 to 327.67."""
+    igrf_modelled_magnetic_field_x_nt: int = _base.whole(10, 0)
+    """IGRF Modelled Magnetic Field X in nT, exact: -327680 to 327670."""
+
+    igrf_modelled_magnetic_field_y: int = _base.field(
+        "IGRF Modelled Magnetic Field Y", 16, 16, "int", default=0, unit="uT"
+    )
     """IGRF Modelled Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 uT.
     """
-    igrf_modelled_magnetic_field_z: int
+    igrf_modelled_magnetic_field_y_ut: float = _base.scaled(1, 0, 100, default=0.0)
+    """IGRF Modelled Magnetic Field Y in uT: -327.68 to 327.67."""
+    igrf_modelled_magnetic_field_y_nt: int = _base.whole(10, 0)
+    """IGRF Modelled Magnetic Field Y in nT, exact: -327680 to 327670."""
+
+    igrf_modelled_magnetic_field_z: int = _base.field(
+        "IGRF Modelled Magnetic Field Z", 32, 16, "int", default=0, unit="uT"
+    )
     """IGRF Modelled Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 uT.
     """
-    modelled_sun_vector_x: int
+    igrf_modelled_magnetic_field_z_ut: float = _base.scaled(1, 0, 100, default=0.0)
+    """IGRF Modelled Magnetic Field Z in uT: -327.68 to 327.67."""
+    igrf_modelled_magnetic_field_z_nt: int = _base.whole(10, 0)
+    """IGRF Modelled Magnetic Field Z in nT, exact: -327680 to 327670."""
+
+    modelled_sun_vector_x: int = _base.field("Modelled Sun Vector X", 48, 16, "int", default=0)
     """Modelled Sun Vector X: bits 48 to 63, raw -32768 to 32767; physical
     `raw/10000.0`, -3.2768 to 3.2767.
     """
-    modelled_sun_vector_y: int
+    modelled_sun_vector_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Modelled Sun Vector X, as a physical value: -3.2768 to 3.2767."""
+    modelled_sun_vector_x_micro: int = _base.whole(100, 0)
+    """Modelled Sun Vector X in millionths, exact: -3276800 to 3276700."""
+
+    modelled_sun_vector_y: int = _base.field("Modelled Sun Vector Y", 64, 16, "int", default=0)
     """Modelled Sun Vector Y: bits 64 to 79, raw -32768 to 32767; physical
     `raw/10000.0`, -3.2768 to 3.2767.
     """
-    modelled_sun_vector_z: int
+    modelled_sun_vector_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Modelled Sun Vector Y, as a physical value: -3.2768 to 3.2767."""
+    modelled_sun_vector_y_micro: int = _base.whole(100, 0)
+    """Modelled Sun Vector Y in millionths, exact: -3276800 to 3276700."""
+
+    modelled_sun_vector_z: int = _base.field("Modelled Sun Vector Z", 80, 16, "int", default=0)
     """Modelled Sun Vector Z: bits 80 to 95, raw -32768 to 32767; physical
     `raw/10000.0`, -3.2768 to 3.2767.
     """
-    estimated_x_gyro_bias: int
+    modelled_sun_vector_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Modelled Sun Vector Z, as a physical value: -3.2768 to 3.2767."""
+    modelled_sun_vector_z_micro: int = _base.whole(100, 0)
+    """Modelled Sun Vector Z in millionths, exact: -3276800 to 3276700."""
+
+    estimated_x_gyro_bias: int = _base.field("Estimated X-gyro Bias", 96, 16, "int", default=0, unit="deg/s")
     """Estimated X-gyro Bias: bits 96 to 111, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
     """
-    estimated_y_gyro_bias: int
+    estimated_x_gyro_bias_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Estimated X-gyro Bias in deg/s: -32.768 to 32.767."""
+    estimated_x_gyro_bias_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated X-gyro Bias in thousandths of deg/s, exact: -32768 to 32767."""
+
+    estimated_y_gyro_bias: int = _base.field("Estimated Y-gyro Bias", 112, 16, "int", default=0, unit="deg/s")
     """Estimated Y-gyro Bias: bits 112 to 127, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767 deg/s.
     """
-    estimated_z_gyro_bias: int
+    estimated_y_gyro_bias_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Estimated Y-gyro Bias in deg/s: -32.768 to 32.767."""
+    estimated_y_gyro_bias_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated Y-gyro Bias in thousandths of deg/s, exact: -32768 to 32767."""
+
+    estimated_z_gyro_bias: int = _base.field("Estimated Z-gyro Bias", 128, 16, "int", default=0, unit="deg/s")
     """Estimated Z-gyro Bias: bits 128 to 143, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767 deg/s.
     """
-    innovation_vector_x: int
+    estimated_z_gyro_bias_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Estimated Z-gyro Bias in deg/s: -32.768 to 32.767."""
+    estimated_z_gyro_bias_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated Z-gyro Bias in thousandths of deg/s, exact: -32768 to 32767."""
+
+    innovation_vector_x: int = _base.field("Innovation Vector X", 144, 16, "int", default=0)
     """Innovation Vector X: bits 144 to 159, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): Innovation has no unit. What the innovation vector is a
+    difference of, and hence its unit, is not said.
     """
-    innovation_vector_y: int
+    innovation_vector_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Innovation Vector X, as a physical value: -3.2768 to 3.2767."""
+    innovation_vector_x_micro: int = _base.whole(100, 0)
+    """Innovation Vector X in millionths, exact: -3276800 to 3276700."""
+
+    innovation_vector_y: int = _base.field("Innovation Vector Y", 160, 16, "int", default=0)
     """Innovation Vector Y: bits 160 to 175, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): see Innovation Vector X.
     """
-    innovation_vector_z: int
+    innovation_vector_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Innovation Vector Y, as a physical value: -3.2768 to 3.2767."""
+    innovation_vector_y_micro: int = _base.whole(100, 0)
+    """Innovation Vector Y in millionths, exact: -3276800 to 3276700."""
+
+    innovation_vector_z: int = _base.field("Innovation Vector Z", 176, 16, "int", default=0)
     """Innovation Vector Z: bits 176 to 191, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): see Innovation Vector X.
     """
-    quaternion_error_q1: int
+    innovation_vector_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Innovation Vector Z, as a physical value: -3.2768 to 3.2767."""
+    innovation_vector_z_micro: int = _base.whole(100, 0)
+    """Innovation Vector Z in millionths, exact: -3276800 to 3276700."""
+
+    quaternion_error_q1: int = _base.field("Quaternion Error - Q1", 192, 16, "int", default=0)
     """Quaternion Error - Q1: bits 192 to 207, raw -32768 to 32767; physical
     `raw*0.0001`, -3.2768 to 3.2767.
     """
-    quaternion_error_q2: int
+    quaternion_error_q1_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Quaternion Error - Q1, as a physical value: -3.2768 to 3.2767."""
+    quaternion_error_q1_micro: int = _base.whole(100, 0)
+    """Quaternion Error - Q1 in millionths, exact: -3276800 to 3276700."""
+
+    quaternion_error_q2: int = _base.field("Quaternion Error - Q2", 208, 16, "int", default=0)
     """Quaternion Error - Q2: bits 208 to 223, raw -32768 to 32767; physical
     `raw*0.0001`, -3.2768 to 3.2767.
     """
-    quaternion_error_q3: int
+    quaternion_error_q2_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Quaternion Error - Q2, as a physical value: -3.2768 to 3.2767."""
+    quaternion_error_q2_micro: int = _base.whole(100, 0)
+    """Quaternion Error - Q2 in millionths, exact: -3276800 to 3276700."""
+
+    quaternion_error_q3: int = _base.field("Quaternion Error - Q3", 224, 16, "int", default=0)
     """Quaternion Error - Q3: bits 224 to 239, raw -32768 to 32767; physical
     `raw*0.0001`, -3.2768 to 3.2767.
     """
-    quaternion_covariance_q1_rms: int
+    quaternion_error_q3_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Quaternion Error - Q3, as a physical value: -3.2768 to 3.2767."""
+    quaternion_error_q3_micro: int = _base.whole(100, 0)
+    """Quaternion Error - Q3 in millionths, exact: -3276800 to 3276700."""
+
+    quaternion_covariance_q1_rms: int = _base.field("Quaternion Covariance - Q1 RMS", 240, 16, "int", default=0)
     """Quaternion Covariance - Q1 RMS: bits 240 to 255, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): Quaternion covariance: an RMS with a sign. The field is a
+    covariance by its frame, an RMS by its name and signed by its type. Neither
+    quantity, on the diagonal, is negative.
     """
-    quaternion_covariance_q2_rms: int
+    quaternion_covariance_q1_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Quaternion Covariance - Q1 RMS, as a physical value: -32.768 to 32.767."""
+    quaternion_covariance_q1_rms_milli: int = _base.whole(1, 0)
+    """Quaternion Covariance - Q1 RMS in thousandths, exact: -32768 to 32767."""
+
+    quaternion_covariance_q2_rms: int = _base.field("Quaternion Covariance - Q2 RMS", 256, 16, "int", default=0)
     """Quaternion Covariance - Q2 RMS: bits 256 to 271, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
     """
-    quaternion_covariance_q3_rms: int
+    quaternion_covariance_q2_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Quaternion Covariance - Q2 RMS, as a physical value: -32.768 to 32.767."""
+    quaternion_covariance_q2_rms_milli: int = _base.whole(1, 0)
+    """Quaternion Covariance - Q2 RMS in thousandths, exact: -32768 to 32767."""
+
+    quaternion_covariance_q3_rms: int = _base.field("Quaternion Covariance - Q3 RMS", 272, 16, "int", default=0)
     """Quaternion Covariance - Q3 RMS: bits 272 to 287, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
     """
-    x_angular_rate_covariance: int
+    quaternion_covariance_q3_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Quaternion Covariance - Q3 RMS, as a physical value: -32.768 to 32.767."""
+    quaternion_covariance_q3_rms_milli: int = _base.whole(1, 0)
+    """Quaternion Covariance - Q3 RMS in thousandths, exact: -32768 to 32767."""
+
+    x_angular_rate_covariance: int = _base.field("X Angular Rate Covariance", 288, 16, "int", default=0)
     """X Angular Rate Covariance: bits 288 to 303, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for
+    the square of a rate, and the type is signed.
     """
-    y_angular_rate_covariance: int
+    x_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """X Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    x_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """X Angular Rate Covariance in thousandths, exact: -32768 to 32767."""
+
+    y_angular_rate_covariance: int = _base.field("Y Angular Rate Covariance", 304, 16, "int", default=0)
     """Y Angular Rate Covariance: bits 304 to 319, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): see X Angular Rate Covariance.
     """
-    z_angular_rate_covariance: int
+    y_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Y Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    y_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """Y Angular Rate Covariance in thousandths, exact: -32768 to 32767."""
+
+    z_angular_rate_covariance: int = _base.field("Z Angular Rate Covariance", 320, 16, "int", default=0)
     """Z Angular Rate Covariance: bits 320 to 335, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): see X Angular Rate Covariance.
     """
-
-    def __init__(
-        self,
-        *,
-        igrf_modelled_magnetic_field_x: int = 0,
-        igrf_modelled_magnetic_field_y: int = 0,
-        igrf_modelled_magnetic_field_z: int = 0,
-        modelled_sun_vector_x: int = 0,
-        modelled_sun_vector_y: int = 0,
-        modelled_sun_vector_z: int = 0,
-        estimated_x_gyro_bias: int = 0,
-        estimated_y_gyro_bias: int = 0,
-        estimated_z_gyro_bias: int = 0,
-        innovation_vector_x: int = 0,
-        innovation_vector_y: int = 0,
-        innovation_vector_z: int = 0,
-        quaternion_error_q1: int = 0,
-        quaternion_error_q2: int = 0,
-        quaternion_error_q3: int = 0,
-        quaternion_covariance_q1_rms: int = 0,
-        quaternion_covariance_q2_rms: int = 0,
-        quaternion_covariance_q3_rms: int = 0,
-        x_angular_rate_covariance: int = 0,
-        y_angular_rate_covariance: int = 0,
-        z_angular_rate_covariance: int = 0,
-    ) -> None:
-        self.igrf_modelled_magnetic_field_x = igrf_modelled_magnetic_field_x
-        self.igrf_modelled_magnetic_field_y = igrf_modelled_magnetic_field_y
-        self.igrf_modelled_magnetic_field_z = igrf_modelled_magnetic_field_z
-        self.modelled_sun_vector_x = modelled_sun_vector_x
-        self.modelled_sun_vector_y = modelled_sun_vector_y
-        self.modelled_sun_vector_z = modelled_sun_vector_z
-        self.estimated_x_gyro_bias = estimated_x_gyro_bias
-        self.estimated_y_gyro_bias = estimated_y_gyro_bias
-        self.estimated_z_gyro_bias = estimated_z_gyro_bias
-        self.innovation_vector_x = innovation_vector_x
-        self.innovation_vector_y = innovation_vector_y
-        self.innovation_vector_z = innovation_vector_z
-        self.quaternion_error_q1 = quaternion_error_q1
-        self.quaternion_error_q2 = quaternion_error_q2
-        self.quaternion_error_q3 = quaternion_error_q3
-        self.quaternion_covariance_q1_rms = quaternion_covariance_q1_rms
-        self.quaternion_covariance_q2_rms = quaternion_covariance_q2_rms
-        self.quaternion_covariance_q3_rms = quaternion_covariance_q3_rms
-        self.x_angular_rate_covariance = x_angular_rate_covariance
-        self.y_angular_rate_covariance = y_angular_rate_covariance
-        self.z_angular_rate_covariance = z_angular_rate_covariance
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        igrf_modelled_magnetic_field_x_ut: float = 0.0,
-        igrf_modelled_magnetic_field_y_ut: float = 0.0,
-        igrf_modelled_magnetic_field_z_ut: float = 0.0,
-        modelled_sun_vector_x_physical: float = 0.0,
-        modelled_sun_vector_y_physical: float = 0.0,
-        modelled_sun_vector_z_physical: float = 0.0,
-        estimated_x_gyro_bias_deg_per_s: float = 0.0,
-        estimated_y_gyro_bias_deg_per_s: float = 0.0,
-        estimated_z_gyro_bias_deg_per_s: float = 0.0,
-        innovation_vector_x_physical: float = 0.0,
-        innovation_vector_y_physical: float = 0.0,
-        innovation_vector_z_physical: float = 0.0,
-        quaternion_error_q1_physical: float = 0.0,
-        quaternion_error_q2_physical: float = 0.0,
-        quaternion_error_q3_physical: float = 0.0,
-        quaternion_covariance_q1_rms_physical: float = 0.0,
-        quaternion_covariance_q2_rms_physical: float = 0.0,
-        quaternion_covariance_q3_rms_physical: float = 0.0,
-        x_angular_rate_covariance_physical: float = 0.0,
-        y_angular_rate_covariance_physical: float = 0.0,
-        z_angular_rate_covariance_physical: float = 0.0,
-    ) -> EstimationData:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.igrf_modelled_magnetic_field_x_ut = igrf_modelled_magnetic_field_x_ut
-        self.igrf_modelled_magnetic_field_y_ut = igrf_modelled_magnetic_field_y_ut
-        self.igrf_modelled_magnetic_field_z_ut = igrf_modelled_magnetic_field_z_ut
-        self.modelled_sun_vector_x_physical = modelled_sun_vector_x_physical
-        self.modelled_sun_vector_y_physical = modelled_sun_vector_y_physical
-        self.modelled_sun_vector_z_physical = modelled_sun_vector_z_physical
-        self.estimated_x_gyro_bias_deg_per_s = estimated_x_gyro_bias_deg_per_s
-        self.estimated_y_gyro_bias_deg_per_s = estimated_y_gyro_bias_deg_per_s
-        self.estimated_z_gyro_bias_deg_per_s = estimated_z_gyro_bias_deg_per_s
-        self.innovation_vector_x_physical = innovation_vector_x_physical
-        self.innovation_vector_y_physical = innovation_vector_y_physical
-        self.innovation_vector_z_physical = innovation_vector_z_physical
-        self.quaternion_error_q1_physical = quaternion_error_q1_physical
-        self.quaternion_error_q2_physical = quaternion_error_q2_physical
-        self.quaternion_error_q3_physical = quaternion_error_q3_physical
-        self.quaternion_covariance_q1_rms_physical = quaternion_covariance_q1_rms_physical
-        self.quaternion_covariance_q2_rms_physical = quaternion_covariance_q2_rms_physical
-        self.quaternion_covariance_q3_rms_physical = quaternion_covariance_q3_rms_physical
-        self.x_angular_rate_covariance_physical = x_angular_rate_covariance_physical
-        self.y_angular_rate_covariance_physical = y_angular_rate_covariance_physical
-        self.z_angular_rate_covariance_physical = z_angular_rate_covariance_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> EstimationData:
-        """The message in a frame of exactly 42 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.igrf_modelled_magnetic_field_x,
-                self.igrf_modelled_magnetic_field_y,
-                self.igrf_modelled_magnetic_field_z,
-                self.modelled_sun_vector_x,
-                self.modelled_sun_vector_y,
-                self.modelled_sun_vector_z,
-                self.estimated_x_gyro_bias,
-                self.estimated_y_gyro_bias,
-                self.estimated_z_gyro_bias,
-                self.innovation_vector_x,
-                self.innovation_vector_y,
-                self.innovation_vector_z,
-                self.quaternion_error_q1,
-                self.quaternion_error_q2,
-                self.quaternion_error_q3,
-                self.quaternion_covariance_q1_rms,
-                self.quaternion_covariance_q2_rms,
-                self.quaternion_covariance_q3_rms,
-                self.x_angular_rate_covariance,
-                self.y_angular_rate_covariance,
-                self.z_angular_rate_covariance,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.igrf_modelled_magnetic_field_x,
-                self.igrf_modelled_magnetic_field_y,
-                self.igrf_modelled_magnetic_field_z,
-                self.modelled_sun_vector_x,
-                self.modelled_sun_vector_y,
-                self.modelled_sun_vector_z,
-                self.estimated_x_gyro_bias,
-                self.estimated_y_gyro_bias,
-                self.estimated_z_gyro_bias,
-                self.innovation_vector_x,
-                self.innovation_vector_y,
-                self.innovation_vector_z,
-                self.quaternion_error_q1,
-                self.quaternion_error_q2,
-                self.quaternion_error_q3,
-                self.quaternion_covariance_q1_rms,
-                self.quaternion_covariance_q2_rms,
-                self.quaternion_covariance_q3_rms,
-                self.x_angular_rate_covariance,
-                self.y_angular_rate_covariance,
-                self.z_angular_rate_covariance,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def igrf_modelled_magnetic_field_x_ut(self) -> float:
-        """IGRF Modelled Magnetic Field X in uT: -327.68 to 327.67."""
-        return self.igrf_modelled_magnetic_field_x / 100
-
-    @igrf_modelled_magnetic_field_x_ut.setter
-    def igrf_modelled_magnetic_field_x_ut(self, value: float) -> None:
-        self.igrf_modelled_magnetic_field_x = _codec.raw_value(
-            value,
-            "igrf_modelled_magnetic_field_x",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def igrf_modelled_magnetic_field_y_ut(self) -> float:
-        """IGRF Modelled Magnetic Field Y in uT: -327.68 to 327.67."""
-        return self.igrf_modelled_magnetic_field_y / 100
-
-    @igrf_modelled_magnetic_field_y_ut.setter
-    def igrf_modelled_magnetic_field_y_ut(self, value: float) -> None:
-        self.igrf_modelled_magnetic_field_y = _codec.raw_value(
-            value,
-            "igrf_modelled_magnetic_field_y",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def igrf_modelled_magnetic_field_z_ut(self) -> float:
-        """IGRF Modelled Magnetic Field Z in uT: -327.68 to 327.67."""
-        return self.igrf_modelled_magnetic_field_z / 100
-
-    @igrf_modelled_magnetic_field_z_ut.setter
-    def igrf_modelled_magnetic_field_z_ut(self, value: float) -> None:
-        self.igrf_modelled_magnetic_field_z = _codec.raw_value(
-            value,
-            "igrf_modelled_magnetic_field_z",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def modelled_sun_vector_x_physical(self) -> float:
-        """Modelled Sun Vector X, as a physical value: -3.2768 to 3.2767."""
-        return self.modelled_sun_vector_x / 10000
-
-    @modelled_sun_vector_x_physical.setter
-    def modelled_sun_vector_x_physical(self, value: float) -> None:
-        self.modelled_sun_vector_x = _codec.raw_value(
-            value,
-            "modelled_sun_vector_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def modelled_sun_vector_y_physical(self) -> float:
-        """Modelled Sun Vector Y, as a physical value: -3.2768 to 3.2767."""
-        return self.modelled_sun_vector_y / 10000
-
-    @modelled_sun_vector_y_physical.setter
-    def modelled_sun_vector_y_physical(self, value: float) -> None:
-        self.modelled_sun_vector_y = _codec.raw_value(
-            value,
-            "modelled_sun_vector_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def modelled_sun_vector_z_physical(self) -> float:
-        """Modelled Sun Vector Z, as a physical value: -3.2768 to 3.2767."""
-        return self.modelled_sun_vector_z / 10000
-
-    @modelled_sun_vector_z_physical.setter
-    def modelled_sun_vector_z_physical(self, value: float) -> None:
-        self.modelled_sun_vector_z = _codec.raw_value(
-            value,
-            "modelled_sun_vector_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_x_gyro_bias_deg_per_s(self) -> float:
-        """Estimated X-gyro Bias in deg/s: -32.768 to 32.767."""
-        return self.estimated_x_gyro_bias / 1000
-
-    @estimated_x_gyro_bias_deg_per_s.setter
-    def estimated_x_gyro_bias_deg_per_s(self, value: float) -> None:
-        self.estimated_x_gyro_bias = _codec.raw_value(
-            value,
-            "estimated_x_gyro_bias",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_y_gyro_bias_deg_per_s(self) -> float:
-        """Estimated Y-gyro Bias in deg/s: -32.768 to 32.767."""
-        return self.estimated_y_gyro_bias / 1000
-
-    @estimated_y_gyro_bias_deg_per_s.setter
-    def estimated_y_gyro_bias_deg_per_s(self, value: float) -> None:
-        self.estimated_y_gyro_bias = _codec.raw_value(
-            value,
-            "estimated_y_gyro_bias",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def estimated_z_gyro_bias_deg_per_s(self) -> float:
-        """Estimated Z-gyro Bias in deg/s: -32.768 to 32.767."""
-        return self.estimated_z_gyro_bias / 1000
-
-    @estimated_z_gyro_bias_deg_per_s.setter
-    def estimated_z_gyro_bias_deg_per_s(self, value: float) -> None:
-        self.estimated_z_gyro_bias = _codec.raw_value(
-            value,
-            "estimated_z_gyro_bias",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def innovation_vector_x_physical(self) -> float:
-        """Innovation Vector X, as a physical value: -3.2768 to 3.2767."""
-        return self.innovation_vector_x / 10000
-
-    @innovation_vector_x_physical.setter
-    def innovation_vector_x_physical(self, value: float) -> None:
-        self.innovation_vector_x = _codec.raw_value(
-            value,
-            "innovation_vector_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def innovation_vector_y_physical(self) -> float:
-        """Innovation Vector Y, as a physical value: -3.2768 to 3.2767."""
-        return self.innovation_vector_y / 10000
-
-    @innovation_vector_y_physical.setter
-    def innovation_vector_y_physical(self, value: float) -> None:
-        self.innovation_vector_y = _codec.raw_value(
-            value,
-            "innovation_vector_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def innovation_vector_z_physical(self) -> float:
-        """Innovation Vector Z, as a physical value: -3.2768 to 3.2767."""
-        return self.innovation_vector_z / 10000
-
-    @innovation_vector_z_physical.setter
-    def innovation_vector_z_physical(self, value: float) -> None:
-        self.innovation_vector_z = _codec.raw_value(
-            value,
-            "innovation_vector_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def quaternion_error_q1_physical(self) -> float:
-        """Quaternion Error - Q1, as a physical value: -3.2768 to 3.2767."""
-        return self.quaternion_error_q1 / 10000
-
-    @quaternion_error_q1_physical.setter
-    def quaternion_error_q1_physical(self, value: float) -> None:
-        self.quaternion_error_q1 = _codec.raw_value(
-            value,
-            "quaternion_error_q1",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def quaternion_error_q2_physical(self) -> float:
-        """Quaternion Error - Q2, as a physical value: -3.2768 to 3.2767."""
-        return self.quaternion_error_q2 / 10000
-
-    @quaternion_error_q2_physical.setter
-    def quaternion_error_q2_physical(self, value: float) -> None:
-        self.quaternion_error_q2 = _codec.raw_value(
-            value,
-            "quaternion_error_q2",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def quaternion_error_q3_physical(self) -> float:
-        """Quaternion Error - Q3, as a physical value: -3.2768 to 3.2767."""
-        return self.quaternion_error_q3 / 10000
-
-    @quaternion_error_q3_physical.setter
-    def quaternion_error_q3_physical(self, value: float) -> None:
-        self.quaternion_error_q3 = _codec.raw_value(
-            value,
-            "quaternion_error_q3",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def quaternion_covariance_q1_rms_physical(self) -> float:
-        """Quaternion Covariance - Q1 RMS, as a physical value: -32.768 to 32.767."""
-        return self.quaternion_covariance_q1_rms / 1000
-
-    @quaternion_covariance_q1_rms_physical.setter
-    def quaternion_covariance_q1_rms_physical(self, value: float) -> None:
-        self.quaternion_covariance_q1_rms = _codec.raw_value(
-            value,
-            "quaternion_covariance_q1_rms",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def quaternion_covariance_q2_rms_physical(self) -> float:
-        """Quaternion Covariance - Q2 RMS, as a physical value: -32.768 to 32.767."""
-        return self.quaternion_covariance_q2_rms / 1000
-
-    @quaternion_covariance_q2_rms_physical.setter
-    def quaternion_covariance_q2_rms_physical(self, value: float) -> None:
-        self.quaternion_covariance_q2_rms = _codec.raw_value(
-            value,
-            "quaternion_covariance_q2_rms",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def quaternion_covariance_q3_rms_physical(self) -> float:
-        """Quaternion Covariance - Q3 RMS, as a physical value: -32.768 to 32.767."""
-        return self.quaternion_covariance_q3_rms / 1000
-
-    @quaternion_covariance_q3_rms_physical.setter
-    def quaternion_covariance_q3_rms_physical(self, value: float) -> None:
-        self.quaternion_covariance_q3_rms = _codec.raw_value(
-            value,
-            "quaternion_covariance_q3_rms",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def x_angular_rate_covariance_physical(self) -> float:
-        """X Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
-        return self.x_angular_rate_covariance / 1000
-
-    @x_angular_rate_covariance_physical.setter
-    def x_angular_rate_covariance_physical(self, value: float) -> None:
-        self.x_angular_rate_covariance = _codec.raw_value(
-            value,
-            "x_angular_rate_covariance",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def y_angular_rate_covariance_physical(self) -> float:
-        """Y Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
-        return self.y_angular_rate_covariance / 1000
-
-    @y_angular_rate_covariance_physical.setter
-    def y_angular_rate_covariance_physical(self, value: float) -> None:
-        self.y_angular_rate_covariance = _codec.raw_value(
-            value,
-            "y_angular_rate_covariance",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def z_angular_rate_covariance_physical(self) -> float:
-        """Z Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
-        return self.z_angular_rate_covariance / 1000
-
-    @z_angular_rate_covariance_physical.setter
-    def z_angular_rate_covariance_physical(self, value: float) -> None:
-        self.z_angular_rate_covariance = _codec.raw_value(
-            value,
-            "z_angular_rate_covariance",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
+    z_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Z Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    z_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """Z Angular Rate Covariance in thousandths, exact: -32768 to 32767."""

@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class EstimationInnovationVector(_base.Message):
     """Estimation Innovation Vector: telemetry 162, 6 bytes. Table 118.
 
     Bit 38 of the log mask.
     """
-
-    __slots__ = (
-        "innovation_vector_x",
-        "innovation_vector_y",
-        "innovation_vector_z",
-    )
 
     NODE = "cubeacp"
     NAME = "Estimation Innovation Vector"
@@ -34,147 +21,37 @@ class EstimationInnovationVector(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 118
-    FIELDS = (
-        _base.FieldInfo(
-            "innovation_vector_x",
-            "Innovation Vector X",
-            0,
-            16,
-            "int",
-            physical="innovation_vector_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "innovation_vector_y",
-            "Innovation Vector Y",
-            16,
-            16,
-            "int",
-            physical="innovation_vector_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "innovation_vector_z",
-            "Innovation Vector Z",
-            32,
-            16,
-            "int",
-            physical="innovation_vector_z_physical",
-            scale=(1, 0, 10000),
-        ),
-    )
 
-    innovation_vector_x: int
+    innovation_vector_x: int = _base.field("Innovation Vector X", 0, 16, "int", default=0)
     """Innovation Vector X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): Innovation has no unit. What the innovation vector is a
+    difference of, and hence its unit, is not said.
     """
-    innovation_vector_y: int
+    innovation_vector_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Innovation Vector X, as a physical value: -3.2768 to 3.2767."""
+    innovation_vector_x_micro: int = _base.whole(100, 0)
+    """Innovation Vector X in millionths, exact: -3276800 to 3276700."""
+
+    innovation_vector_y: int = _base.field("Innovation Vector Y", 16, 16, "int", default=0)
     """Innovation Vector Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): see Innovation Vector X.
     """
-    innovation_vector_z: int
+    innovation_vector_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Innovation Vector Y, as a physical value: -3.2768 to 3.2767."""
+    innovation_vector_y_micro: int = _base.whole(100, 0)
+    """Innovation Vector Y in millionths, exact: -3276800 to 3276700."""
+
+    innovation_vector_z: int = _base.field("Innovation Vector Z", 32, 16, "int", default=0)
     """Innovation Vector Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): see Innovation Vector X.
     """
-
-    def __init__(
-        self,
-        *,
-        innovation_vector_x: int = 0,
-        innovation_vector_y: int = 0,
-        innovation_vector_z: int = 0,
-    ) -> None:
-        self.innovation_vector_x = innovation_vector_x
-        self.innovation_vector_y = innovation_vector_y
-        self.innovation_vector_z = innovation_vector_z
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        innovation_vector_x_physical: float = 0.0,
-        innovation_vector_y_physical: float = 0.0,
-        innovation_vector_z_physical: float = 0.0,
-    ) -> EstimationInnovationVector:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.innovation_vector_x_physical = innovation_vector_x_physical
-        self.innovation_vector_y_physical = innovation_vector_y_physical
-        self.innovation_vector_z_physical = innovation_vector_z_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> EstimationInnovationVector:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.innovation_vector_x,
-                self.innovation_vector_y,
-                self.innovation_vector_z,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.innovation_vector_x,
-                self.innovation_vector_y,
-                self.innovation_vector_z,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def innovation_vector_x_physical(self) -> float:
-        """Innovation Vector X, as a physical value: -3.2768 to 3.2767."""
-        return self.innovation_vector_x / 10000
-
-    @innovation_vector_x_physical.setter
-    def innovation_vector_x_physical(self, value: float) -> None:
-        self.innovation_vector_x = _codec.raw_value(
-            value,
-            "innovation_vector_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def innovation_vector_y_physical(self) -> float:
-        """Innovation Vector Y, as a physical value: -3.2768 to 3.2767."""
-        return self.innovation_vector_y / 10000
-
-    @innovation_vector_y_physical.setter
-    def innovation_vector_y_physical(self, value: float) -> None:
-        self.innovation_vector_y = _codec.raw_value(
-            value,
-            "innovation_vector_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def innovation_vector_z_physical(self) -> float:
-        """Innovation Vector Z, as a physical value: -3.2768 to 3.2767."""
-        return self.innovation_vector_z / 10000
-
-    @innovation_vector_z_physical.setter
-    def innovation_vector_z_physical(self, value: float) -> None:
-        self.innovation_vector_z = _codec.raw_value(
-            value,
-            "innovation_vector_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
+    innovation_vector_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Innovation Vector Z, as a physical value: -3.2768 to 3.2767."""
+    innovation_vector_z_micro: int = _base.whole(100, 0)
+    """Innovation Vector Z in millionths, exact: -3276800 to 3276700."""

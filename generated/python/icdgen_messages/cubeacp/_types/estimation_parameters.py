@@ -5,62 +5,23 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
+from ... import _base
 from .mag_mode_val import MagModeVal
 
-_STRUCT = struct.Struct("<7f3B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table(
-    (0, 1, bool),
-    (1, 1, bool),
-    (2, 1, bool),
-    (3, 1, bool),
-    (4, 1, bool),
-    (5, 1, bool),
-    (6, 2, MagModeVal),
-)
-_BYTES_0 = _codec.Inverse(_BITS_0)
-_BITS_1 = _codec.bit_table((0, 2, MagModeVal), (2, 1, bool))
-_BYTES_1 = _codec.Inverse(_BITS_1)
-_BITS_2 = _codec.bit_table((0, 4, int), (4, 4, int))
-_BYTES_2 = _codec.Inverse(_BITS_2)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class EstimationParameters(_base.Message):
     """Estimation Parameters: configuration, set by telecommand 27, got by telemetry
     223, 31 bytes. Table 200.
 
     Noise covariances, and which sensors the estimator uses.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
 
-    Note ACP-167 (certain): Estimation Parameters: more than its description.
+    Note ACP-167 (certain): Estimation Parameters: more than its description. Noise
+    covariance and sensor mask are promised; magnetometer modes, recovery and sampling
+    periods are in the message as well.
     """
-
-    __slots__ = (
-        "magnetometer_rate_filter_system_noise",
-        "ekf_system_noise",
-        "css_measurement_noise",
-        "sun_sensor_measurement_noise",
-        "nadir_sensor_measurement_noise",
-        "magnetometer_measurement_noise",
-        "star_tracker_measurement_noise",
-        "use_sun_sensor",
-        "use_nadir_sensor",
-        "use_css",
-        "use_star_tracker",
-        "nadir_sensor_terminator_test",
-        "automatic_magnetometer_recovery",
-        "magnetometer_mode",
-        "raw_magnetometer_selection",
-        "estimation_transition_on_rate_sensor_error",
-        "cam1_period",
-        "cam2_period",
-    )
 
     NODE = "cubeacp"
     NAME = "Estimation Parameters"
@@ -70,321 +31,138 @@ class EstimationParameters(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 31
     TABLE = 200
-    FIELDS = (
-        _base.FieldInfo(
-            "magnetometer_rate_filter_system_noise",
-            "Magnetometer Rate Filter System Noise",
-            0,
-            32,
-            "float",
-        ),
-        _base.FieldInfo("ekf_system_noise", "EKF System Noise", 32, 32, "float"),
-        _base.FieldInfo(
-            "css_measurement_noise",
-            "CSS Measurement Noise",
-            64,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "sun_sensor_measurement_noise",
-            "Sun Sensor Measurement Noise",
-            96,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "nadir_sensor_measurement_noise",
-            "Nadir Sensor Measurement Noise",
-            128,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "magnetometer_measurement_noise",
-            "Magnetometer Measurement Noise",
-            160,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "star_tracker_measurement_noise",
-            "Star Tracker Measurement Noise",
-            192,
-            32,
-            "float",
-        ),
-        _base.FieldInfo("use_sun_sensor", "Use Sun Sensor", 224, 1, "bool"),
-        _base.FieldInfo("use_nadir_sensor", "Use Nadir Sensor", 225, 1, "bool"),
-        _base.FieldInfo("use_css", "Use CSS", 226, 1, "bool"),
-        _base.FieldInfo("use_star_tracker", "Use Star Tracker", 227, 1, "bool"),
-        _base.FieldInfo(
-            "nadir_sensor_terminator_test",
-            "Nadir sensor terminator test",
-            228,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "automatic_magnetometer_recovery",
-            "Automatic Magnetometer Recovery",
-            229,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "magnetometer_mode",
-            "Magnetometer Mode",
-            230,
-            2,
-            "enum",
-            enum=MagModeVal,
-        ),
-        _base.FieldInfo(
-            "raw_magnetometer_selection",
-            "Magnetometer Selection for RAW MTM TLM",
-            232,
-            2,
-            "enum",
-            enum=MagModeVal,
-        ),
-        _base.FieldInfo(
-            "estimation_transition_on_rate_sensor_error",
-            "Automatic Estimation Transition due to Rate Sensor Errors",
-            234,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("cam1_period", "Cam1 period", 240, 4, "uint", unit="s"),
-        _base.FieldInfo("cam2_period", "Cam2 period", 244, 4, "uint", unit="s"),
-    )
 
-    magnetometer_rate_filter_system_noise: float
+    magnetometer_rate_filter_system_noise: float = _base.field(
+        "Magnetometer Rate Filter System Noise", 0, 32, "float", default=0.0
+    )
     """Magnetometer Rate Filter System Noise: bits 0 to 31, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): Noise: covariance or deviation, and no unit. The message calls
+    them covariances, the fields noise. Units are missing.
     """
-    ekf_system_noise: float
+
+    ekf_system_noise: float = _base.field("EKF System Noise", 32, 32, "float", default=0.0)
     """EKF System Noise: bits 32 to 63, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     """
-    css_measurement_noise: float
+
+    css_measurement_noise: float = _base.field("CSS Measurement Noise", 64, 32, "float", default=0.0)
     """CSS Measurement Noise: bits 64 to 95, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     """
-    sun_sensor_measurement_noise: float
+
+    sun_sensor_measurement_noise: float = _base.field("Sun Sensor Measurement Noise", 96, 32, "float", default=0.0)
     """Sun Sensor Measurement Noise: bits 96 to 127, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     """
-    nadir_sensor_measurement_noise: float
+
+    nadir_sensor_measurement_noise: float = _base.field("Nadir Sensor Measurement Noise", 128, 32, "float", default=0.0)
     """Nadir Sensor Measurement Noise: bits 128 to 159, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     """
-    magnetometer_measurement_noise: float
+
+    magnetometer_measurement_noise: float = _base.field("Magnetometer Measurement Noise", 160, 32, "float", default=0.0)
     """Magnetometer Measurement Noise: bits 160 to 191, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     """
-    star_tracker_measurement_noise: float
+
+    star_tracker_measurement_noise: float = _base.field("Star Tracker Measurement Noise", 192, 32, "float", default=0.0)
     """Star Tracker Measurement Noise: bits 192 to 223, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     """
-    use_sun_sensor: bool
+
+    use_sun_sensor: bool = _base.field("Use Sun Sensor", 224, 1, "bool", default=False)
     """Use Sun Sensor: bit 224.
 
     In the EKF.
     """
-    use_nadir_sensor: bool
+
+    use_nadir_sensor: bool = _base.field("Use Nadir Sensor", 225, 1, "bool", default=False)
     """Use Nadir Sensor: bit 225.
 
     In the EKF.
     """
-    use_css: bool
+
+    use_css: bool = _base.field("Use CSS", 226, 1, "bool", default=False)
     """Use CSS: bit 226.
 
     In the EKF.
     """
-    use_star_tracker: bool
+
+    use_star_tracker: bool = _base.field("Use Star Tracker", 227, 1, "bool", default=False)
     """Use Star Tracker: bit 227.
 
     In the EKF.
     """
-    nadir_sensor_terminator_test: bool
+
+    nadir_sensor_terminator_test: bool = _base.field("Nadir sensor terminator test", 228, 1, "bool", default=False)
     """Nadir sensor terminator test: bit 228.
 
     Ignores the nadir sensor while the terminator is in view.
     """
-    automatic_magnetometer_recovery: bool
+
+    automatic_magnetometer_recovery: bool = _base.field(
+        "Automatic Magnetometer Recovery", 229, 1, "bool", default=False
+    )
     """Automatic Magnetometer Recovery: bit 229.
 
     Switches to the redundant magnetometer on a failure.
     """
-    magnetometer_mode: MagModeVal
+
+    magnetometer_mode: MagModeVal = _base.field(
+        "Magnetometer Mode", 230, 2, "enum", default=MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL
+    )
     """Magnetometer Mode: bits 230 to 231.
 
     The magnetometer that estimation and control use.
 
-    Note ACP-049 (open): Magnetometer mode can be set in two places.
+    Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a
+    configuration message set the same mode. Which wins after a restart, and whether the
+    telecommand changes what the configuration returns, is not said.
     """
-    raw_magnetometer_selection: MagModeVal
+
+    raw_magnetometer_selection: MagModeVal = _base.field(
+        "Magnetometer Selection for RAW MTM TLM", 232, 2, "enum", default=MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL
+    )
     """Magnetometer Selection for RAW MTM TLM: bits 232 to 233.
 
     Magnetometer and sampling path for the second raw magnetometer frame.
 
-    Note ACP-118 (likely): Secondary magnetometer: fixed or selected.
+    Note ACP-118 (likely): Secondary magnetometer: fixed or selected. The frame is named
+    for the secondary magnetometer, with the field names of the primary one. A setting
+    selects which magnetometer, sampled how, it shows.
     """
-    estimation_transition_on_rate_sensor_error: bool
+
+    estimation_transition_on_rate_sensor_error: bool = _base.field(
+        "Automatic Estimation Transition due to Rate Sensor Errors", 234, 1, "bool", default=False
+    )
     """Automatic Estimation Transition due to Rate Sensor Errors: bit 234.
 
     From MEMS rate estimation to RKF on a rate sensor error.
     """
-    cam1_period: int
+
+    cam1_period: int = _base.field("Cam1 period", 240, 4, "uint", default=0, unit="s")
     """Cam1 period: bits 240 to 243, raw 0 to 15, in s.
 
     Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
     that camera.
 
-    Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    Erratum ACP-169 (certain): Two sampling periods in one field with a unit. Two
+    periods of four bits share a byte that has the unit s. The value of the byte is no
+    time; each half is, up to 15 s, and is held as a field of its own.
     """
-    cam2_period: int
+
+    cam2_period: int = _base.field("Cam2 period", 244, 4, "uint", default=0, unit="s")
     """Cam2 period: bits 244 to 247, raw 0 to 15, in s.
 
     Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
     that camera.
 
-    Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    Erratum ACP-169 (certain): see Cam1 period.
     """
-
-    def __init__(
-        self,
-        *,
-        magnetometer_rate_filter_system_noise: float = 0.0,
-        ekf_system_noise: float = 0.0,
-        css_measurement_noise: float = 0.0,
-        sun_sensor_measurement_noise: float = 0.0,
-        nadir_sensor_measurement_noise: float = 0.0,
-        magnetometer_measurement_noise: float = 0.0,
-        star_tracker_measurement_noise: float = 0.0,
-        use_sun_sensor: bool = False,
-        use_nadir_sensor: bool = False,
-        use_css: bool = False,
-        use_star_tracker: bool = False,
-        nadir_sensor_terminator_test: bool = False,
-        automatic_magnetometer_recovery: bool = False,
-        magnetometer_mode: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
-        raw_magnetometer_selection: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
-        estimation_transition_on_rate_sensor_error: bool = False,
-        cam1_period: int = 0,
-        cam2_period: int = 0,
-    ) -> None:
-        self.magnetometer_rate_filter_system_noise = magnetometer_rate_filter_system_noise
-        self.ekf_system_noise = ekf_system_noise
-        self.css_measurement_noise = css_measurement_noise
-        self.sun_sensor_measurement_noise = sun_sensor_measurement_noise
-        self.nadir_sensor_measurement_noise = nadir_sensor_measurement_noise
-        self.magnetometer_measurement_noise = magnetometer_measurement_noise
-        self.star_tracker_measurement_noise = star_tracker_measurement_noise
-        self.use_sun_sensor = use_sun_sensor
-        self.use_nadir_sensor = use_nadir_sensor
-        self.use_css = use_css
-        self.use_star_tracker = use_star_tracker
-        self.nadir_sensor_terminator_test = nadir_sensor_terminator_test
-        self.automatic_magnetometer_recovery = automatic_magnetometer_recovery
-        self.magnetometer_mode = magnetometer_mode
-        self.raw_magnetometer_selection = raw_magnetometer_selection
-        self.estimation_transition_on_rate_sensor_error = estimation_transition_on_rate_sensor_error
-        self.cam1_period = cam1_period
-        self.cam2_period = cam2_period
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> EstimationParameters:
-        """The message in a frame of exactly 31 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.magnetometer_rate_filter_system_noise,
-                self.ekf_system_noise,
-                self.css_measurement_noise,
-                self.sun_sensor_measurement_noise,
-                self.nadir_sensor_measurement_noise,
-                self.magnetometer_measurement_noise,
-                self.star_tracker_measurement_noise,
-                v28,
-                v29,
-                v30,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        (
-            self.use_sun_sensor,
-            self.use_nadir_sensor,
-            self.use_css,
-            self.use_star_tracker,
-            self.nadir_sensor_terminator_test,
-            self.automatic_magnetometer_recovery,
-            self.magnetometer_mode,
-        ) = _BITS_0[v28]
-        (
-            self.raw_magnetometer_selection,
-            self.estimation_transition_on_rate_sensor_error,
-        ) = _BITS_1[v29]
-        self.cam1_period, self.cam2_period = _BITS_2[v30]
-        total = (
-            self.magnetometer_rate_filter_system_noise
-            + self.ekf_system_noise
-            + self.css_measurement_noise
-            + self.sun_sensor_measurement_noise
-            + self.nadir_sensor_measurement_noise
-            + self.magnetometer_measurement_noise
-            + self.star_tracker_measurement_noise
-        )
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v28 = _BYTES_0[
-                self.use_sun_sensor,
-                self.use_nadir_sensor,
-                self.use_css,
-                self.use_star_tracker,
-                self.nadir_sensor_terminator_test,
-                self.automatic_magnetometer_recovery,
-                self.magnetometer_mode,
-            ]
-            v29 = _BYTES_1[
-                self.raw_magnetometer_selection,
-                self.estimation_transition_on_rate_sensor_error,
-            ]
-            v30 = _BYTES_2[self.cam1_period, self.cam2_period]
-            frame = _pack(
-                self.magnetometer_rate_filter_system_noise,
-                self.ekf_system_noise,
-                self.css_measurement_noise,
-                self.sun_sensor_measurement_noise,
-                self.nadir_sensor_measurement_noise,
-                self.magnetometer_measurement_noise,
-                self.star_tracker_measurement_noise,
-                v28,
-                v29,
-                v30,
-            )
-            total = (
-                self.magnetometer_rate_filter_system_noise
-                + self.ekf_system_noise
-                + self.css_measurement_noise
-                + self.sun_sensor_measurement_noise
-                + self.nadir_sensor_measurement_noise
-                + self.magnetometer_measurement_noise
-                + self.star_tracker_measurement_noise
-            )
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

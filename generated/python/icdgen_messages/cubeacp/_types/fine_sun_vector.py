@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class FineSunVector(_base.Message):
     """Fine Sun Vector: telemetry 153, 6 bytes. Table 109.
 
@@ -22,14 +15,11 @@ class FineSunVector(_base.Message):
 
     Bit 11 of the log mask.
 
-    Note ACP-069 (open): Reference frames of measured vectors are not named.
+    Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled
+    vectors are in the orbit frame, estimated rates relative to it. Of the measured
+    field, sun, nadir and rate vectors nothing is said; SBC for the body frame is in the
+    list of acronyms and used nowhere.
     """
-
-    __slots__ = (
-        "sun_x",
-        "sun_y",
-        "sun_z",
-    )
 
     NODE = "cubeacp"
     NAME = "Fine Sun Vector"
@@ -38,115 +28,30 @@ class FineSunVector(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 109
-    FIELDS = (
-        _base.FieldInfo(
-            "sun_x",
-            "Sun X",
-            0,
-            16,
-            "int",
-            physical="sun_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "sun_y",
-            "Sun Y",
-            16,
-            16,
-            "int",
-            physical="sun_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "sun_z",
-            "Sun Z",
-            32,
-            16,
-            "int",
-            physical="sun_z_physical",
-            scale=(1, 0, 10000),
-        ),
-    )
 
-    sun_x: int
+    sun_x: int = _base.field("Sun X", 0, 16, "int", default=0)
     """Sun X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
     """
-    sun_y: int
+    sun_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Sun X, as a physical value: -3.2768 to 3.2767."""
+    sun_x_micro: int = _base.whole(100, 0)
+    """Sun X in millionths, exact: -3276800 to 3276700."""
+
+    sun_y: int = _base.field("Sun Y", 16, 16, "int", default=0)
     """Sun Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
     """
-    sun_z: int
+    sun_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Sun Y, as a physical value: -3.2768 to 3.2767."""
+    sun_y_micro: int = _base.whole(100, 0)
+    """Sun Y in millionths, exact: -3276800 to 3276700."""
+
+    sun_z: int = _base.field("Sun Z", 32, 16, "int", default=0)
     """Sun Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
     """
-
-    def __init__(
-        self,
-        *,
-        sun_x: int = 0,
-        sun_y: int = 0,
-        sun_z: int = 0,
-    ) -> None:
-        self.sun_x = sun_x
-        self.sun_y = sun_y
-        self.sun_z = sun_z
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        sun_x_physical: float = 0.0,
-        sun_y_physical: float = 0.0,
-        sun_z_physical: float = 0.0,
-    ) -> FineSunVector:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.sun_x_physical = sun_x_physical
-        self.sun_y_physical = sun_y_physical
-        self.sun_z_physical = sun_z_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> FineSunVector:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.sun_x, self.sun_y, self.sun_z = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.sun_x, self.sun_y, self.sun_z)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def sun_x_physical(self) -> float:
-        """Sun X, as a physical value: -3.2768 to 3.2767."""
-        return self.sun_x / 10000
-
-    @sun_x_physical.setter
-    def sun_x_physical(self, value: float) -> None:
-        self.sun_x = _codec.raw_value(value, "sun_x", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def sun_y_physical(self) -> float:
-        """Sun Y, as a physical value: -3.2768 to 3.2767."""
-        return self.sun_y / 10000
-
-    @sun_y_physical.setter
-    def sun_y_physical(self, value: float) -> None:
-        self.sun_y = _codec.raw_value(value, "sun_y", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def sun_z_physical(self) -> float:
-        """Sun Z, as a physical value: -3.2768 to 3.2767."""
-        return self.sun_z / 10000
-
-    @sun_z_physical.setter
-    def sun_z_physical(self, value: float) -> None:
-        self.sun_z = _codec.raw_value(value, "sun_z", (1, 0, 10000), -32768, 32767)
+    sun_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Sun Z, as a physical value: -3.2768 to 3.2767."""
+    sun_z_micro: int = _base.whole(100, 0)
+    """Sun Z in millionths, exact: -3276800 to 3276700."""

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class IgrfModelledMagneticFieldVector(_base.Message):
     """IGRF Modelled Magnetic Field Vector: telemetry 159, 6 bytes. Table 115.
 
@@ -23,12 +16,6 @@ class IgrfModelledMagneticFieldVector(_base.Message):
     Bit 35 of the log mask.
     """
 
-    __slots__ = (
-        "field_x",
-        "field_y",
-        "field_z",
-    )
-
     NODE = "cubeacp"
     NAME = "IGRF Modelled Magnetic Field Vector"
     KIND = "telemetry"
@@ -36,118 +23,30 @@ class IgrfModelledMagneticFieldVector(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 115
-    FIELDS = (
-        _base.FieldInfo(
-            "field_x",
-            "IGRF Modelled Magnetic Field X",
-            0,
-            16,
-            "int",
-            unit="uT",
-            physical="field_x_ut",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "field_y",
-            "IGRF Modelled Magnetic Field Y",
-            16,
-            16,
-            "int",
-            unit="uT",
-            physical="field_y_ut",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "field_z",
-            "IGRF Modelled Magnetic Field Z",
-            32,
-            16,
-            "int",
-            unit="uT",
-            physical="field_z_ut",
-            scale=(1, 0, 100),
-        ),
-    )
 
-    field_x: int
+    field_x: int = _base.field("IGRF Modelled Magnetic Field X", 0, 16, "int", default=0, unit="uT")
     """IGRF Modelled Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 uT.
     """
-    field_y: int
+    field_x_ut: float = _base.scaled(1, 0, 100, default=0.0)
+    """IGRF Modelled Magnetic Field X in uT: -327.68 to 327.67."""
+    field_x_nt: int = _base.whole(10, 0)
+    """IGRF Modelled Magnetic Field X in nT, exact: -327680 to 327670."""
+
+    field_y: int = _base.field("IGRF Modelled Magnetic Field Y", 16, 16, "int", default=0, unit="uT")
     """IGRF Modelled Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 uT.
     """
-    field_z: int
+    field_y_ut: float = _base.scaled(1, 0, 100, default=0.0)
+    """IGRF Modelled Magnetic Field Y in uT: -327.68 to 327.67."""
+    field_y_nt: int = _base.whole(10, 0)
+    """IGRF Modelled Magnetic Field Y in nT, exact: -327680 to 327670."""
+
+    field_z: int = _base.field("IGRF Modelled Magnetic Field Z", 32, 16, "int", default=0, unit="uT")
     """IGRF Modelled Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 uT.
     """
-
-    def __init__(
-        self,
-        *,
-        field_x: int = 0,
-        field_y: int = 0,
-        field_z: int = 0,
-    ) -> None:
-        self.field_x = field_x
-        self.field_y = field_y
-        self.field_z = field_z
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        field_x_ut: float = 0.0,
-        field_y_ut: float = 0.0,
-        field_z_ut: float = 0.0,
-    ) -> IgrfModelledMagneticFieldVector:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.field_x_ut = field_x_ut
-        self.field_y_ut = field_y_ut
-        self.field_z_ut = field_z_ut
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> IgrfModelledMagneticFieldVector:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.field_x, self.field_y, self.field_z = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.field_x, self.field_y, self.field_z)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def field_x_ut(self) -> float:
-        """IGRF Modelled Magnetic Field X in uT: -327.68 to 327.67."""
-        return self.field_x / 100
-
-    @field_x_ut.setter
-    def field_x_ut(self, value: float) -> None:
-        self.field_x = _codec.raw_value(value, "field_x", (1, 0, 100), -32768, 32767)
-
-    @property
-    def field_y_ut(self) -> float:
-        """IGRF Modelled Magnetic Field Y in uT: -327.68 to 327.67."""
-        return self.field_y / 100
-
-    @field_y_ut.setter
-    def field_y_ut(self, value: float) -> None:
-        self.field_y = _codec.raw_value(value, "field_y", (1, 0, 100), -32768, 32767)
-
-    @property
-    def field_z_ut(self) -> float:
-        """IGRF Modelled Magnetic Field Z in uT: -327.68 to 327.67."""
-        return self.field_z / 100
-
-    @field_z_ut.setter
-    def field_z_ut(self, value: float) -> None:
-        self.field_z = _codec.raw_value(value, "field_z", (1, 0, 100), -32768, 32767)
+    field_z_ut: float = _base.scaled(1, 0, 100, default=0.0)
+    """IGRF Modelled Magnetic Field Z in uT: -327.68 to 327.67."""
+    field_z_nt: int = _base.whole(10, 0)
+    """IGRF Modelled Magnetic Field Z in nT, exact: -327680 to 327670."""

@@ -5,30 +5,19 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class InertialPointingReferenceVector(_base.Message):
     """Inertial Pointing Reference Vector: configuration, set by telecommand 34, got by
     telemetry 238, 6 bytes. Table 214.
 
     Unit vector for the inertial pointing mode.
 
-    Note ACP-024 (open): Control modes that are named and not listed.
+    Note ACP-024 (open): Control modes that are named and not listed. An inertial
+    pointing control mode has a reference vector, and GEO tracking, inertial and two sun
+    pointing modes are special selections. The list of control modes has none of them.
     """
-
-    __slots__ = (
-        "reference_x",
-        "reference_y",
-        "reference_z",
-    )
 
     NODE = "cubeacp"
     NAME = "Inertial Pointing Reference Vector"
@@ -38,139 +27,38 @@ class InertialPointingReferenceVector(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 6
     TABLE = 214
-    FIELDS = (
-        _base.FieldInfo(
-            "reference_x",
-            "Inertial Reference X",
-            0,
-            16,
-            "int",
-            physical="reference_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "reference_y",
-            "Inertial Reference Y",
-            16,
-            16,
-            "int",
-            physical="reference_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "reference_z",
-            "Inertial Reference Z",
-            32,
-            16,
-            "int",
-            physical="reference_z_physical",
-            scale=(1, 0, 10000),
-        ),
-    )
 
-    reference_x: int
+    reference_x: int = _base.field("Inertial Reference X", 0, 16, "int", default=0)
     """Inertial Reference X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`,
     -3.2768 to 3.2767.
 
-    Note ACP-188 (open): Inertial reference: unit vector without a frame.
+    Note ACP-188 (open): Inertial reference: unit vector without a frame. The vector is
+    for an inertial pointing mode; which inertial frame, and which body axis points
+    along it, is not said.
     """
-    reference_y: int
+    reference_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Inertial Reference X, as a physical value: -3.2768 to 3.2767."""
+    reference_x_micro: int = _base.whole(100, 0)
+    """Inertial Reference X in millionths, exact: -3276800 to 3276700."""
+
+    reference_y: int = _base.field("Inertial Reference Y", 16, 16, "int", default=0)
     """Inertial Reference Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`,
     -3.2768 to 3.2767.
 
-    Note ACP-188 (open): Inertial reference: unit vector without a frame.
+    Note ACP-188 (open): see Inertial Reference X.
     """
-    reference_z: int
+    reference_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Inertial Reference Y, as a physical value: -3.2768 to 3.2767."""
+    reference_y_micro: int = _base.whole(100, 0)
+    """Inertial Reference Y in millionths, exact: -3276800 to 3276700."""
+
+    reference_z: int = _base.field("Inertial Reference Z", 32, 16, "int", default=0)
     """Inertial Reference Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`,
     -3.2768 to 3.2767.
 
-    Note ACP-188 (open): Inertial reference: unit vector without a frame.
+    Note ACP-188 (open): see Inertial Reference X.
     """
-
-    def __init__(
-        self,
-        *,
-        reference_x: int = 0,
-        reference_y: int = 0,
-        reference_z: int = 0,
-    ) -> None:
-        self.reference_x = reference_x
-        self.reference_y = reference_y
-        self.reference_z = reference_z
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        reference_x_physical: float = 0.0,
-        reference_y_physical: float = 0.0,
-        reference_z_physical: float = 0.0,
-    ) -> InertialPointingReferenceVector:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.reference_x_physical = reference_x_physical
-        self.reference_y_physical = reference_y_physical
-        self.reference_z_physical = reference_z_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> InertialPointingReferenceVector:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.reference_x, self.reference_y, self.reference_z = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.reference_x, self.reference_y, self.reference_z)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def reference_x_physical(self) -> float:
-        """Inertial Reference X, as a physical value: -3.2768 to 3.2767."""
-        return self.reference_x / 10000
-
-    @reference_x_physical.setter
-    def reference_x_physical(self, value: float) -> None:
-        self.reference_x = _codec.raw_value(
-            value,
-            "reference_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def reference_y_physical(self) -> float:
-        """Inertial Reference Y, as a physical value: -3.2768 to 3.2767."""
-        return self.reference_y / 10000
-
-    @reference_y_physical.setter
-    def reference_y_physical(self, value: float) -> None:
-        self.reference_y = _codec.raw_value(
-            value,
-            "reference_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def reference_z_physical(self) -> float:
-        """Inertial Reference Z, as a physical value: -3.2768 to 3.2767."""
-        return self.reference_z / 10000
-
-    @reference_z_physical.setter
-    def reference_z_physical(self, value: float) -> None:
-        self.reference_z = _codec.raw_value(
-            value,
-            "reference_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
+    reference_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Inertial Reference Z, as a physical value: -3.2768 to 3.2767."""
+    reference_z_micro: int = _base.whole(100, 0)
+    """Inertial Reference Z in millionths, exact: -3276800 to 3276700."""

@@ -5,26 +5,12 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .jpg_convert_result import JpgConvertResult
 
-_STRUCT = struct.Struct("<3B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, JpgConvertResult))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class JpgConversionProgress(_base.Message):
     """JPG Conversion Progress: telemetry 133, 3 bytes. Table 99."""
-
-    __slots__ = (
-        "progress_percentage",
-        "conversion_result",
-        "output_file_counter",
-    )
 
     NODE = "cubeacp"
     NAME = "JPG Conversion Progress"
@@ -33,65 +19,19 @@ class JpgConversionProgress(_base.Message):
     IDS = (ID,)
     LENGTH = 3
     TABLE = 99
-    FIELDS = (
-        _base.FieldInfo(
-            "progress_percentage",
-            "Progress Percentage",
-            0,
-            8,
-            "uint",
-            unit="%",
-        ),
-        _base.FieldInfo(
-            "conversion_result",
-            "Conversion Result",
-            8,
-            8,
-            "enum",
-            enum=JpgConvertResult,
-        ),
-        _base.FieldInfo("output_file_counter", "Output File Counter", 16, 8, "uint"),
-    )
 
-    progress_percentage: int
+    progress_percentage: int = _base.field("Progress Percentage", 0, 8, "uint", default=0, unit="%")
     """Progress Percentage: bits 0 to 7, raw 0 to 255, in %.
 
-    Erratum ACP-065 (certain): JPG progress has its unit in words only.
+    Erratum ACP-065 (certain): JPG progress has its unit in words only. Name and
+    description are of a percentage; the unit of measure is missing, which the frame for
+    images has.
     """
-    conversion_result: JpgConvertResult
+
+    conversion_result: JpgConvertResult = _base.field(
+        "Conversion Result", 8, 8, "enum", default=JpgConvertResult.NOTHING_CONVERTED_YET
+    )
     """Conversion Result: bits 8 to 15."""
-    output_file_counter: int
+
+    output_file_counter: int = _base.field("Output File Counter", 16, 8, "uint", default=0)
     """Output File Counter: bits 16 to 23, raw 0 to 255."""
-
-    def __init__(
-        self,
-        *,
-        progress_percentage: int = 0,
-        conversion_result: JpgConvertResult = JpgConvertResult.NOTHING_CONVERTED_YET,
-        output_file_counter: int = 0,
-    ) -> None:
-        self.progress_percentage = progress_percentage
-        self.conversion_result = conversion_result
-        self.output_file_counter = output_file_counter
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> JpgConversionProgress:
-        """The message in a frame of exactly 3 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.progress_percentage, v1, self.output_file_counter = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.conversion_result = _BITS_0[v1]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.progress_percentage,
-                self.conversion_result,
-                self.output_file_counter,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class MagneticFieldVector(_base.Message):
     """Magnetic Field Vector: telemetry 151, 6 bytes. Table 107.
 
@@ -22,14 +15,11 @@ class MagneticFieldVector(_base.Message):
 
     Bit 9 of the log mask.
 
-    Note ACP-069 (open): Reference frames of measured vectors are not named.
+    Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled
+    vectors are in the orbit frame, estimated rates relative to it. Of the measured
+    field, sun, nadir and rate vectors nothing is said; SBC for the body frame is in the
+    list of acronyms and used nowhere.
     """
-
-    __slots__ = (
-        "magnetic_field_x",
-        "magnetic_field_y",
-        "magnetic_field_z",
-    )
 
     NODE = "cubeacp"
     NAME = "Magnetic Field Vector"
@@ -38,144 +28,30 @@ class MagneticFieldVector(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 107
-    FIELDS = (
-        _base.FieldInfo(
-            "magnetic_field_x",
-            "Magnetic Field X",
-            0,
-            16,
-            "int",
-            unit="uT",
-            physical="magnetic_field_x_ut",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "magnetic_field_y",
-            "Magnetic Field Y",
-            16,
-            16,
-            "int",
-            unit="uT",
-            physical="magnetic_field_y_ut",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "magnetic_field_z",
-            "Magnetic Field Z",
-            32,
-            16,
-            "int",
-            unit="uT",
-            physical="magnetic_field_z_ut",
-            scale=(1, 0, 100),
-        ),
-    )
 
-    magnetic_field_x: int
+    magnetic_field_x: int = _base.field("Magnetic Field X", 0, 16, "int", default=0, unit="uT")
     """Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68
     to 327.67 uT.
     """
-    magnetic_field_y: int
+    magnetic_field_x_ut: float = _base.scaled(1, 0, 100, default=0.0)
+    """Magnetic Field X in uT: -327.68 to 327.67."""
+    magnetic_field_x_nt: int = _base.whole(10, 0)
+    """Magnetic Field X in nT, exact: -327680 to 327670."""
+
+    magnetic_field_y: int = _base.field("Magnetic Field Y", 16, 16, "int", default=0, unit="uT")
     """Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 uT.
     """
-    magnetic_field_z: int
+    magnetic_field_y_ut: float = _base.scaled(1, 0, 100, default=0.0)
+    """Magnetic Field Y in uT: -327.68 to 327.67."""
+    magnetic_field_y_nt: int = _base.whole(10, 0)
+    """Magnetic Field Y in nT, exact: -327680 to 327670."""
+
+    magnetic_field_z: int = _base.field("Magnetic Field Z", 32, 16, "int", default=0, unit="uT")
     """Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
     -327.68 to 327.67 uT.
     """
-
-    def __init__(
-        self,
-        *,
-        magnetic_field_x: int = 0,
-        magnetic_field_y: int = 0,
-        magnetic_field_z: int = 0,
-    ) -> None:
-        self.magnetic_field_x = magnetic_field_x
-        self.magnetic_field_y = magnetic_field_y
-        self.magnetic_field_z = magnetic_field_z
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        magnetic_field_x_ut: float = 0.0,
-        magnetic_field_y_ut: float = 0.0,
-        magnetic_field_z_ut: float = 0.0,
-    ) -> MagneticFieldVector:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.magnetic_field_x_ut = magnetic_field_x_ut
-        self.magnetic_field_y_ut = magnetic_field_y_ut
-        self.magnetic_field_z_ut = magnetic_field_z_ut
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> MagneticFieldVector:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.magnetic_field_x,
-                self.magnetic_field_y,
-                self.magnetic_field_z,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.magnetic_field_x,
-                self.magnetic_field_y,
-                self.magnetic_field_z,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def magnetic_field_x_ut(self) -> float:
-        """Magnetic Field X in uT: -327.68 to 327.67."""
-        return self.magnetic_field_x / 100
-
-    @magnetic_field_x_ut.setter
-    def magnetic_field_x_ut(self, value: float) -> None:
-        self.magnetic_field_x = _codec.raw_value(
-            value,
-            "magnetic_field_x",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetic_field_y_ut(self) -> float:
-        """Magnetic Field Y in uT: -327.68 to 327.67."""
-        return self.magnetic_field_y / 100
-
-    @magnetic_field_y_ut.setter
-    def magnetic_field_y_ut(self, value: float) -> None:
-        self.magnetic_field_y = _codec.raw_value(
-            value,
-            "magnetic_field_y",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetic_field_z_ut(self) -> float:
-        """Magnetic Field Z in uT: -327.68 to 327.67."""
-        return self.magnetic_field_z / 100
-
-    @magnetic_field_z_ut.setter
-    def magnetic_field_z_ut(self, value: float) -> None:
-        self.magnetic_field_z = _codec.raw_value(
-            value,
-            "magnetic_field_z",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
+    magnetic_field_z_ut: float = _base.scaled(1, 0, 100, default=0.0)
+    """Magnetic Field Z in uT: -327.68 to 327.67."""
+    magnetic_field_z_nt: int = _base.whole(10, 0)
+    """Magnetic Field Z in nT, exact: -327680 to 327670."""

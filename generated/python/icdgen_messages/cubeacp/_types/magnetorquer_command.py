@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class MagnetorquerCommand(_base.Message):
     """Magnetorquer Command: telemetry 157, 6 bytes. Table 113.
 
     Bit 7 of the log mask.
     """
-
-    __slots__ = (
-        "x_magnetorquer_command",
-        "y_magnetorquer_command",
-        "z_magnetorquer_command",
-    )
 
     NODE = "cubeacp"
     NAME = "Magnetorquer Command"
@@ -34,96 +21,37 @@ class MagnetorquerCommand(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 113
-    FIELDS = (
-        _base.FieldInfo(
-            "x_magnetorquer_command",
-            "X Magnetorquer Command",
-            0,
-            16,
-            "int",
-            unit="10ms units",
-        ),
-        _base.FieldInfo(
-            "y_magnetorquer_command",
-            "Y Magnetorquer Command",
-            16,
-            16,
-            "int",
-            unit="10ms units",
-        ),
-        _base.FieldInfo(
-            "z_magnetorquer_command",
-            "Z Magnetorquer Command",
-            32,
-            16,
-            "int",
-            unit="10ms units",
-        ),
-    )
 
-    x_magnetorquer_command: int
+    x_magnetorquer_command: int = _base.field("X Magnetorquer Command", 0, 16, "int", default=0, unit="10ms units")
     """X Magnetorquer Command: bits 0 to 15, raw -32768 to 32767, in 10ms units.
 
     On-time.
 
     Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    on-time.
+    on-time. The telecommand takes thousandths of a duty cycle, the frames give an
+    on-time in units of 10 ms. The conversion depends on the loop period and on a
+    resolution that is a setting.
 
-    Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    Note ACP-071 (likely): 10ms units is a factor, not a unit. The unit holds the scale
+    that a formula should. It is kept as a unit of counts; nothing is converted.
     """
-    y_magnetorquer_command: int
+
+    y_magnetorquer_command: int = _base.field("Y Magnetorquer Command", 16, 16, "int", default=0, unit="10ms units")
     """Y Magnetorquer Command: bits 16 to 31, raw -32768 to 32767, in 10ms units.
 
     On-time.
 
-    Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    on-time.
+    Note ACP-070 (open): see X Magnetorquer Command.
 
-    Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    Note ACP-071 (likely): see X Magnetorquer Command.
     """
-    z_magnetorquer_command: int
+
+    z_magnetorquer_command: int = _base.field("Z Magnetorquer Command", 32, 16, "int", default=0, unit="10ms units")
     """Z Magnetorquer Command: bits 32 to 47, raw -32768 to 32767, in 10ms units.
 
     On-time.
 
-    Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    on-time.
+    Note ACP-070 (open): see X Magnetorquer Command.
 
-    Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    Note ACP-071 (likely): see X Magnetorquer Command.
     """
-
-    def __init__(
-        self,
-        *,
-        x_magnetorquer_command: int = 0,
-        y_magnetorquer_command: int = 0,
-        z_magnetorquer_command: int = 0,
-    ) -> None:
-        self.x_magnetorquer_command = x_magnetorquer_command
-        self.y_magnetorquer_command = y_magnetorquer_command
-        self.z_magnetorquer_command = z_magnetorquer_command
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> MagnetorquerCommand:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.x_magnetorquer_command,
-                self.y_magnetorquer_command,
-                self.z_magnetorquer_command,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.x_magnetorquer_command,
-                self.y_magnetorquer_command,
-                self.z_magnetorquer_command,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class ModelledSunVector(_base.Message):
     """Modelled Sun Vector: telemetry 160, 6 bytes. Table 116.
 
@@ -23,12 +16,6 @@ class ModelledSunVector(_base.Message):
     Bit 36 of the log mask.
     """
 
-    __slots__ = (
-        "modelled_sun_vector_x",
-        "modelled_sun_vector_y",
-        "modelled_sun_vector_z",
-    )
-
     NODE = "cubeacp"
     NAME = "Modelled Sun Vector"
     KIND = "telemetry"
@@ -36,141 +23,30 @@ class ModelledSunVector(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 116
-    FIELDS = (
-        _base.FieldInfo(
-            "modelled_sun_vector_x",
-            "Modelled Sun Vector X",
-            0,
-            16,
-            "int",
-            physical="modelled_sun_vector_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "modelled_sun_vector_y",
-            "Modelled Sun Vector Y",
-            16,
-            16,
-            "int",
-            physical="modelled_sun_vector_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "modelled_sun_vector_z",
-            "Modelled Sun Vector Z",
-            32,
-            16,
-            "int",
-            physical="modelled_sun_vector_z_physical",
-            scale=(1, 0, 10000),
-        ),
-    )
 
-    modelled_sun_vector_x: int
+    modelled_sun_vector_x: int = _base.field("Modelled Sun Vector X", 0, 16, "int", default=0)
     """Modelled Sun Vector X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`,
     -3.2768 to 3.2767.
     """
-    modelled_sun_vector_y: int
+    modelled_sun_vector_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Modelled Sun Vector X, as a physical value: -3.2768 to 3.2767."""
+    modelled_sun_vector_x_micro: int = _base.whole(100, 0)
+    """Modelled Sun Vector X in millionths, exact: -3276800 to 3276700."""
+
+    modelled_sun_vector_y: int = _base.field("Modelled Sun Vector Y", 16, 16, "int", default=0)
     """Modelled Sun Vector Y: bits 16 to 31, raw -32768 to 32767; physical
     `raw/10000.0`, -3.2768 to 3.2767.
     """
-    modelled_sun_vector_z: int
+    modelled_sun_vector_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Modelled Sun Vector Y, as a physical value: -3.2768 to 3.2767."""
+    modelled_sun_vector_y_micro: int = _base.whole(100, 0)
+    """Modelled Sun Vector Y in millionths, exact: -3276800 to 3276700."""
+
+    modelled_sun_vector_z: int = _base.field("Modelled Sun Vector Z", 32, 16, "int", default=0)
     """Modelled Sun Vector Z: bits 32 to 47, raw -32768 to 32767; physical
     `raw/10000.0`, -3.2768 to 3.2767.
     """
-
-    def __init__(
-        self,
-        *,
-        modelled_sun_vector_x: int = 0,
-        modelled_sun_vector_y: int = 0,
-        modelled_sun_vector_z: int = 0,
-    ) -> None:
-        self.modelled_sun_vector_x = modelled_sun_vector_x
-        self.modelled_sun_vector_y = modelled_sun_vector_y
-        self.modelled_sun_vector_z = modelled_sun_vector_z
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        modelled_sun_vector_x_physical: float = 0.0,
-        modelled_sun_vector_y_physical: float = 0.0,
-        modelled_sun_vector_z_physical: float = 0.0,
-    ) -> ModelledSunVector:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.modelled_sun_vector_x_physical = modelled_sun_vector_x_physical
-        self.modelled_sun_vector_y_physical = modelled_sun_vector_y_physical
-        self.modelled_sun_vector_z_physical = modelled_sun_vector_z_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> ModelledSunVector:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.modelled_sun_vector_x,
-                self.modelled_sun_vector_y,
-                self.modelled_sun_vector_z,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.modelled_sun_vector_x,
-                self.modelled_sun_vector_y,
-                self.modelled_sun_vector_z,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def modelled_sun_vector_x_physical(self) -> float:
-        """Modelled Sun Vector X, as a physical value: -3.2768 to 3.2767."""
-        return self.modelled_sun_vector_x / 10000
-
-    @modelled_sun_vector_x_physical.setter
-    def modelled_sun_vector_x_physical(self, value: float) -> None:
-        self.modelled_sun_vector_x = _codec.raw_value(
-            value,
-            "modelled_sun_vector_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def modelled_sun_vector_y_physical(self) -> float:
-        """Modelled Sun Vector Y, as a physical value: -3.2768 to 3.2767."""
-        return self.modelled_sun_vector_y / 10000
-
-    @modelled_sun_vector_y_physical.setter
-    def modelled_sun_vector_y_physical(self, value: float) -> None:
-        self.modelled_sun_vector_y = _codec.raw_value(
-            value,
-            "modelled_sun_vector_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def modelled_sun_vector_z_physical(self) -> float:
-        """Modelled Sun Vector Z, as a physical value: -3.2768 to 3.2767."""
-        return self.modelled_sun_vector_z / 10000
-
-    @modelled_sun_vector_z_physical.setter
-    def modelled_sun_vector_z_physical(self, value: float) -> None:
-        self.modelled_sun_vector_z = _codec.raw_value(
-            value,
-            "modelled_sun_vector_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
+    modelled_sun_vector_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Modelled Sun Vector Z, as a physical value: -3.2768 to 3.2767."""
+    modelled_sun_vector_z_micro: int = _base.whole(100, 0)
+    """Modelled Sun Vector Z in millionths, exact: -3276800 to 3276700."""

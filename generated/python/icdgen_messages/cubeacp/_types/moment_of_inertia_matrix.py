@@ -5,31 +5,15 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
-
-_STRUCT = struct.Struct("<6f")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class MomentOfInertiaMatrix(_base.Message):
     """Moment of Inertia Matrix: configuration, set by telecommand 41, got by telemetry
     222, 24 bytes. Table 199.
 
     Of the satellite.
     """
-
-    __slots__ = (
-        "moment_of_inertia_ixx",
-        "moment_of_inertia_iyy",
-        "moment_of_inertia_izz",
-        "product_of_inertia_ixy",
-        "product_of_inertia_ixz",
-        "product_of_inertia_iyz",
-    )
 
     NODE = "cubeacp"
     NAME = "Moment of Inertia Matrix"
@@ -39,142 +23,36 @@ class MomentOfInertiaMatrix(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 24
     TABLE = 199
-    FIELDS = (
-        _base.FieldInfo(
-            "moment_of_inertia_ixx",
-            "Moment Of Inertia - Ixx",
-            0,
-            32,
-            "float",
-            unit="kg.m^2",
-        ),
-        _base.FieldInfo(
-            "moment_of_inertia_iyy",
-            "Moment Of Inertia - Iyy",
-            32,
-            32,
-            "float",
-            unit="kg.m^2",
-        ),
-        _base.FieldInfo(
-            "moment_of_inertia_izz",
-            "Moment Of Inertia - Izz",
-            64,
-            32,
-            "float",
-            unit="kg.m^2",
-        ),
-        _base.FieldInfo(
-            "product_of_inertia_ixy",
-            "Product Of Inertia - Ixy",
-            96,
-            32,
-            "float",
-            unit="kg.m^2",
-        ),
-        _base.FieldInfo(
-            "product_of_inertia_ixz",
-            "Product Of Inertia - Ixz",
-            128,
-            32,
-            "float",
-            unit="kg.m^2",
-        ),
-        _base.FieldInfo(
-            "product_of_inertia_iyz",
-            "Product Of Inertia - Iyz",
-            160,
-            32,
-            "float",
-            unit="kg.m^2",
-        ),
-    )
 
-    moment_of_inertia_ixx: float
+    moment_of_inertia_ixx: float = _base.field("Moment Of Inertia - Ixx", 0, 32, "float", default=0.0, unit="kg.m^2")
     """Moment Of Inertia - Ixx: bits 0 to 31, 32-bit float, in kg.m^2."""
-    moment_of_inertia_iyy: float
+
+    moment_of_inertia_iyy: float = _base.field("Moment Of Inertia - Iyy", 32, 32, "float", default=0.0, unit="kg.m^2")
     """Moment Of Inertia - Iyy: bits 32 to 63, 32-bit float, in kg.m^2."""
-    moment_of_inertia_izz: float
+
+    moment_of_inertia_izz: float = _base.field("Moment Of Inertia - Izz", 64, 32, "float", default=0.0, unit="kg.m^2")
     """Moment Of Inertia - Izz: bits 64 to 95, 32-bit float, in kg.m^2."""
-    product_of_inertia_ixy: float
+
+    product_of_inertia_ixy: float = _base.field("Product Of Inertia - Ixy", 96, 32, "float", default=0.0, unit="kg.m^2")
     """Product Of Inertia - Ixy: bits 96 to 127, 32-bit float, in kg.m^2.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): Products of inertia: the sign is not given. The products are
+    elements of a matrix by the message and products of inertia by their names, which
+    differ in sign by the usual definitions. Neither is defined.
     """
-    product_of_inertia_ixz: float
+
+    product_of_inertia_ixz: float = _base.field(
+        "Product Of Inertia - Ixz", 128, 32, "float", default=0.0, unit="kg.m^2"
+    )
     """Product Of Inertia - Ixz: bits 128 to 159, 32-bit float, in kg.m^2.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): see Product Of Inertia - Ixy.
     """
-    product_of_inertia_iyz: float
+
+    product_of_inertia_iyz: float = _base.field(
+        "Product Of Inertia - Iyz", 160, 32, "float", default=0.0, unit="kg.m^2"
+    )
     """Product Of Inertia - Iyz: bits 160 to 191, 32-bit float, in kg.m^2.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): see Product Of Inertia - Ixy.
     """
-
-    def __init__(
-        self,
-        *,
-        moment_of_inertia_ixx: float = 0.0,
-        moment_of_inertia_iyy: float = 0.0,
-        moment_of_inertia_izz: float = 0.0,
-        product_of_inertia_ixy: float = 0.0,
-        product_of_inertia_ixz: float = 0.0,
-        product_of_inertia_iyz: float = 0.0,
-    ) -> None:
-        self.moment_of_inertia_ixx = moment_of_inertia_ixx
-        self.moment_of_inertia_iyy = moment_of_inertia_iyy
-        self.moment_of_inertia_izz = moment_of_inertia_izz
-        self.product_of_inertia_ixy = product_of_inertia_ixy
-        self.product_of_inertia_ixz = product_of_inertia_ixz
-        self.product_of_inertia_iyz = product_of_inertia_iyz
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> MomentOfInertiaMatrix:
-        """The message in a frame of exactly 24 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.moment_of_inertia_ixx,
-                self.moment_of_inertia_iyy,
-                self.moment_of_inertia_izz,
-                self.product_of_inertia_ixy,
-                self.product_of_inertia_ixz,
-                self.product_of_inertia_iyz,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        total = (
-            self.moment_of_inertia_ixx
-            + self.moment_of_inertia_iyy
-            + self.moment_of_inertia_izz
-            + self.product_of_inertia_ixy
-            + self.product_of_inertia_ixz
-            + self.product_of_inertia_iyz
-        )
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            frame = _pack(
-                self.moment_of_inertia_ixx,
-                self.moment_of_inertia_iyy,
-                self.moment_of_inertia_izz,
-                self.product_of_inertia_ixy,
-                self.product_of_inertia_ixz,
-                self.product_of_inertia_iyz,
-            )
-            total = (
-                self.moment_of_inertia_ixx
-                + self.moment_of_inertia_iyy
-                + self.moment_of_inertia_izz
-                + self.product_of_inertia_ixy
-                + self.product_of_inertia_ixz
-                + self.product_of_inertia_iyz
-            )
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

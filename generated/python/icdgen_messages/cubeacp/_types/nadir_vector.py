@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class NadirVector(_base.Message):
     """Nadir Vector: telemetry 154, 6 bytes. Table 110.
 
@@ -22,14 +15,11 @@ class NadirVector(_base.Message):
 
     Bit 12 of the log mask.
 
-    Note ACP-069 (open): Reference frames of measured vectors are not named.
+    Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled
+    vectors are in the orbit frame, estimated rates relative to it. Of the measured
+    field, sun, nadir and rate vectors nothing is said; SBC for the body frame is in the
+    list of acronyms and used nowhere.
     """
-
-    __slots__ = (
-        "nadir_x",
-        "nadir_y",
-        "nadir_z",
-    )
 
     NODE = "cubeacp"
     NAME = "Nadir Vector"
@@ -38,115 +28,30 @@ class NadirVector(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 110
-    FIELDS = (
-        _base.FieldInfo(
-            "nadir_x",
-            "Nadir X",
-            0,
-            16,
-            "int",
-            physical="nadir_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "nadir_y",
-            "Nadir Y",
-            16,
-            16,
-            "int",
-            physical="nadir_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "nadir_z",
-            "Nadir Z",
-            32,
-            16,
-            "int",
-            physical="nadir_z_physical",
-            scale=(1, 0, 10000),
-        ),
-    )
 
-    nadir_x: int
+    nadir_x: int = _base.field("Nadir X", 0, 16, "int", default=0)
     """Nadir X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
     """
-    nadir_y: int
+    nadir_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Nadir X, as a physical value: -3.2768 to 3.2767."""
+    nadir_x_micro: int = _base.whole(100, 0)
+    """Nadir X in millionths, exact: -3276800 to 3276700."""
+
+    nadir_y: int = _base.field("Nadir Y", 16, 16, "int", default=0)
     """Nadir Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
     """
-    nadir_z: int
+    nadir_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Nadir Y, as a physical value: -3.2768 to 3.2767."""
+    nadir_y_micro: int = _base.whole(100, 0)
+    """Nadir Y in millionths, exact: -3276800 to 3276700."""
+
+    nadir_z: int = _base.field("Nadir Z", 32, 16, "int", default=0)
     """Nadir Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
     """
-
-    def __init__(
-        self,
-        *,
-        nadir_x: int = 0,
-        nadir_y: int = 0,
-        nadir_z: int = 0,
-    ) -> None:
-        self.nadir_x = nadir_x
-        self.nadir_y = nadir_y
-        self.nadir_z = nadir_z
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        nadir_x_physical: float = 0.0,
-        nadir_y_physical: float = 0.0,
-        nadir_z_physical: float = 0.0,
-    ) -> NadirVector:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.nadir_x_physical = nadir_x_physical
-        self.nadir_y_physical = nadir_y_physical
-        self.nadir_z_physical = nadir_z_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> NadirVector:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.nadir_x, self.nadir_y, self.nadir_z = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.nadir_x, self.nadir_y, self.nadir_z)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def nadir_x_physical(self) -> float:
-        """Nadir X, as a physical value: -3.2768 to 3.2767."""
-        return self.nadir_x / 10000
-
-    @nadir_x_physical.setter
-    def nadir_x_physical(self, value: float) -> None:
-        self.nadir_x = _codec.raw_value(value, "nadir_x", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def nadir_y_physical(self) -> float:
-        """Nadir Y, as a physical value: -3.2768 to 3.2767."""
-        return self.nadir_y / 10000
-
-    @nadir_y_physical.setter
-    def nadir_y_physical(self, value: float) -> None:
-        self.nadir_y = _codec.raw_value(value, "nadir_y", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def nadir_z_physical(self) -> float:
-        """Nadir Z, as a physical value: -3.2768 to 3.2767."""
-        return self.nadir_z / 10000
-
-    @nadir_z_physical.setter
-    def nadir_z_physical(self, value: float) -> None:
-        self.nadir_z = _codec.raw_value(value, "nadir_z", (1, 0, 10000), -32768, 32767)
+    nadir_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Nadir Z, as a physical value: -3.2768 to 3.2767."""
+    nadir_z_micro: int = _base.whole(100, 0)
+    """Nadir Z in millionths, exact: -3276800 to 3276700."""

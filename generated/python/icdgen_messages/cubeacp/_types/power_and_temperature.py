@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<12H7h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class PowerAndTemperature(_base.Message):
     """Power and Temperature Measurements: telemetry 195, 38 bytes. Table 154.
 
@@ -25,28 +18,6 @@ class PowerAndTemperature(_base.Message):
     from byte 32.
     """
 
-    __slots__ = (
-        "cubesense1_3v3_current",
-        "cubesense1_cam_sram_current",
-        "cubesense2_3v3_current",
-        "cubesense2_cam_sram_current",
-        "cubecontrol_3v3_current",
-        "cubecontrol_5v_current",
-        "cubecontrol_vbat_current",
-        "wheel1_current",
-        "wheel2_current",
-        "wheel3_current",
-        "cubestar_current",
-        "magnetorquer_current",
-        "cubestar_mcu_temperature",
-        "mcu_temperature",
-        "magnetometer_temperature",
-        "redundant_mag_temperature",
-        "x_rate_sensor_temperature",
-        "y_rate_sensor_temperature",
-        "z_rate_sensor_temperature",
-    )
-
     NODE = "cubeacp"
     NAME = "Power and Temperature Measurements"
     KIND = "telemetry"
@@ -54,661 +25,195 @@ class PowerAndTemperature(_base.Message):
     IDS = (ID,)
     LENGTH = 38
     TABLE = 154
-    FIELDS = (
-        _base.FieldInfo(
-            "cubesense1_3v3_current",
-            "CubeSense1 3V3 Current",
-            0,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubesense1_3v3_current_ma",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "cubesense1_cam_sram_current",
-            "CubeSense1 Cam SRAM Current",
-            16,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubesense1_cam_sram_current_ma",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "cubesense2_3v3_current",
-            "CubeSense2 3V3 Current",
-            32,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubesense2_3v3_current_ma",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "cubesense2_cam_sram_current",
-            "CubeSense2 Cam SRAM Current",
-            48,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubesense2_cam_sram_current_ma",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "cubecontrol_3v3_current",
-            "CubeControl 3V3 Current",
-            64,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubecontrol_3v3_current_ma",
-            scale=(125, 0, 256),
-        ),
-        _base.FieldInfo(
-            "cubecontrol_5v_current",
-            "CubeControl 5V Current",
-            80,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubecontrol_5v_current_ma",
-            scale=(125, 0, 256),
-        ),
-        _base.FieldInfo(
-            "cubecontrol_vbat_current",
-            "CubeControl Vbat Current",
-            96,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubecontrol_vbat_current_ma",
-            scale=(125, 0, 256),
-        ),
-        _base.FieldInfo(
-            "wheel1_current",
-            "Wheel1Current",
-            112,
-            16,
-            "uint",
-            unit="mA",
-            physical="wheel1_current_ma",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "wheel2_current",
-            "Wheel2Current",
-            128,
-            16,
-            "uint",
-            unit="mA",
-            physical="wheel2_current_ma",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "wheel3_current",
-            "Wheel3Current",
-            144,
-            16,
-            "uint",
-            unit="mA",
-            physical="wheel3_current_ma",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "cubestar_current",
-            "CubeStarCurrent",
-            160,
-            16,
-            "uint",
-            unit="mA",
-            physical="cubestar_current_ma",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "magnetorquer_current",
-            "Magnetorquer Current",
-            176,
-            16,
-            "uint",
-            unit="mA",
-            physical="magnetorquer_current_ma",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "cubestar_mcu_temperature",
-            "CubeStar MCU temperature",
-            192,
-            16,
-            "int",
-            unit="C",
-            physical="cubestar_mcu_temperature_c",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo("mcu_temperature", "MCU Temperature", 208, 16, "int", unit="C"),
-        _base.FieldInfo(
-            "magnetometer_temperature",
-            "Magnetometer Temperature",
-            224,
-            16,
-            "int",
-            unit="C",
-            physical="magnetometer_temperature_c",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "redundant_mag_temperature",
-            "Redundant Magnetometer Temperature",
-            240,
-            16,
-            "int",
-            unit="C",
-            physical="redundant_mag_temperature_c",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "x_rate_sensor_temperature",
-            "X-Rate Sensor Temperature",
-            256,
-            16,
-            "int",
-            unit="C",
-        ),
-        _base.FieldInfo(
-            "y_rate_sensor_temperature",
-            "Y-Rate Sensor Temperature",
-            272,
-            16,
-            "int",
-            unit="C",
-        ),
-        _base.FieldInfo(
-            "z_rate_sensor_temperature",
-            "Z-Rate Sensor Temperature",
-            288,
-            16,
-            "int",
-            unit="C",
-        ),
-    )
 
-    cubesense1_3v3_current: int
+    cubesense1_3v3_current: int = _base.field("CubeSense1 3V3 Current", 0, 16, "uint", default=0, unit="mA")
     """CubeSense1 3V3 Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.1`, 0 to
     6553.5 mA.
     """
-    cubesense1_cam_sram_current: int
+    cubesense1_3v3_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
+    """CubeSense1 3V3 Current in mA: 0 to 6553.5."""
+    cubesense1_3v3_current_ua: int = _base.whole(100, 0)
+    """CubeSense1 3V3 Current in uA, exact: 0 to 6553500."""
+
+    cubesense1_cam_sram_current: int = _base.field("CubeSense1 Cam SRAM Current", 16, 16, "uint", default=0, unit="mA")
     """CubeSense1 Cam SRAM Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0
     to 6553.5 mA.
     """
-    cubesense2_3v3_current: int
+    cubesense1_cam_sram_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
+    """CubeSense1 Cam SRAM Current in mA: 0 to 6553.5."""
+    cubesense1_cam_sram_current_ua: int = _base.whole(100, 0)
+    """CubeSense1 Cam SRAM Current in uA, exact: 0 to 6553500."""
+
+    cubesense2_3v3_current: int = _base.field("CubeSense2 3V3 Current", 32, 16, "uint", default=0, unit="mA")
     """CubeSense2 3V3 Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.1`, 0 to
     6553.5 mA.
     """
-    cubesense2_cam_sram_current: int
+    cubesense2_3v3_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
+    """CubeSense2 3V3 Current in mA: 0 to 6553.5."""
+    cubesense2_3v3_current_ua: int = _base.whole(100, 0)
+    """CubeSense2 3V3 Current in uA, exact: 0 to 6553500."""
+
+    cubesense2_cam_sram_current: int = _base.field("CubeSense2 Cam SRAM Current", 48, 16, "uint", default=0, unit="mA")
     """CubeSense2 Cam SRAM Current: bits 48 to 63, raw 0 to 65535; physical `raw*0.1`, 0
     to 6553.5 mA.
     """
-    cubecontrol_3v3_current: int
+    cubesense2_cam_sram_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
+    """CubeSense2 Cam SRAM Current in mA: 0 to 6553.5."""
+    cubesense2_cam_sram_current_ua: int = _base.whole(100, 0)
+    """CubeSense2 Cam SRAM Current in uA, exact: 0 to 6553500."""
+
+    cubecontrol_3v3_current: int = _base.field("CubeControl 3V3 Current", 64, 16, "uint", default=0, unit="mA")
     """CubeControl 3V3 Current: bits 64 to 79, raw 0 to 65535; physical
     `raw*0.48828125`, 0 to 31999.51171875 mA.
     """
-    cubecontrol_5v_current: int
+    cubecontrol_3v3_current_ma: float = _base.scaled(125, 0, 256, default=0.0)
+    """CubeControl 3V3 Current in mA: 0 to 31999.51171875."""
+
+    cubecontrol_5v_current: int = _base.field("CubeControl 5V Current", 80, 16, "uint", default=0, unit="mA")
     """CubeControl 5V Current: bits 80 to 95, raw 0 to 65535; physical `raw*0.48828125`,
     0 to 31999.51171875 mA.
     """
-    cubecontrol_vbat_current: int
+    cubecontrol_5v_current_ma: float = _base.scaled(125, 0, 256, default=0.0)
+    """CubeControl 5V Current in mA: 0 to 31999.51171875."""
+
+    cubecontrol_vbat_current: int = _base.field("CubeControl Vbat Current", 96, 16, "uint", default=0, unit="mA")
     """CubeControl Vbat Current: bits 96 to 111, raw 0 to 65535; physical
     `raw*0.48828125`, 0 to 31999.51171875 mA.
     """
-    wheel1_current: int
+    cubecontrol_vbat_current_ma: float = _base.scaled(125, 0, 256, default=0.0)
+    """CubeControl Vbat Current in mA: 0 to 31999.51171875."""
+
+    wheel1_current: int = _base.field("Wheel1Current", 112, 16, "uint", default=0, unit="mA")
     """Wheel1Current: bits 112 to 127, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): Wheel currents: by number, described by axis. The frame is
+    described as XYZ wheel currents, its fields are numbered, and names run together
+    although their descriptions do not.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of
+    0.01 mA sixteen bits reach 655.35 mA, which a wheel motor may well exceed. All other
+    currents have steps of 0.1 mA and more. The factor is held as printed.
     """
-    wheel2_current: int
+    wheel1_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
+    """Wheel1Current in mA: 0 to 655.35."""
+    wheel1_current_ua: int = _base.whole(10, 0)
+    """Wheel1Current in uA, exact: 0 to 655350."""
+
+    wheel2_current: int = _base.field("Wheel2Current", 128, 16, "uint", default=0, unit="mA")
     """Wheel2Current: bits 128 to 143, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): see Wheel1Current.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): see Wheel1Current.
     """
-    wheel3_current: int
+    wheel2_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
+    """Wheel2Current in mA: 0 to 655.35."""
+    wheel2_current_ua: int = _base.whole(10, 0)
+    """Wheel2Current in uA, exact: 0 to 655350."""
+
+    wheel3_current: int = _base.field("Wheel3Current", 144, 16, "uint", default=0, unit="mA")
     """Wheel3Current: bits 144 to 159, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): see Wheel1Current.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): see Wheel1Current.
     """
-    cubestar_current: int
+    wheel3_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
+    """Wheel3Current in mA: 0 to 655.35."""
+    wheel3_current_ua: int = _base.whole(10, 0)
+    """Wheel3Current in uA, exact: 0 to 655350."""
+
+    cubestar_current: int = _base.field("CubeStarCurrent", 160, 16, "uint", default=0, unit="mA")
     """CubeStarCurrent: bits 160 to 175, raw 0 to 65535; physical `raw*0.01`, 0 to
     655.35 mA.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): see Wheel1Current.
     """
-    magnetorquer_current: int
+    cubestar_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
+    """CubeStarCurrent in mA: 0 to 655.35."""
+    cubestar_current_ua: int = _base.whole(10, 0)
+    """CubeStarCurrent in uA, exact: 0 to 655350."""
+
+    magnetorquer_current: int = _base.field("Magnetorquer Current", 176, 16, "uint", default=0, unit="mA")
     """Magnetorquer Current: bits 176 to 191, raw 0 to 65535; physical `raw*0.1`, 0 to
     6553.5 mA.
     """
-    cubestar_mcu_temperature: int
+    magnetorquer_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
+    """Magnetorquer Current in mA: 0 to 6553.5."""
+    magnetorquer_current_ua: int = _base.whole(100, 0)
+    """Magnetorquer Current in uA, exact: 0 to 6553500."""
+
+    cubestar_mcu_temperature: int = _base.field("CubeStar MCU temperature", 192, 16, "int", default=0, unit="C")
     """CubeStar MCU temperature: bits 192 to 207, raw -32768 to 32767; physical
     `raw/100.0`, -327.68 to 327.67 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a
+    degree sign. Degrees Celsius are meant.
     """
-    mcu_temperature: int
+    cubestar_mcu_temperature_c: float = _base.scaled(1, 0, 100, default=0.0)
+    """CubeStar MCU temperature in C: -327.68 to 327.67."""
+    cubestar_mcu_temperature_mc: int = _base.whole(10, 0)
+    """CubeStar MCU temperature in thousandths of C, exact: -327680 to 327670."""
+
+    mcu_temperature: int = _base.field("MCU Temperature", 208, 16, "int", default=0, unit="C")
     """MCU Temperature: bits 208 to 223, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and
+    hundredths stand side by side, in one frame even. That the controllers and rate
+    sensors report whole degrees in 16 bits may be a lost factor.
     """
-    magnetometer_temperature: int
+
+    magnetometer_temperature: int = _base.field("Magnetometer Temperature", 224, 16, "int", default=0, unit="C")
     """Magnetometer Temperature: bits 224 to 239, raw -32768 to 32767; physical
     `raw/10.0`, -3276.8 to 3276.7 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
     """
-    redundant_mag_temperature: int
+    magnetometer_temperature_c: float = _base.scaled(1, 0, 10, default=0.0)
+    """Magnetometer Temperature in C: -3276.8 to 3276.7."""
+    magnetometer_temperature_mc: int = _base.whole(100, 0)
+    """Magnetometer Temperature in thousandths of C, exact: -3276800 to 3276700."""
+
+    redundant_mag_temperature: int = _base.field(
+        "Redundant Magnetometer Temperature", 240, 16, "int", default=0, unit="C"
+    )
     """Redundant Magnetometer Temperature: bits 240 to 255, raw -32768 to 32767;
     physical `raw/10.0`, -3276.8 to 3276.7 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
     """
-    x_rate_sensor_temperature: int
+    redundant_mag_temperature_c: float = _base.scaled(1, 0, 10, default=0.0)
+    """Redundant Magnetometer Temperature in C: -3276.8 to 3276.7."""
+    redundant_mag_temperature_mc: int = _base.whole(100, 0)
+    """Redundant Magnetometer Temperature in thousandths of C, exact: -3276800 to
+    3276700.
+    """
+
+    x_rate_sensor_temperature: int = _base.field("X-Rate Sensor Temperature", 256, 16, "int", default=0, unit="C")
     """X-Rate Sensor Temperature: bits 256 to 271, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): see MCU Temperature.
     """
-    y_rate_sensor_temperature: int
+
+    y_rate_sensor_temperature: int = _base.field("Y-Rate Sensor Temperature", 272, 16, "int", default=0, unit="C")
     """Y-Rate Sensor Temperature: bits 272 to 287, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): see MCU Temperature.
     """
-    z_rate_sensor_temperature: int
+
+    z_rate_sensor_temperature: int = _base.field("Z-Rate Sensor Temperature", 288, 16, "int", default=0, unit="C")
     """Z-Rate Sensor Temperature: bits 288 to 303, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): see MCU Temperature.
     """
-
-    def __init__(
-        self,
-        *,
-        cubesense1_3v3_current: int = 0,
-        cubesense1_cam_sram_current: int = 0,
-        cubesense2_3v3_current: int = 0,
-        cubesense2_cam_sram_current: int = 0,
-        cubecontrol_3v3_current: int = 0,
-        cubecontrol_5v_current: int = 0,
-        cubecontrol_vbat_current: int = 0,
-        wheel1_current: int = 0,
-        wheel2_current: int = 0,
-        wheel3_current: int = 0,
-        cubestar_current: int = 0,
-        magnetorquer_current: int = 0,
-        cubestar_mcu_temperature: int = 0,
-        mcu_temperature: int = 0,
-        magnetometer_temperature: int = 0,
-        redundant_mag_temperature: int = 0,
-        x_rate_sensor_temperature: int = 0,
-        y_rate_sensor_temperature: int = 0,
-        z_rate_sensor_temperature: int = 0,
-    ) -> None:
-        self.cubesense1_3v3_current = cubesense1_3v3_current
-        self.cubesense1_cam_sram_current = cubesense1_cam_sram_current
-        self.cubesense2_3v3_current = cubesense2_3v3_current
-        self.cubesense2_cam_sram_current = cubesense2_cam_sram_current
-        self.cubecontrol_3v3_current = cubecontrol_3v3_current
-        self.cubecontrol_5v_current = cubecontrol_5v_current
-        self.cubecontrol_vbat_current = cubecontrol_vbat_current
-        self.wheel1_current = wheel1_current
-        self.wheel2_current = wheel2_current
-        self.wheel3_current = wheel3_current
-        self.cubestar_current = cubestar_current
-        self.magnetorquer_current = magnetorquer_current
-        self.cubestar_mcu_temperature = cubestar_mcu_temperature
-        self.mcu_temperature = mcu_temperature
-        self.magnetometer_temperature = magnetometer_temperature
-        self.redundant_mag_temperature = redundant_mag_temperature
-        self.x_rate_sensor_temperature = x_rate_sensor_temperature
-        self.y_rate_sensor_temperature = y_rate_sensor_temperature
-        self.z_rate_sensor_temperature = z_rate_sensor_temperature
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        cubesense1_3v3_current_ma: float = 0.0,
-        cubesense1_cam_sram_current_ma: float = 0.0,
-        cubesense2_3v3_current_ma: float = 0.0,
-        cubesense2_cam_sram_current_ma: float = 0.0,
-        cubecontrol_3v3_current_ma: float = 0.0,
-        cubecontrol_5v_current_ma: float = 0.0,
-        cubecontrol_vbat_current_ma: float = 0.0,
-        wheel1_current_ma: float = 0.0,
-        wheel2_current_ma: float = 0.0,
-        wheel3_current_ma: float = 0.0,
-        cubestar_current_ma: float = 0.0,
-        magnetorquer_current_ma: float = 0.0,
-        cubestar_mcu_temperature_c: float = 0.0,
-        mcu_temperature: int = 0,
-        magnetometer_temperature_c: float = 0.0,
-        redundant_mag_temperature_c: float = 0.0,
-        x_rate_sensor_temperature: int = 0,
-        y_rate_sensor_temperature: int = 0,
-        z_rate_sensor_temperature: int = 0,
-    ) -> PowerAndTemperature:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.cubesense1_3v3_current_ma = cubesense1_3v3_current_ma
-        self.cubesense1_cam_sram_current_ma = cubesense1_cam_sram_current_ma
-        self.cubesense2_3v3_current_ma = cubesense2_3v3_current_ma
-        self.cubesense2_cam_sram_current_ma = cubesense2_cam_sram_current_ma
-        self.cubecontrol_3v3_current_ma = cubecontrol_3v3_current_ma
-        self.cubecontrol_5v_current_ma = cubecontrol_5v_current_ma
-        self.cubecontrol_vbat_current_ma = cubecontrol_vbat_current_ma
-        self.wheel1_current_ma = wheel1_current_ma
-        self.wheel2_current_ma = wheel2_current_ma
-        self.wheel3_current_ma = wheel3_current_ma
-        self.cubestar_current_ma = cubestar_current_ma
-        self.magnetorquer_current_ma = magnetorquer_current_ma
-        self.cubestar_mcu_temperature_c = cubestar_mcu_temperature_c
-        self.mcu_temperature = mcu_temperature
-        self.magnetometer_temperature_c = magnetometer_temperature_c
-        self.redundant_mag_temperature_c = redundant_mag_temperature_c
-        self.x_rate_sensor_temperature = x_rate_sensor_temperature
-        self.y_rate_sensor_temperature = y_rate_sensor_temperature
-        self.z_rate_sensor_temperature = z_rate_sensor_temperature
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> PowerAndTemperature:
-        """The message in a frame of exactly 38 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.cubesense1_3v3_current,
-                self.cubesense1_cam_sram_current,
-                self.cubesense2_3v3_current,
-                self.cubesense2_cam_sram_current,
-                self.cubecontrol_3v3_current,
-                self.cubecontrol_5v_current,
-                self.cubecontrol_vbat_current,
-                self.wheel1_current,
-                self.wheel2_current,
-                self.wheel3_current,
-                self.cubestar_current,
-                self.magnetorquer_current,
-                self.cubestar_mcu_temperature,
-                self.mcu_temperature,
-                self.magnetometer_temperature,
-                self.redundant_mag_temperature,
-                self.x_rate_sensor_temperature,
-                self.y_rate_sensor_temperature,
-                self.z_rate_sensor_temperature,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.cubesense1_3v3_current,
-                self.cubesense1_cam_sram_current,
-                self.cubesense2_3v3_current,
-                self.cubesense2_cam_sram_current,
-                self.cubecontrol_3v3_current,
-                self.cubecontrol_5v_current,
-                self.cubecontrol_vbat_current,
-                self.wheel1_current,
-                self.wheel2_current,
-                self.wheel3_current,
-                self.cubestar_current,
-                self.magnetorquer_current,
-                self.cubestar_mcu_temperature,
-                self.mcu_temperature,
-                self.magnetometer_temperature,
-                self.redundant_mag_temperature,
-                self.x_rate_sensor_temperature,
-                self.y_rate_sensor_temperature,
-                self.z_rate_sensor_temperature,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def cubesense1_3v3_current_ma(self) -> float:
-        """CubeSense1 3V3 Current in mA: 0 to 6553.5."""
-        return self.cubesense1_3v3_current / 10
-
-    @cubesense1_3v3_current_ma.setter
-    def cubesense1_3v3_current_ma(self, value: float) -> None:
-        self.cubesense1_3v3_current = _codec.raw_value(
-            value,
-            "cubesense1_3v3_current",
-            (1, 0, 10),
-            0,
-            65535,
-        )
-
-    @property
-    def cubesense1_cam_sram_current_ma(self) -> float:
-        """CubeSense1 Cam SRAM Current in mA: 0 to 6553.5."""
-        return self.cubesense1_cam_sram_current / 10
-
-    @cubesense1_cam_sram_current_ma.setter
-    def cubesense1_cam_sram_current_ma(self, value: float) -> None:
-        self.cubesense1_cam_sram_current = _codec.raw_value(
-            value,
-            "cubesense1_cam_sram_current",
-            (1, 0, 10),
-            0,
-            65535,
-        )
-
-    @property
-    def cubesense2_3v3_current_ma(self) -> float:
-        """CubeSense2 3V3 Current in mA: 0 to 6553.5."""
-        return self.cubesense2_3v3_current / 10
-
-    @cubesense2_3v3_current_ma.setter
-    def cubesense2_3v3_current_ma(self, value: float) -> None:
-        self.cubesense2_3v3_current = _codec.raw_value(
-            value,
-            "cubesense2_3v3_current",
-            (1, 0, 10),
-            0,
-            65535,
-        )
-
-    @property
-    def cubesense2_cam_sram_current_ma(self) -> float:
-        """CubeSense2 Cam SRAM Current in mA: 0 to 6553.5."""
-        return self.cubesense2_cam_sram_current / 10
-
-    @cubesense2_cam_sram_current_ma.setter
-    def cubesense2_cam_sram_current_ma(self, value: float) -> None:
-        self.cubesense2_cam_sram_current = _codec.raw_value(
-            value,
-            "cubesense2_cam_sram_current",
-            (1, 0, 10),
-            0,
-            65535,
-        )
-
-    @property
-    def cubecontrol_3v3_current_ma(self) -> float:
-        """CubeControl 3V3 Current in mA: 0 to 31999.51171875."""
-        return self.cubecontrol_3v3_current * 125 / 256
-
-    @cubecontrol_3v3_current_ma.setter
-    def cubecontrol_3v3_current_ma(self, value: float) -> None:
-        self.cubecontrol_3v3_current = _codec.raw_value(
-            value,
-            "cubecontrol_3v3_current",
-            (125, 0, 256),
-            0,
-            65535,
-        )
-
-    @property
-    def cubecontrol_5v_current_ma(self) -> float:
-        """CubeControl 5V Current in mA: 0 to 31999.51171875."""
-        return self.cubecontrol_5v_current * 125 / 256
-
-    @cubecontrol_5v_current_ma.setter
-    def cubecontrol_5v_current_ma(self, value: float) -> None:
-        self.cubecontrol_5v_current = _codec.raw_value(
-            value,
-            "cubecontrol_5v_current",
-            (125, 0, 256),
-            0,
-            65535,
-        )
-
-    @property
-    def cubecontrol_vbat_current_ma(self) -> float:
-        """CubeControl Vbat Current in mA: 0 to 31999.51171875."""
-        return self.cubecontrol_vbat_current * 125 / 256
-
-    @cubecontrol_vbat_current_ma.setter
-    def cubecontrol_vbat_current_ma(self, value: float) -> None:
-        self.cubecontrol_vbat_current = _codec.raw_value(
-            value,
-            "cubecontrol_vbat_current",
-            (125, 0, 256),
-            0,
-            65535,
-        )
-
-    @property
-    def wheel1_current_ma(self) -> float:
-        """Wheel1Current in mA: 0 to 655.35."""
-        return self.wheel1_current / 100
-
-    @wheel1_current_ma.setter
-    def wheel1_current_ma(self, value: float) -> None:
-        self.wheel1_current = _codec.raw_value(
-            value,
-            "wheel1_current",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def wheel2_current_ma(self) -> float:
-        """Wheel2Current in mA: 0 to 655.35."""
-        return self.wheel2_current / 100
-
-    @wheel2_current_ma.setter
-    def wheel2_current_ma(self, value: float) -> None:
-        self.wheel2_current = _codec.raw_value(
-            value,
-            "wheel2_current",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def wheel3_current_ma(self) -> float:
-        """Wheel3Current in mA: 0 to 655.35."""
-        return self.wheel3_current / 100
-
-    @wheel3_current_ma.setter
-    def wheel3_current_ma(self, value: float) -> None:
-        self.wheel3_current = _codec.raw_value(
-            value,
-            "wheel3_current",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def cubestar_current_ma(self) -> float:
-        """CubeStarCurrent in mA: 0 to 655.35."""
-        return self.cubestar_current / 100
-
-    @cubestar_current_ma.setter
-    def cubestar_current_ma(self, value: float) -> None:
-        self.cubestar_current = _codec.raw_value(
-            value,
-            "cubestar_current",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def magnetorquer_current_ma(self) -> float:
-        """Magnetorquer Current in mA: 0 to 6553.5."""
-        return self.magnetorquer_current / 10
-
-    @magnetorquer_current_ma.setter
-    def magnetorquer_current_ma(self, value: float) -> None:
-        self.magnetorquer_current = _codec.raw_value(
-            value,
-            "magnetorquer_current",
-            (1, 0, 10),
-            0,
-            65535,
-        )
-
-    @property
-    def cubestar_mcu_temperature_c(self) -> float:
-        """CubeStar MCU temperature in C: -327.68 to 327.67."""
-        return self.cubestar_mcu_temperature / 100
-
-    @cubestar_mcu_temperature_c.setter
-    def cubestar_mcu_temperature_c(self, value: float) -> None:
-        self.cubestar_mcu_temperature = _codec.raw_value(
-            value,
-            "cubestar_mcu_temperature",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def magnetometer_temperature_c(self) -> float:
-        """Magnetometer Temperature in C: -3276.8 to 3276.7."""
-        return self.magnetometer_temperature / 10
-
-    @magnetometer_temperature_c.setter
-    def magnetometer_temperature_c(self, value: float) -> None:
-        self.magnetometer_temperature = _codec.raw_value(
-            value,
-            "magnetometer_temperature",
-            (1, 0, 10),
-            -32768,
-            32767,
-        )
-
-    @property
-    def redundant_mag_temperature_c(self) -> float:
-        """Redundant Magnetometer Temperature in C: -3276.8 to 3276.7."""
-        return self.redundant_mag_temperature / 10
-
-    @redundant_mag_temperature_c.setter
-    def redundant_mag_temperature_c(self, value: float) -> None:
-        self.redundant_mag_temperature = _codec.raw_value(
-            value,
-            "redundant_mag_temperature",
-            (1, 0, 10),
-            -32768,
-            32767,
-        )

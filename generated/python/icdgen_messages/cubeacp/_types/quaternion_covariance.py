@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class QuaternionCovariance(_base.Message):
     """Quaternion Covariance: telemetry 164, 6 bytes. Table 120.
 
     Bit 40 of the log mask.
     """
-
-    __slots__ = (
-        "q1_rms",
-        "q2_rms",
-        "q3_rms",
-    )
 
     NODE = "cubeacp"
     NAME = "Quaternion Covariance"
@@ -34,121 +21,38 @@ class QuaternionCovariance(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 120
-    FIELDS = (
-        _base.FieldInfo(
-            "q1_rms",
-            "Quaternion Covariance - Q1 RMS",
-            0,
-            16,
-            "int",
-            physical="q1_rms_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "q2_rms",
-            "Quaternion Covariance - Q2 RMS",
-            16,
-            16,
-            "int",
-            physical="q2_rms_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "q3_rms",
-            "Quaternion Covariance - Q3 RMS",
-            32,
-            16,
-            "int",
-            physical="q3_rms_physical",
-            scale=(1, 0, 1000),
-        ),
-    )
 
-    q1_rms: int
+    q1_rms: int = _base.field("Quaternion Covariance - Q1 RMS", 0, 16, "int", default=0)
     """Quaternion Covariance - Q1 RMS: bits 0 to 15, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): Quaternion covariance: an RMS with a sign. The field is a
+    covariance by its frame, an RMS by its name and signed by its type. Neither
+    quantity, on the diagonal, is negative.
     """
-    q2_rms: int
+    q1_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Quaternion Covariance - Q1 RMS, as a physical value: -32.768 to 32.767."""
+    q1_rms_milli: int = _base.whole(1, 0)
+    """Quaternion Covariance - Q1 RMS in thousandths, exact: -32768 to 32767."""
+
+    q2_rms: int = _base.field("Quaternion Covariance - Q2 RMS", 16, 16, "int", default=0)
     """Quaternion Covariance - Q2 RMS: bits 16 to 31, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
     """
-    q3_rms: int
+    q2_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Quaternion Covariance - Q2 RMS, as a physical value: -32.768 to 32.767."""
+    q2_rms_milli: int = _base.whole(1, 0)
+    """Quaternion Covariance - Q2 RMS in thousandths, exact: -32768 to 32767."""
+
+    q3_rms: int = _base.field("Quaternion Covariance - Q3 RMS", 32, 16, "int", default=0)
     """Quaternion Covariance - Q3 RMS: bits 32 to 47, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
     """
-
-    def __init__(
-        self,
-        *,
-        q1_rms: int = 0,
-        q2_rms: int = 0,
-        q3_rms: int = 0,
-    ) -> None:
-        self.q1_rms = q1_rms
-        self.q2_rms = q2_rms
-        self.q3_rms = q3_rms
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        q1_rms_physical: float = 0.0,
-        q2_rms_physical: float = 0.0,
-        q3_rms_physical: float = 0.0,
-    ) -> QuaternionCovariance:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.q1_rms_physical = q1_rms_physical
-        self.q2_rms_physical = q2_rms_physical
-        self.q3_rms_physical = q3_rms_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> QuaternionCovariance:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.q1_rms, self.q2_rms, self.q3_rms = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.q1_rms, self.q2_rms, self.q3_rms)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def q1_rms_physical(self) -> float:
-        """Quaternion Covariance - Q1 RMS, as a physical value: -32.768 to 32.767."""
-        return self.q1_rms / 1000
-
-    @q1_rms_physical.setter
-    def q1_rms_physical(self, value: float) -> None:
-        self.q1_rms = _codec.raw_value(value, "q1_rms", (1, 0, 1000), -32768, 32767)
-
-    @property
-    def q2_rms_physical(self) -> float:
-        """Quaternion Covariance - Q2 RMS, as a physical value: -32.768 to 32.767."""
-        return self.q2_rms / 1000
-
-    @q2_rms_physical.setter
-    def q2_rms_physical(self, value: float) -> None:
-        self.q2_rms = _codec.raw_value(value, "q2_rms", (1, 0, 1000), -32768, 32767)
-
-    @property
-    def q3_rms_physical(self) -> float:
-        """Quaternion Covariance - Q3 RMS, as a physical value: -32.768 to 32.767."""
-        return self.q3_rms / 1000
-
-    @q3_rms_physical.setter
-    def q3_rms_physical(self, value: float) -> None:
-        self.q3_rms = _codec.raw_value(value, "q3_rms", (1, 0, 1000), -32768, 32767)
+    q3_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Quaternion Covariance - Q3 RMS, as a physical value: -32.768 to 32.767."""
+    q3_rms_milli: int = _base.whole(1, 0)
+    """Quaternion Covariance - Q3 RMS in thousandths, exact: -32768 to 32767."""

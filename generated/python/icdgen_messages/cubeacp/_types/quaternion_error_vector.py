@@ -5,29 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class QuaternionErrorVector(_base.Message):
     """Quaternion Error Vector: telemetry 163, 6 bytes. Table 119.
 
     Bit 39 of the log mask.
 
-    Note ACP-075 (open): Quaternions: the fourth component.
+    Note ACP-075 (open): Quaternions: the fourth component. Three of four components are
+    sent. The fourth follows up to its sign only, and which component is the scalar is
+    not said.
     """
-
-    __slots__ = (
-        "quaternion_error_q1",
-        "quaternion_error_q2",
-        "quaternion_error_q3",
-    )
 
     NODE = "cubeacp"
     NAME = "Quaternion Error Vector"
@@ -36,141 +25,30 @@ class QuaternionErrorVector(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 119
-    FIELDS = (
-        _base.FieldInfo(
-            "quaternion_error_q1",
-            "Quaternion Error - Q1",
-            0,
-            16,
-            "int",
-            physical="quaternion_error_q1_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "quaternion_error_q2",
-            "Quaternion Error - Q2",
-            16,
-            16,
-            "int",
-            physical="quaternion_error_q2_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "quaternion_error_q3",
-            "Quaternion Error - Q3",
-            32,
-            16,
-            "int",
-            physical="quaternion_error_q3_physical",
-            scale=(1, 0, 10000),
-        ),
-    )
 
-    quaternion_error_q1: int
+    quaternion_error_q1: int = _base.field("Quaternion Error - Q1", 0, 16, "int", default=0)
     """Quaternion Error - Q1: bits 0 to 15, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
     """
-    quaternion_error_q2: int
+    quaternion_error_q1_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Quaternion Error - Q1, as a physical value: -3.2768 to 3.2767."""
+    quaternion_error_q1_micro: int = _base.whole(100, 0)
+    """Quaternion Error - Q1 in millionths, exact: -3276800 to 3276700."""
+
+    quaternion_error_q2: int = _base.field("Quaternion Error - Q2", 16, 16, "int", default=0)
     """Quaternion Error - Q2: bits 16 to 31, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
     """
-    quaternion_error_q3: int
+    quaternion_error_q2_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Quaternion Error - Q2, as a physical value: -3.2768 to 3.2767."""
+    quaternion_error_q2_micro: int = _base.whole(100, 0)
+    """Quaternion Error - Q2 in millionths, exact: -3276800 to 3276700."""
+
+    quaternion_error_q3: int = _base.field("Quaternion Error - Q3", 32, 16, "int", default=0)
     """Quaternion Error - Q3: bits 32 to 47, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
     """
-
-    def __init__(
-        self,
-        *,
-        quaternion_error_q1: int = 0,
-        quaternion_error_q2: int = 0,
-        quaternion_error_q3: int = 0,
-    ) -> None:
-        self.quaternion_error_q1 = quaternion_error_q1
-        self.quaternion_error_q2 = quaternion_error_q2
-        self.quaternion_error_q3 = quaternion_error_q3
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        quaternion_error_q1_physical: float = 0.0,
-        quaternion_error_q2_physical: float = 0.0,
-        quaternion_error_q3_physical: float = 0.0,
-    ) -> QuaternionErrorVector:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.quaternion_error_q1_physical = quaternion_error_q1_physical
-        self.quaternion_error_q2_physical = quaternion_error_q2_physical
-        self.quaternion_error_q3_physical = quaternion_error_q3_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> QuaternionErrorVector:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.quaternion_error_q1,
-                self.quaternion_error_q2,
-                self.quaternion_error_q3,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.quaternion_error_q1,
-                self.quaternion_error_q2,
-                self.quaternion_error_q3,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def quaternion_error_q1_physical(self) -> float:
-        """Quaternion Error - Q1, as a physical value: -3.2768 to 3.2767."""
-        return self.quaternion_error_q1 / 10000
-
-    @quaternion_error_q1_physical.setter
-    def quaternion_error_q1_physical(self, value: float) -> None:
-        self.quaternion_error_q1 = _codec.raw_value(
-            value,
-            "quaternion_error_q1",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def quaternion_error_q2_physical(self) -> float:
-        """Quaternion Error - Q2, as a physical value: -3.2768 to 3.2767."""
-        return self.quaternion_error_q2 / 10000
-
-    @quaternion_error_q2_physical.setter
-    def quaternion_error_q2_physical(self, value: float) -> None:
-        self.quaternion_error_q2 = _codec.raw_value(
-            value,
-            "quaternion_error_q2",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def quaternion_error_q3_physical(self) -> float:
-        """Quaternion Error - Q3, as a physical value: -3.2768 to 3.2767."""
-        return self.quaternion_error_q3 / 10000
-
-    @quaternion_error_q3_physical.setter
-    def quaternion_error_q3_physical(self, value: float) -> None:
-        self.quaternion_error_q3 = _codec.raw_value(
-            value,
-            "quaternion_error_q3",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
+    quaternion_error_q3_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Quaternion Error - Q3, as a physical value: -3.2768 to 3.2767."""
+    quaternion_error_q3_micro: int = _base.whole(100, 0)
+    """Quaternion Error - Q3 in millionths, exact: -3276800 to 3276700."""

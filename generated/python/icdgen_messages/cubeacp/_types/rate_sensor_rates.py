@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class RateSensorRates(_base.Message):
     """Rate Sensor Rates: telemetry 155, 6 bytes. Table 111.
 
@@ -22,14 +15,11 @@ class RateSensorRates(_base.Message):
 
     Bit 13 of the log mask.
 
-    Note ACP-069 (open): Reference frames of measured vectors are not named.
+    Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled
+    vectors are in the orbit frame, estimated rates relative to it. Of the measured
+    field, sun, nadir and rate vectors nothing is said; SBC for the body frame is in the
+    list of acronyms and used nowhere.
     """
-
-    __slots__ = (
-        "x_angular_rate",
-        "y_angular_rate",
-        "z_angular_rate",
-    )
 
     NODE = "cubeacp"
     NAME = "Rate Sensor Rates"
@@ -38,140 +28,30 @@ class RateSensorRates(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 111
-    FIELDS = (
-        _base.FieldInfo(
-            "x_angular_rate",
-            "X Angular Rate",
-            0,
-            16,
-            "int",
-            unit="deg/s",
-            physical="x_angular_rate_deg_per_s",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "y_angular_rate",
-            "Y Angular Rate",
-            16,
-            16,
-            "int",
-            unit="deg/s",
-            physical="y_angular_rate_deg_per_s",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "z_angular_rate",
-            "Z Angular Rate",
-            32,
-            16,
-            "int",
-            unit="deg/s",
-            physical="z_angular_rate_deg_per_s",
-            scale=(1, 0, 100),
-        ),
-    )
 
-    x_angular_rate: int
+    x_angular_rate: int = _base.field("X Angular Rate", 0, 16, "int", default=0, unit="deg/s")
     """X Angular Rate: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68
     to 327.67 deg/s.
     """
-    y_angular_rate: int
+    x_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
+    """X Angular Rate in deg/s: -327.68 to 327.67."""
+    x_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """X Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
+
+    y_angular_rate: int = _base.field("Y Angular Rate", 16, 16, "int", default=0, unit="deg/s")
     """Y Angular Rate: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68
     to 327.67 deg/s.
     """
-    z_angular_rate: int
+    y_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
+    """Y Angular Rate in deg/s: -327.68 to 327.67."""
+    y_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Y Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
+
+    z_angular_rate: int = _base.field("Z Angular Rate", 32, 16, "int", default=0, unit="deg/s")
     """Z Angular Rate: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68
     to 327.67 deg/s.
     """
-
-    def __init__(
-        self,
-        *,
-        x_angular_rate: int = 0,
-        y_angular_rate: int = 0,
-        z_angular_rate: int = 0,
-    ) -> None:
-        self.x_angular_rate = x_angular_rate
-        self.y_angular_rate = y_angular_rate
-        self.z_angular_rate = z_angular_rate
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        x_angular_rate_deg_per_s: float = 0.0,
-        y_angular_rate_deg_per_s: float = 0.0,
-        z_angular_rate_deg_per_s: float = 0.0,
-    ) -> RateSensorRates:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.x_angular_rate_deg_per_s = x_angular_rate_deg_per_s
-        self.y_angular_rate_deg_per_s = y_angular_rate_deg_per_s
-        self.z_angular_rate_deg_per_s = z_angular_rate_deg_per_s
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RateSensorRates:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.x_angular_rate,
-                self.y_angular_rate,
-                self.z_angular_rate,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.x_angular_rate, self.y_angular_rate, self.z_angular_rate)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def x_angular_rate_deg_per_s(self) -> float:
-        """X Angular Rate in deg/s: -327.68 to 327.67."""
-        return self.x_angular_rate / 100
-
-    @x_angular_rate_deg_per_s.setter
-    def x_angular_rate_deg_per_s(self, value: float) -> None:
-        self.x_angular_rate = _codec.raw_value(
-            value,
-            "x_angular_rate",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def y_angular_rate_deg_per_s(self) -> float:
-        """Y Angular Rate in deg/s: -327.68 to 327.67."""
-        return self.y_angular_rate / 100
-
-    @y_angular_rate_deg_per_s.setter
-    def y_angular_rate_deg_per_s(self, value: float) -> None:
-        self.y_angular_rate = _codec.raw_value(
-            value,
-            "y_angular_rate",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def z_angular_rate_deg_per_s(self) -> float:
-        """Z Angular Rate in deg/s: -327.68 to 327.67."""
-        return self.z_angular_rate / 100
-
-    @z_angular_rate_deg_per_s.setter
-    def z_angular_rate_deg_per_s(self, value: float) -> None:
-        self.z_angular_rate = _codec.raw_value(
-            value,
-            "z_angular_rate",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
+    z_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
+    """Z Angular Rate in deg/s: -327.68 to 327.67."""
+    z_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Z Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""

@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class RateSensorTemperatures(_base.Message):
     """Rate sensor temperatures: telemetry 175, 6 bytes. Table 133.
 
     Bit 26 of the log mask.
     """
-
-    __slots__ = (
-        "x_rate_sensor_temperature",
-        "y_rate_sensor_temperature",
-        "z_rate_sensor_temperature",
-    )
 
     NODE = "cubeacp"
     NAME = "Rate sensor temperatures"
@@ -34,87 +21,30 @@ class RateSensorTemperatures(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 133
-    FIELDS = (
-        _base.FieldInfo(
-            "x_rate_sensor_temperature",
-            "X-Rate Sensor Temperature",
-            0,
-            16,
-            "int",
-            unit="C",
-        ),
-        _base.FieldInfo(
-            "y_rate_sensor_temperature",
-            "Y-Rate Sensor Temperature",
-            16,
-            16,
-            "int",
-            unit="C",
-        ),
-        _base.FieldInfo(
-            "z_rate_sensor_temperature",
-            "Z-Rate Sensor Temperature",
-            32,
-            16,
-            "int",
-            unit="C",
-        ),
-    )
 
-    x_rate_sensor_temperature: int
+    x_rate_sensor_temperature: int = _base.field("X-Rate Sensor Temperature", 0, 16, "int", default=0, unit="C")
     """X-Rate Sensor Temperature: bits 0 to 15, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a
+    degree sign. Degrees Celsius are meant.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and
+    hundredths stand side by side, in one frame even. That the controllers and rate
+    sensors report whole degrees in 16 bits may be a lost factor.
     """
-    y_rate_sensor_temperature: int
+
+    y_rate_sensor_temperature: int = _base.field("Y-Rate Sensor Temperature", 16, 16, "int", default=0, unit="C")
     """Y-Rate Sensor Temperature: bits 16 to 31, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see X-Rate Sensor Temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): see X-Rate Sensor Temperature.
     """
-    z_rate_sensor_temperature: int
+
+    z_rate_sensor_temperature: int = _base.field("Z-Rate Sensor Temperature", 32, 16, "int", default=0, unit="C")
     """Z-Rate Sensor Temperature: bits 32 to 47, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see X-Rate Sensor Temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): see X-Rate Sensor Temperature.
     """
-
-    def __init__(
-        self,
-        *,
-        x_rate_sensor_temperature: int = 0,
-        y_rate_sensor_temperature: int = 0,
-        z_rate_sensor_temperature: int = 0,
-    ) -> None:
-        self.x_rate_sensor_temperature = x_rate_sensor_temperature
-        self.y_rate_sensor_temperature = y_rate_sensor_temperature
-        self.z_rate_sensor_temperature = z_rate_sensor_temperature
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RateSensorTemperatures:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.x_rate_sensor_temperature,
-                self.y_rate_sensor_temperature,
-                self.z_rate_sensor_temperature,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.x_rate_sensor_temperature,
-                self.y_rate_sensor_temperature,
-                self.z_rate_sensor_temperature,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,20 +5,11 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .capture_result import CaptureResult
 from .detect_result import DetectResult
 
-_STRUCT = struct.Struct("<2h2B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, CaptureResult))
-_BITS_1 = _codec.bit_table((0, 8, DetectResult))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class RawCam2Sensor(_base.Message):
     """Raw Cam2 Sensor: telemetry 166, 6 bytes. Table 122.
 
@@ -26,15 +17,10 @@ class RawCam2Sensor(_base.Message):
 
     Bit 47 of the log mask.
 
-    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The
+    telecommand begins with Cam1. Frame 194 and the ids 166 and 167 have Cam2 before
+    Cam1.
     """
-
-    __slots__ = (
-        "cam2_centroid_x",
-        "cam2_centroid_y",
-        "cam2_capture_status",
-        "cam2_detection_result",
-    )
 
     NODE = "cubeacp"
     NAME = "Raw Cam2 Sensor"
@@ -43,79 +29,31 @@ class RawCam2Sensor(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 122
-    FIELDS = (
-        _base.FieldInfo("cam2_centroid_x", "Cam2 centroid X", 0, 16, "int"),
-        _base.FieldInfo("cam2_centroid_y", "Cam2 centroid Y", 16, 16, "int"),
-        _base.FieldInfo(
-            "cam2_capture_status",
-            "Cam2 Capture status",
-            32,
-            8,
-            "enum",
-            enum=CaptureResult,
-        ),
-        _base.FieldInfo(
-            "cam2_detection_result",
-            "Cam2 Detection result",
-            40,
-            8,
-            "enum",
-            enum=DetectResult,
-        ),
-    )
 
-    cam2_centroid_x: int
+    cam2_centroid_x: int = _base.field("Cam2 centroid X", 0, 16, "int", default=0)
     """Cam2 centroid X: bits 0 to 15, raw -32768 to 32767.
 
     Azimuth angle.
 
-    Note ACP-078 (open): Camera results: centroid or angle.
+    Note ACP-078 (open): Camera results: centroid or angle. The names say centroid X and
+    Y, the descriptions azimuth and elevation angle. Neither pixel nor degree nor a
+    factor is given.
     """
-    cam2_centroid_y: int
+
+    cam2_centroid_y: int = _base.field("Cam2 centroid Y", 16, 16, "int", default=0)
     """Cam2 centroid Y: bits 16 to 31, raw -32768 to 32767.
 
     Elevation angle.
 
-    Note ACP-078 (open): Camera results: centroid or angle.
+    Note ACP-078 (open): see Cam2 centroid X.
     """
-    cam2_capture_status: CaptureResult
+
+    cam2_capture_status: CaptureResult = _base.field(
+        "Cam2 Capture status", 32, 8, "enum", default=CaptureResult.STARTUP
+    )
     """Cam2 Capture status: bits 32 to 39."""
-    cam2_detection_result: DetectResult
+
+    cam2_detection_result: DetectResult = _base.field(
+        "Cam2 Detection result", 40, 8, "enum", default=DetectResult.STARTUP
+    )
     """Cam2 Detection result: bits 40 to 47."""
-
-    def __init__(
-        self,
-        *,
-        cam2_centroid_x: int = 0,
-        cam2_centroid_y: int = 0,
-        cam2_capture_status: CaptureResult = CaptureResult.STARTUP,
-        cam2_detection_result: DetectResult = DetectResult.STARTUP,
-    ) -> None:
-        self.cam2_centroid_x = cam2_centroid_x
-        self.cam2_centroid_y = cam2_centroid_y
-        self.cam2_capture_status = cam2_capture_status
-        self.cam2_detection_result = cam2_detection_result
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RawCam2Sensor:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.cam2_centroid_x, self.cam2_centroid_y, v4, v5 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.cam2_capture_status = _BITS_0[v4]
-        self.cam2_detection_result = _BITS_1[v5]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.cam2_centroid_x,
-                self.cam2_centroid_y,
-                self.cam2_capture_status,
-                self.cam2_detection_result,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

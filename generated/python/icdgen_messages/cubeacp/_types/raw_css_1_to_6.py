@@ -5,30 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<6B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class RawCss1To6(_base.Message):
     """Raw CSS 1 to 6: telemetry 168, 6 bytes. Table 126.
 
     Bit 49 of the log mask.
     """
-
-    __slots__ = (
-        "css1",
-        "css2",
-        "css3",
-        "css4",
-        "css5",
-        "css6",
-    )
 
     NODE = "cubeacp"
     NAME = "Raw CSS 1 to 6"
@@ -37,102 +21,53 @@ class RawCss1To6(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 126
-    FIELDS = (
-        _base.FieldInfo("css1", "CSS1", 0, 8, "uint"),
-        _base.FieldInfo("css2", "CSS2", 8, 8, "uint"),
-        _base.FieldInfo("css3", "CSS3", 16, 8, "uint"),
-        _base.FieldInfo("css4", "CSS4", 24, 8, "uint"),
-        _base.FieldInfo("css5", "CSS5", 32, 8, "uint"),
-        _base.FieldInfo("css6", "CSS6", 40, 8, "uint"),
-    )
 
-    css1: int
+    css1: int = _base.field("CSS1", 0, 8, "uint", default=0)
     """CSS1: bits 0 to 7, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of
+    the sun angle, without full scale, offset or what a sensor in the dark reads. The
+    relative scale and the threshold of the configuration refer to them.
     """
-    css2: int
+
+    css2: int = _base.field("CSS2", 8, 8, "uint", default=0)
     """CSS2: bits 8 to 15, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS1.
     """
-    css3: int
+
+    css3: int = _base.field("CSS3", 16, 8, "uint", default=0)
     """CSS3: bits 16 to 23, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS1.
     """
-    css4: int
+
+    css4: int = _base.field("CSS4", 24, 8, "uint", default=0)
     """CSS4: bits 24 to 31, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS1.
     """
-    css5: int
+
+    css5: int = _base.field("CSS5", 32, 8, "uint", default=0)
     """CSS5: bits 32 to 39, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS1.
     """
-    css6: int
+
+    css6: int = _base.field("CSS6", 40, 8, "uint", default=0)
     """CSS6: bits 40 to 47, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS1.
     """
-
-    def __init__(
-        self,
-        *,
-        css1: int = 0,
-        css2: int = 0,
-        css3: int = 0,
-        css4: int = 0,
-        css5: int = 0,
-        css6: int = 0,
-    ) -> None:
-        self.css1 = css1
-        self.css2 = css2
-        self.css3 = css3
-        self.css4 = css4
-        self.css5 = css5
-        self.css6 = css6
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RawCss1To6:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.css1,
-                self.css2,
-                self.css3,
-                self.css4,
-                self.css5,
-                self.css6,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.css1,
-                self.css2,
-                self.css3,
-                self.css4,
-                self.css5,
-                self.css6,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

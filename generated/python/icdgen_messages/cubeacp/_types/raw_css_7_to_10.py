@@ -5,30 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<4B2x")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class RawCss7To10(_base.Message):
     """Raw CSS 7 to 10: telemetry 169, 6 bytes. Table 127.
 
     Bit 50 of the log mask.
 
-    Erratum ACP-081 (likely): Raw CSS 7 to 10: 6 bytes announced, 4 described.
+    Erratum ACP-081 (likely): Raw CSS 7 to 10: 6 bytes announced, 4 described. Four
+    sensors fill four of six bytes. The last two are held as reserved; the frame is
+    probably filled up to the size of the loggable ones.
     """
-
-    __slots__ = (
-        "css7",
-        "css8",
-        "css9",
-        "css10",
-    )
 
     NODE = "cubeacp"
     NAME = "Raw CSS 7 to 10"
@@ -37,68 +25,37 @@ class RawCss7To10(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 127
-    FIELDS = (
-        _base.FieldInfo("css7", "CSS7", 0, 8, "uint"),
-        _base.FieldInfo("css8", "CSS8", 8, 8, "uint"),
-        _base.FieldInfo("css9", "CSS9", 16, 8, "uint"),
-        _base.FieldInfo("css10", "CSS10", 24, 8, "uint"),
-    )
 
-    css7: int
+    css7: int = _base.field("CSS7", 0, 8, "uint", default=0)
     """CSS7: bits 0 to 7, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of
+    the sun angle, without full scale, offset or what a sensor in the dark reads. The
+    relative scale and the threshold of the configuration refer to them.
     """
-    css8: int
+
+    css8: int = _base.field("CSS8", 8, 8, "uint", default=0)
     """CSS8: bits 8 to 15, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS7.
     """
-    css9: int
+
+    css9: int = _base.field("CSS9", 16, 8, "uint", default=0)
     """CSS9: bits 16 to 23, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS7.
     """
-    css10: int
+
+    css10: int = _base.field("CSS10", 24, 8, "uint", default=0)
     """CSS10: bits 24 to 31, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS7.
     """
-
-    def __init__(
-        self,
-        *,
-        css7: int = 0,
-        css8: int = 0,
-        css9: int = 0,
-        css10: int = 0,
-    ) -> None:
-        self.css7 = css7
-        self.css8 = css8
-        self.css9 = css9
-        self.css10 = css10
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RawCss7To10:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.css7, self.css8, self.css9, self.css10 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.css7, self.css8, self.css9, self.css10)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

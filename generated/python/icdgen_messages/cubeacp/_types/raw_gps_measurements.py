@@ -5,47 +5,16 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .gps_solution_status import GpsSolutionStatus
 
-_STRUCT = struct.Struct("<6BHIihihih6B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, GpsSolutionStatus))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class RawGpsMeasurements(_base.Message):
     """Raw GPS Measurements: telemetry 210, 36 bytes. Table 158.
 
     Repeats Raw GPS Status from byte 0. Repeats Raw GPS Time from byte 6. Repeats Raw
     GPS X from byte 12. Repeats Raw GPS Y from byte 18. Repeats Raw GPS Z from byte 24.
     """
-
-    __slots__ = (
-        "gps_solution_status",
-        "number_of_tracked_gps_satellites",
-        "number_of_gps_satellites_used_in_solution",
-        "counter_for_xyz_log_from_gps",
-        "counter_for_range_log_from_gps",
-        "response_message_for_gps_log_setup",
-        "gps_reference_week",
-        "gps_time_milliseconds",
-        "ecef_position_x",
-        "ecef_velocity_x",
-        "ecef_position_y",
-        "ecef_velocity_y",
-        "ecef_position_z",
-        "ecef_velocity_z",
-        "x_pos_standard_deviation",
-        "y_pos_standard_deviation",
-        "z_pos_standard_deviation",
-        "x_vel_standard_deviation",
-        "y_vel_standard_deviation",
-        "z_vel_standard_deviation",
-    )
 
     NODE = "cubeacp"
     NAME = "Raw GPS Measurements"
@@ -54,425 +23,141 @@ class RawGpsMeasurements(_base.Message):
     IDS = (ID,)
     LENGTH = 36
     TABLE = 158
-    FIELDS = (
-        _base.FieldInfo(
-            "gps_solution_status",
-            "Gps Solution Status",
-            0,
-            8,
-            "enum",
-            enum=GpsSolutionStatus,
-        ),
-        _base.FieldInfo(
-            "number_of_tracked_gps_satellites",
-            "Number of tracked GPS satellites",
-            8,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "number_of_gps_satellites_used_in_solution",
-            "Number of GPS satellites used in solution",
-            16,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "counter_for_xyz_log_from_gps",
-            "Counter for XYZ Lof from GPS",
-            24,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "counter_for_range_log_from_gps",
-            "Counter for RANGE log from GPS",
-            32,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "response_message_for_gps_log_setup",
-            "Response Message for GPS log setup",
-            40,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo("gps_reference_week", "GPS Reference Week", 48, 16, "uint"),
-        _base.FieldInfo(
-            "gps_time_milliseconds",
-            "GPS Time Milliseconds",
-            64,
-            32,
-            "uint",
-            unit="ms",
-        ),
-        _base.FieldInfo("ecef_position_x", "ECEF Position X", 96, 32, "int", unit="m"),
-        _base.FieldInfo(
-            "ecef_velocity_x",
-            "ECEF Velocity X",
-            128,
-            16,
-            "int",
-            unit="m/s",
-        ),
-        _base.FieldInfo("ecef_position_y", "ECEF Position Y", 144, 32, "int", unit="m"),
-        _base.FieldInfo(
-            "ecef_velocity_y",
-            "ECEF Velocity Y",
-            176,
-            16,
-            "int",
-            unit="m/s",
-        ),
-        _base.FieldInfo("ecef_position_z", "ECEF Position Z", 192, 32, "int", unit="m"),
-        _base.FieldInfo(
-            "ecef_velocity_z",
-            "ECEF Velocity Z",
-            224,
-            16,
-            "int",
-            unit="m/s",
-        ),
-        _base.FieldInfo(
-            "x_pos_standard_deviation",
-            "X-pos Standard Deviation",
-            240,
-            8,
-            "uint",
-            unit="m",
-            physical="x_pos_standard_deviation_m",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "y_pos_standard_deviation",
-            "Y-pos Standard Deviation",
-            248,
-            8,
-            "uint",
-            unit="m",
-            physical="y_pos_standard_deviation_m",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "z_pos_standard_deviation",
-            "Z-pos Standard Deviation",
-            256,
-            8,
-            "uint",
-            unit="m",
-            physical="z_pos_standard_deviation_m",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "x_vel_standard_deviation",
-            "X-vel Standard Deviation",
-            264,
-            8,
-            "uint",
-            unit="m/s",
-        ),
-        _base.FieldInfo(
-            "y_vel_standard_deviation",
-            "Y-vel Standard Deviation",
-            272,
-            8,
-            "uint",
-            unit="m/s",
-        ),
-        _base.FieldInfo(
-            "z_vel_standard_deviation",
-            "Z-vel Standard Deviation",
-            280,
-            8,
-            "uint",
-            unit="m/s",
-        ),
-    )
 
-    gps_solution_status: GpsSolutionStatus
+    gps_solution_status: GpsSolutionStatus = _base.field(
+        "Gps Solution Status", 0, 8, "enum", default=GpsSolutionStatus.SOLUTION_COMPUTED
+    )
     """Gps Solution Status: bits 0 to 7.
 
-    Note ACP-042 (certain): GPS is spelt Gps in one field.
+    Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands
+    among fields with GPS, and the sun sensors are Css in the same telecommand.
     """
-    number_of_tracked_gps_satellites: int
+
+    number_of_tracked_gps_satellites: int = _base.field("Number of tracked GPS satellites", 8, 8, "uint", default=0)
     """Number of tracked GPS satellites: bits 8 to 15, raw 0 to 255."""
-    number_of_gps_satellites_used_in_solution: int
+
+    number_of_gps_satellites_used_in_solution: int = _base.field(
+        "Number of GPS satellites used in solution", 16, 8, "uint", default=0
+    )
     """Number of GPS satellites used in solution: bits 16 to 23, raw 0 to 255."""
-    counter_for_xyz_log_from_gps: int
+
+    counter_for_xyz_log_from_gps: int = _base.field("Counter for XYZ Lof from GPS", 24, 8, "uint", default=0)
     """Counter for XYZ Lof from GPS: bits 24 to 31, raw 0 to 255.
 
-    Erratum ACP-087 (certain): GPS counter: Lof is Log.
+    Erratum ACP-087 (certain): GPS counter: Lof is Log. A letter is wrong in name and
+    description. The identifier is held without the slip.
     """
-    counter_for_range_log_from_gps: int
+
+    counter_for_range_log_from_gps: int = _base.field("Counter for RANGE log from GPS", 32, 8, "uint", default=0)
     """Counter for RANGE log from GPS: bits 32 to 39, raw 0 to 255."""
-    response_message_for_gps_log_setup: int
+
+    response_message_for_gps_log_setup: int = _base.field(
+        "Response Message for GPS log setup", 40, 8, "uint", default=0
+    )
     """Response Message for GPS log setup: bits 40 to 47, raw 0 to 255.
 
     Explained on page 656 of the OEMV615 reference manual.
 
-    Note ACP-088 (open): GPS response: explained in another manual.
+    Note ACP-088 (open): GPS response: explained in another manual. The meaning is on
+    page 656 of a reference manual of the receiver, which is not among the documents
+    named at the front. Other receivers have other manuals.
     """
-    gps_reference_week: int
+
+    gps_reference_week: int = _base.field("GPS Reference Week", 48, 16, "uint", default=0)
     """GPS Reference Week: bits 48 to 63, raw 0 to 65535.
 
-    Note ACP-089 (open): GPS week: with or without roll-overs.
+    Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the
+    full week, ten of which a receiver sends. A number of roll-overs is a setting, so it
+    is open which of the two this is.
     """
-    gps_time_milliseconds: int
+
+    gps_time_milliseconds: int = _base.field("GPS Time Milliseconds", 64, 32, "uint", default=0, unit="ms")
     """GPS Time Milliseconds: bits 64 to 95, raw 0 to 4294967295, in ms."""
-    ecef_position_x: int
+
+    ecef_position_x: int = _base.field("ECEF Position X", 96, 32, "int", default=0, unit="m")
     """ECEF Position X: bits 96 to 127, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z
+    have 16 bits in the state frames and 32 bits in the GPS frames and the simulated
+    data, with the same name, description and unit.
     """
-    ecef_velocity_x: int
+
+    ecef_velocity_x: int = _base.field("ECEF Velocity X", 128, 16, "int", default=0, unit="m/s")
     """ECEF Velocity X: bits 128 to 143, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity
+    from the receiver has a step of 1 m/s, that of the propagator 0.25 m/s. A factor may
+    have been lost; none is made up.
     """
-    ecef_position_y: int
+
+    ecef_position_y: int = _base.field("ECEF Position Y", 144, 32, "int", default=0, unit="m")
     """ECEF Position Y: bits 144 to 175, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
-    ecef_velocity_y: int
+
+    ecef_velocity_y: int = _base.field("ECEF Velocity Y", 176, 16, "int", default=0, unit="m/s")
     """ECEF Velocity Y: bits 176 to 191, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): see ECEF Velocity X.
     """
-    ecef_position_z: int
+
+    ecef_position_z: int = _base.field("ECEF Position Z", 192, 32, "int", default=0, unit="m")
     """ECEF Position Z: bits 192 to 223, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
-    ecef_velocity_z: int
+
+    ecef_velocity_z: int = _base.field("ECEF Velocity Z", 224, 16, "int", default=0, unit="m/s")
     """ECEF Velocity Z: bits 224 to 239, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): see ECEF Velocity X.
     """
-    x_pos_standard_deviation: int
+
+    x_pos_standard_deviation: int = _base.field("X-pos Standard Deviation", 240, 8, "uint", default=0, unit="m")
     """X-pos Standard Deviation: bits 240 to 247, raw 0 to 255; physical `raw*0.1`, 0 to
     25.5 m.
     """
-    y_pos_standard_deviation: int
+    x_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
+    """X-pos Standard Deviation in m: 0 to 25.5."""
+    x_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """X-pos Standard Deviation in mm, exact: 0 to 25500."""
+
+    y_pos_standard_deviation: int = _base.field("Y-pos Standard Deviation", 248, 8, "uint", default=0, unit="m")
     """Y-pos Standard Deviation: bits 248 to 255, raw 0 to 255; physical `raw*0.1`, 0 to
     25.5 m.
     """
-    z_pos_standard_deviation: int
+    y_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
+    """Y-pos Standard Deviation in m: 0 to 25.5."""
+    y_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """Y-pos Standard Deviation in mm, exact: 0 to 25500."""
+
+    z_pos_standard_deviation: int = _base.field("Z-pos Standard Deviation", 256, 8, "uint", default=0, unit="m")
     """Z-pos Standard Deviation: bits 256 to 263, raw 0 to 255; physical `raw*0.1`, 0 to
     25.5 m.
     """
-    x_vel_standard_deviation: int
+    z_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
+    """Z-pos Standard Deviation in m: 0 to 25.5."""
+    z_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """Z-pos Standard Deviation in mm, exact: 0 to 25500."""
+
+    x_vel_standard_deviation: int = _base.field("X-vel Standard Deviation", 264, 8, "uint", default=0, unit="m/s")
     """X-vel Standard Deviation: bits 264 to 271, raw 0 to 255, in m/s.
 
     Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    Deviations of the position have a factor of 0.1, those of the velocity none. A whole
+    1 m/s is coarse for a GPS velocity, and the limit that is compared with it is set in
+    hundredths.
     """
-    y_vel_standard_deviation: int
+
+    y_vel_standard_deviation: int = _base.field("Y-vel Standard Deviation", 272, 8, "uint", default=0, unit="m/s")
     """Y-vel Standard Deviation: bits 272 to 279, raw 0 to 255, in m/s.
 
-    Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043 (open): see X-vel Standard Deviation.
     """
-    z_vel_standard_deviation: int
+
+    z_vel_standard_deviation: int = _base.field("Z-vel Standard Deviation", 280, 8, "uint", default=0, unit="m/s")
     """Z-vel Standard Deviation: bits 280 to 287, raw 0 to 255, in m/s.
 
-    Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043 (open): see X-vel Standard Deviation.
     """
-
-    def __init__(
-        self,
-        *,
-        gps_solution_status: GpsSolutionStatus = GpsSolutionStatus.SOLUTION_COMPUTED,
-        number_of_tracked_gps_satellites: int = 0,
-        number_of_gps_satellites_used_in_solution: int = 0,
-        counter_for_xyz_log_from_gps: int = 0,
-        counter_for_range_log_from_gps: int = 0,
-        response_message_for_gps_log_setup: int = 0,
-        gps_reference_week: int = 0,
-        gps_time_milliseconds: int = 0,
-        ecef_position_x: int = 0,
-        ecef_velocity_x: int = 0,
-        ecef_position_y: int = 0,
-        ecef_velocity_y: int = 0,
-        ecef_position_z: int = 0,
-        ecef_velocity_z: int = 0,
-        x_pos_standard_deviation: int = 0,
-        y_pos_standard_deviation: int = 0,
-        z_pos_standard_deviation: int = 0,
-        x_vel_standard_deviation: int = 0,
-        y_vel_standard_deviation: int = 0,
-        z_vel_standard_deviation: int = 0,
-    ) -> None:
-        self.gps_solution_status = gps_solution_status
-        self.number_of_tracked_gps_satellites = number_of_tracked_gps_satellites
-        self.number_of_gps_satellites_used_in_solution = number_of_gps_satellites_used_in_solution
-        self.counter_for_xyz_log_from_gps = counter_for_xyz_log_from_gps
-        self.counter_for_range_log_from_gps = counter_for_range_log_from_gps
-        self.response_message_for_gps_log_setup = response_message_for_gps_log_setup
-        self.gps_reference_week = gps_reference_week
-        self.gps_time_milliseconds = gps_time_milliseconds
-        self.ecef_position_x = ecef_position_x
-        self.ecef_velocity_x = ecef_velocity_x
-        self.ecef_position_y = ecef_position_y
-        self.ecef_velocity_y = ecef_velocity_y
-        self.ecef_position_z = ecef_position_z
-        self.ecef_velocity_z = ecef_velocity_z
-        self.x_pos_standard_deviation = x_pos_standard_deviation
-        self.y_pos_standard_deviation = y_pos_standard_deviation
-        self.z_pos_standard_deviation = z_pos_standard_deviation
-        self.x_vel_standard_deviation = x_vel_standard_deviation
-        self.y_vel_standard_deviation = y_vel_standard_deviation
-        self.z_vel_standard_deviation = z_vel_standard_deviation
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        gps_solution_status: GpsSolutionStatus = GpsSolutionStatus.SOLUTION_COMPUTED,
-        number_of_tracked_gps_satellites: int = 0,
-        number_of_gps_satellites_used_in_solution: int = 0,
-        counter_for_xyz_log_from_gps: int = 0,
-        counter_for_range_log_from_gps: int = 0,
-        response_message_for_gps_log_setup: int = 0,
-        gps_reference_week: int = 0,
-        gps_time_milliseconds: int = 0,
-        ecef_position_x: int = 0,
-        ecef_velocity_x: int = 0,
-        ecef_position_y: int = 0,
-        ecef_velocity_y: int = 0,
-        ecef_position_z: int = 0,
-        ecef_velocity_z: int = 0,
-        x_pos_standard_deviation_m: float = 0.0,
-        y_pos_standard_deviation_m: float = 0.0,
-        z_pos_standard_deviation_m: float = 0.0,
-        x_vel_standard_deviation: int = 0,
-        y_vel_standard_deviation: int = 0,
-        z_vel_standard_deviation: int = 0,
-    ) -> RawGpsMeasurements:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.gps_solution_status = gps_solution_status
-        self.number_of_tracked_gps_satellites = number_of_tracked_gps_satellites
-        self.number_of_gps_satellites_used_in_solution = number_of_gps_satellites_used_in_solution
-        self.counter_for_xyz_log_from_gps = counter_for_xyz_log_from_gps
-        self.counter_for_range_log_from_gps = counter_for_range_log_from_gps
-        self.response_message_for_gps_log_setup = response_message_for_gps_log_setup
-        self.gps_reference_week = gps_reference_week
-        self.gps_time_milliseconds = gps_time_milliseconds
-        self.ecef_position_x = ecef_position_x
-        self.ecef_velocity_x = ecef_velocity_x
-        self.ecef_position_y = ecef_position_y
-        self.ecef_velocity_y = ecef_velocity_y
-        self.ecef_position_z = ecef_position_z
-        self.ecef_velocity_z = ecef_velocity_z
-        self.x_pos_standard_deviation_m = x_pos_standard_deviation_m
-        self.y_pos_standard_deviation_m = y_pos_standard_deviation_m
-        self.z_pos_standard_deviation_m = z_pos_standard_deviation_m
-        self.x_vel_standard_deviation = x_vel_standard_deviation
-        self.y_vel_standard_deviation = y_vel_standard_deviation
-        self.z_vel_standard_deviation = z_vel_standard_deviation
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RawGpsMeasurements:
-        """The message in a frame of exactly 36 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                v0,
-                self.number_of_tracked_gps_satellites,
-                self.number_of_gps_satellites_used_in_solution,
-                self.counter_for_xyz_log_from_gps,
-                self.counter_for_range_log_from_gps,
-                self.response_message_for_gps_log_setup,
-                self.gps_reference_week,
-                self.gps_time_milliseconds,
-                self.ecef_position_x,
-                self.ecef_velocity_x,
-                self.ecef_position_y,
-                self.ecef_velocity_y,
-                self.ecef_position_z,
-                self.ecef_velocity_z,
-                self.x_pos_standard_deviation,
-                self.y_pos_standard_deviation,
-                self.z_pos_standard_deviation,
-                self.x_vel_standard_deviation,
-                self.y_vel_standard_deviation,
-                self.z_vel_standard_deviation,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.gps_solution_status = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.gps_solution_status,
-                self.number_of_tracked_gps_satellites,
-                self.number_of_gps_satellites_used_in_solution,
-                self.counter_for_xyz_log_from_gps,
-                self.counter_for_range_log_from_gps,
-                self.response_message_for_gps_log_setup,
-                self.gps_reference_week,
-                self.gps_time_milliseconds,
-                self.ecef_position_x,
-                self.ecef_velocity_x,
-                self.ecef_position_y,
-                self.ecef_velocity_y,
-                self.ecef_position_z,
-                self.ecef_velocity_z,
-                self.x_pos_standard_deviation,
-                self.y_pos_standard_deviation,
-                self.z_pos_standard_deviation,
-                self.x_vel_standard_deviation,
-                self.y_vel_standard_deviation,
-                self.z_vel_standard_deviation,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def x_pos_standard_deviation_m(self) -> float:
-        """X-pos Standard Deviation in m: 0 to 25.5."""
-        return self.x_pos_standard_deviation / 10
-
-    @x_pos_standard_deviation_m.setter
-    def x_pos_standard_deviation_m(self, value: float) -> None:
-        self.x_pos_standard_deviation = _codec.raw_value(
-            value,
-            "x_pos_standard_deviation",
-            (1, 0, 10),
-            0,
-            255,
-        )
-
-    @property
-    def y_pos_standard_deviation_m(self) -> float:
-        """Y-pos Standard Deviation in m: 0 to 25.5."""
-        return self.y_pos_standard_deviation / 10
-
-    @y_pos_standard_deviation_m.setter
-    def y_pos_standard_deviation_m(self, value: float) -> None:
-        self.y_pos_standard_deviation = _codec.raw_value(
-            value,
-            "y_pos_standard_deviation",
-            (1, 0, 10),
-            0,
-            255,
-        )
-
-    @property
-    def z_pos_standard_deviation_m(self) -> float:
-        """Z-pos Standard Deviation in m: 0 to 25.5."""
-        return self.z_pos_standard_deviation / 10
-
-    @z_pos_standard_deviation_m.setter
-    def z_pos_standard_deviation_m(self, value: float) -> None:
-        self.z_pos_standard_deviation = _codec.raw_value(
-            value,
-            "z_pos_standard_deviation",
-            (1, 0, 10),
-            0,
-            255,
-        )

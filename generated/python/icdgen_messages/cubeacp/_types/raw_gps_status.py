@@ -5,32 +5,15 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .gps_solution_status import GpsSolutionStatus
 
-_STRUCT = struct.Struct("<6B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, GpsSolutionStatus))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class RawGpsStatus(_base.Message):
     """Raw GPS Status: telemetry 176, 6 bytes. Table 134.
 
     Bit 42 of the log mask.
     """
-
-    __slots__ = (
-        "gps_solution_status",
-        "number_of_tracked_gps_satellites",
-        "number_of_gps_satellites_used_in_solution",
-        "counter_for_xyz_log_from_gps",
-        "counter_for_range_log_from_gps",
-        "response_message_for_gps_log_setup",
-    )
 
     NODE = "cubeacp"
     NAME = "Raw GPS Status"
@@ -39,121 +22,42 @@ class RawGpsStatus(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 134
-    FIELDS = (
-        _base.FieldInfo(
-            "gps_solution_status",
-            "Gps Solution Status",
-            0,
-            8,
-            "enum",
-            enum=GpsSolutionStatus,
-        ),
-        _base.FieldInfo(
-            "number_of_tracked_gps_satellites",
-            "Number of tracked GPS satellites",
-            8,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "number_of_gps_satellites_used_in_solution",
-            "Number of GPS satellites used in solution",
-            16,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "counter_for_xyz_log_from_gps",
-            "Counter for XYZ Lof from GPS",
-            24,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "counter_for_range_log_from_gps",
-            "Counter for RANGE log from GPS",
-            32,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "response_message_for_gps_log_setup",
-            "Response Message for GPS log setup",
-            40,
-            8,
-            "uint",
-        ),
-    )
 
-    gps_solution_status: GpsSolutionStatus
+    gps_solution_status: GpsSolutionStatus = _base.field(
+        "Gps Solution Status", 0, 8, "enum", default=GpsSolutionStatus.SOLUTION_COMPUTED
+    )
     """Gps Solution Status: bits 0 to 7.
 
-    Note ACP-042 (certain): GPS is spelt Gps in one field.
+    Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands
+    among fields with GPS, and the sun sensors are Css in the same telecommand.
     """
-    number_of_tracked_gps_satellites: int
+
+    number_of_tracked_gps_satellites: int = _base.field("Number of tracked GPS satellites", 8, 8, "uint", default=0)
     """Number of tracked GPS satellites: bits 8 to 15, raw 0 to 255."""
-    number_of_gps_satellites_used_in_solution: int
+
+    number_of_gps_satellites_used_in_solution: int = _base.field(
+        "Number of GPS satellites used in solution", 16, 8, "uint", default=0
+    )
     """Number of GPS satellites used in solution: bits 16 to 23, raw 0 to 255."""
-    counter_for_xyz_log_from_gps: int
+
+    counter_for_xyz_log_from_gps: int = _base.field("Counter for XYZ Lof from GPS", 24, 8, "uint", default=0)
     """Counter for XYZ Lof from GPS: bits 24 to 31, raw 0 to 255.
 
-    Erratum ACP-087 (certain): GPS counter: Lof is Log.
+    Erratum ACP-087 (certain): GPS counter: Lof is Log. A letter is wrong in name and
+    description. The identifier is held without the slip.
     """
-    counter_for_range_log_from_gps: int
+
+    counter_for_range_log_from_gps: int = _base.field("Counter for RANGE log from GPS", 32, 8, "uint", default=0)
     """Counter for RANGE log from GPS: bits 32 to 39, raw 0 to 255."""
-    response_message_for_gps_log_setup: int
+
+    response_message_for_gps_log_setup: int = _base.field(
+        "Response Message for GPS log setup", 40, 8, "uint", default=0
+    )
     """Response Message for GPS log setup: bits 40 to 47, raw 0 to 255.
 
     Explained on page 656 of the OEMV615 reference manual.
 
-    Note ACP-088 (open): GPS response: explained in another manual.
+    Note ACP-088 (open): GPS response: explained in another manual. The meaning is on
+    page 656 of a reference manual of the receiver, which is not among the documents
+    named at the front. Other receivers have other manuals.
     """
-
-    def __init__(
-        self,
-        *,
-        gps_solution_status: GpsSolutionStatus = GpsSolutionStatus.SOLUTION_COMPUTED,
-        number_of_tracked_gps_satellites: int = 0,
-        number_of_gps_satellites_used_in_solution: int = 0,
-        counter_for_xyz_log_from_gps: int = 0,
-        counter_for_range_log_from_gps: int = 0,
-        response_message_for_gps_log_setup: int = 0,
-    ) -> None:
-        self.gps_solution_status = gps_solution_status
-        self.number_of_tracked_gps_satellites = number_of_tracked_gps_satellites
-        self.number_of_gps_satellites_used_in_solution = number_of_gps_satellites_used_in_solution
-        self.counter_for_xyz_log_from_gps = counter_for_xyz_log_from_gps
-        self.counter_for_range_log_from_gps = counter_for_range_log_from_gps
-        self.response_message_for_gps_log_setup = response_message_for_gps_log_setup
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RawGpsStatus:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                v0,
-                self.number_of_tracked_gps_satellites,
-                self.number_of_gps_satellites_used_in_solution,
-                self.counter_for_xyz_log_from_gps,
-                self.counter_for_range_log_from_gps,
-                self.response_message_for_gps_log_setup,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.gps_solution_status = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.gps_solution_status,
-                self.number_of_tracked_gps_satellites,
-                self.number_of_gps_satellites_used_in_solution,
-                self.counter_for_xyz_log_from_gps,
-                self.counter_for_range_log_from_gps,
-                self.response_message_for_gps_log_setup,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,26 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<HI")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class RawGpsTime(_base.Message):
     """Raw GPS Time: telemetry 177, 6 bytes. Table 135.
 
     Bit 43 of the log mask.
     """
-
-    __slots__ = (
-        "gps_reference_week",
-        "gps_time_milliseconds",
-    )
 
     NODE = "cubeacp"
     NAME = "Raw GPS Time"
@@ -33,48 +21,14 @@ class RawGpsTime(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 135
-    FIELDS = (
-        _base.FieldInfo("gps_reference_week", "GPS Reference Week", 0, 16, "uint"),
-        _base.FieldInfo(
-            "gps_time_milliseconds",
-            "GPS Time Milliseconds",
-            16,
-            32,
-            "uint",
-            unit="ms",
-        ),
-    )
 
-    gps_reference_week: int
+    gps_reference_week: int = _base.field("GPS Reference Week", 0, 16, "uint", default=0)
     """GPS Reference Week: bits 0 to 15, raw 0 to 65535.
 
-    Note ACP-089 (open): GPS week: with or without roll-overs.
+    Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the
+    full week, ten of which a receiver sends. A number of roll-overs is a setting, so it
+    is open which of the two this is.
     """
-    gps_time_milliseconds: int
+
+    gps_time_milliseconds: int = _base.field("GPS Time Milliseconds", 16, 32, "uint", default=0, unit="ms")
     """GPS Time Milliseconds: bits 16 to 47, raw 0 to 4294967295, in ms."""
-
-    def __init__(
-        self,
-        *,
-        gps_reference_week: int = 0,
-        gps_time_milliseconds: int = 0,
-    ) -> None:
-        self.gps_reference_week = gps_reference_week
-        self.gps_time_milliseconds = gps_time_milliseconds
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RawGpsTime:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.gps_reference_week, self.gps_time_milliseconds = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.gps_reference_week, self.gps_time_milliseconds)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

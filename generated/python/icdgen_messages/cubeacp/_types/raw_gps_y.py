@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<ih")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class RawGpsY(_base.Message):
     """Raw GPS Y: telemetry 179, 6 bytes. Table 137.
 
@@ -23,11 +16,6 @@ class RawGpsY(_base.Message):
     Bit 45 of the log mask.
     """
 
-    __slots__ = (
-        "ecef_position_y",
-        "ecef_velocity_y",
-    )
-
     NODE = "cubeacp"
     NAME = "Raw GPS Y"
     KIND = "telemetry"
@@ -35,46 +23,21 @@ class RawGpsY(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 137
-    FIELDS = (
-        _base.FieldInfo("ecef_position_y", "ECEF Position Y", 0, 32, "int", unit="m"),
-        _base.FieldInfo("ecef_velocity_y", "ECEF Velocity Y", 32, 16, "int", unit="m/s"),
-    )
 
-    ecef_position_y: int
+    ecef_position_y: int = _base.field("ECEF Position Y", 0, 32, "int", default=0, unit="m")
     """ECEF Position Y: bits 0 to 31, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
+    Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name. The three
+    frames are described as ECI referenced, their fields are ECEF position and velocity.
+    ECEF is what a receiver delivers.
     """
-    ecef_velocity_y: int
+
+    ecef_velocity_y: int = _base.field("ECEF Velocity Y", 32, 16, "int", default=0, unit="m/s")
     """ECEF Velocity Y: bits 32 to 47, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity
+    from the receiver has a step of 1 m/s, that of the propagator 0.25 m/s. A factor may
+    have been lost; none is made up.
 
-    Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
+    Note ACP-090 (likely): see ECEF Position Y.
     """
-
-    def __init__(
-        self,
-        *,
-        ecef_position_y: int = 0,
-        ecef_velocity_y: int = 0,
-    ) -> None:
-        self.ecef_position_y = ecef_position_y
-        self.ecef_velocity_y = ecef_velocity_y
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RawGpsY:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.ecef_position_y, self.ecef_velocity_y = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.ecef_position_y, self.ecef_velocity_y)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<ih")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class RawGpsZ(_base.Message):
     """Raw GPS Z: telemetry 180, 6 bytes. Table 138.
 
@@ -23,11 +16,6 @@ class RawGpsZ(_base.Message):
     Bit 46 of the log mask.
     """
 
-    __slots__ = (
-        "ecef_position_z",
-        "ecef_velocity_z",
-    )
-
     NODE = "cubeacp"
     NAME = "Raw GPS Z"
     KIND = "telemetry"
@@ -35,46 +23,21 @@ class RawGpsZ(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 138
-    FIELDS = (
-        _base.FieldInfo("ecef_position_z", "ECEF Position Z", 0, 32, "int", unit="m"),
-        _base.FieldInfo("ecef_velocity_z", "ECEF Velocity Z", 32, 16, "int", unit="m/s"),
-    )
 
-    ecef_position_z: int
+    ecef_position_z: int = _base.field("ECEF Position Z", 0, 32, "int", default=0, unit="m")
     """ECEF Position Z: bits 0 to 31, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
+    Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name. The three
+    frames are described as ECI referenced, their fields are ECEF position and velocity.
+    ECEF is what a receiver delivers.
     """
-    ecef_velocity_z: int
+
+    ecef_velocity_z: int = _base.field("ECEF Velocity Z", 32, 16, "int", default=0, unit="m/s")
     """ECEF Velocity Z: bits 32 to 47, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity
+    from the receiver has a step of 1 m/s, that of the propagator 0.25 m/s. A factor may
+    have been lost; none is made up.
 
-    Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
+    Note ACP-090 (likely): see ECEF Position Z.
     """
-
-    def __init__(
-        self,
-        *,
-        ecef_position_z: int = 0,
-        ecef_velocity_z: int = 0,
-    ) -> None:
-        self.ecef_position_z = ecef_position_z
-        self.ecef_velocity_z = ecef_velocity_z
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RawGpsZ:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.ecef_position_z, self.ecef_velocity_z = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.ecef_position_z, self.ecef_velocity_z)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class RawRateSensor(_base.Message):
     """Raw Rate Sensor: telemetry 216, 6 bytes. Table 164.
 
     Bit 60 of the log mask.
     """
-
-    __slots__ = (
-        "rate_x",
-        "rate_y",
-        "rate_z",
-    )
 
     NODE = "cubeacp"
     NAME = "Raw Rate Sensor"
@@ -34,61 +21,28 @@ class RawRateSensor(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 164
-    FIELDS = (
-        _base.FieldInfo("rate_x", "RateX", 0, 16, "int"),
-        _base.FieldInfo("rate_y", "RateY", 16, 16, "int"),
-        _base.FieldInfo("rate_z", "RateZ", 32, 16, "int"),
-    )
 
-    rate_x: int
+    rate_x: int = _base.field("RateX", 0, 16, "int", default=0)
     """RateX: bits 0 to 15, raw -32768 to 32767.
 
     Sampled A/D value.
 
     Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    scale. Neither resolution nor unit of the sampled values is given.
     """
-    rate_y: int
+
+    rate_y: int = _base.field("RateY", 16, 16, "int", default=0)
     """RateY: bits 16 to 31, raw -32768 to 32767.
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see RateX.
     """
-    rate_z: int
+
+    rate_z: int = _base.field("RateZ", 32, 16, "int", default=0)
     """RateZ: bits 32 to 47, raw -32768 to 32767.
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see RateX.
     """
-
-    def __init__(
-        self,
-        *,
-        rate_x: int = 0,
-        rate_y: int = 0,
-        rate_z: int = 0,
-    ) -> None:
-        self.rate_x = rate_x
-        self.rate_y = rate_y
-        self.rate_z = rate_z
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RawRateSensor:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.rate_x, self.rate_y, self.rate_z = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.rate_x, self.rate_y, self.rate_z)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

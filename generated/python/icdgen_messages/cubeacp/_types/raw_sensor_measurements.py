@@ -5,20 +5,11 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .capture_result import CaptureResult
 from .detect_result import DetectResult
 
-_STRUCT = struct.Struct("<2h2B2h12B6h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, CaptureResult))
-_BITS_1 = _codec.bit_table((0, 8, DetectResult))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class RawSensorMeasurements(_base.Message):
     """Raw Sensor Measurements: telemetry 194, 34 bytes. Table 153.
 
@@ -26,35 +17,10 @@ class RawSensorMeasurements(_base.Message):
     Raw CSS 1 to 6 from byte 12. Repeats Raw CSS 7 to 10 from byte 18. Repeats Raw
     Magnetometer from byte 22. Repeats Raw Rate Sensor from byte 28.
 
-    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The
+    telecommand begins with Cam1. Frame 194 and the ids 166 and 167 have Cam2 before
+    Cam1.
     """
-
-    __slots__ = (
-        "cam2_centroid_x",
-        "cam2_centroid_y",
-        "cam2_capture_status",
-        "cam2_detection_result",
-        "cam1_centroid_x",
-        "cam1_centroid_y",
-        "cam1_capture_status",
-        "cam1_detection_result",
-        "css1",
-        "css2",
-        "css3",
-        "css4",
-        "css5",
-        "css6",
-        "css7",
-        "css8",
-        "css9",
-        "css10",
-        "mag_x",
-        "mag_y",
-        "mag_z",
-        "rate_x",
-        "rate_y",
-        "rate_z",
-    )
 
     NODE = "cubeacp"
     NAME = "Raw Sensor Measurements"
@@ -63,319 +29,171 @@ class RawSensorMeasurements(_base.Message):
     IDS = (ID,)
     LENGTH = 34
     TABLE = 153
-    FIELDS = (
-        _base.FieldInfo("cam2_centroid_x", "Cam2 centroid X", 0, 16, "int"),
-        _base.FieldInfo("cam2_centroid_y", "Cam2 centroid Y", 16, 16, "int"),
-        _base.FieldInfo(
-            "cam2_capture_status",
-            "Cam2 Capture status",
-            32,
-            8,
-            "enum",
-            enum=CaptureResult,
-        ),
-        _base.FieldInfo(
-            "cam2_detection_result",
-            "Cam2 Detection result",
-            40,
-            8,
-            "enum",
-            enum=DetectResult,
-        ),
-        _base.FieldInfo("cam1_centroid_x", "Cam1 centroid X", 48, 16, "int"),
-        _base.FieldInfo("cam1_centroid_y", "Cam1 centroid Y", 64, 16, "int"),
-        _base.FieldInfo(
-            "cam1_capture_status",
-            "Cam1 Capture status",
-            80,
-            8,
-            "enum",
-            enum=CaptureResult,
-        ),
-        _base.FieldInfo(
-            "cam1_detection_result",
-            "Cam1 Detection result",
-            88,
-            8,
-            "enum",
-            enum=DetectResult,
-        ),
-        _base.FieldInfo("css1", "CSS1", 96, 8, "uint"),
-        _base.FieldInfo("css2", "CSS2", 104, 8, "uint"),
-        _base.FieldInfo("css3", "CSS3", 112, 8, "uint"),
-        _base.FieldInfo("css4", "CSS4", 120, 8, "uint"),
-        _base.FieldInfo("css5", "CSS5", 128, 8, "uint"),
-        _base.FieldInfo("css6", "CSS6", 136, 8, "uint"),
-        _base.FieldInfo("css7", "CSS7", 144, 8, "uint"),
-        _base.FieldInfo("css8", "CSS8", 152, 8, "uint"),
-        _base.FieldInfo("css9", "CSS9", 160, 8, "uint"),
-        _base.FieldInfo("css10", "CSS10", 168, 8, "uint"),
-        _base.FieldInfo("mag_x", "MagX", 176, 16, "int"),
-        _base.FieldInfo("mag_y", "MagY", 192, 16, "int"),
-        _base.FieldInfo("mag_z", "MagZ", 208, 16, "int"),
-        _base.FieldInfo("rate_x", "RateX", 224, 16, "int"),
-        _base.FieldInfo("rate_y", "RateY", 240, 16, "int"),
-        _base.FieldInfo("rate_z", "RateZ", 256, 16, "int"),
-    )
 
-    cam2_centroid_x: int
+    cam2_centroid_x: int = _base.field("Cam2 centroid X", 0, 16, "int", default=0)
     """Cam2 centroid X: bits 0 to 15, raw -32768 to 32767.
 
     Azimuth angle.
 
-    Note ACP-078 (open): Camera results: centroid or angle.
+    Note ACP-078 (open): Camera results: centroid or angle. The names say centroid X and
+    Y, the descriptions azimuth and elevation angle. Neither pixel nor degree nor a
+    factor is given.
     """
-    cam2_centroid_y: int
+
+    cam2_centroid_y: int = _base.field("Cam2 centroid Y", 16, 16, "int", default=0)
     """Cam2 centroid Y: bits 16 to 31, raw -32768 to 32767.
 
     Elevation angle.
 
-    Note ACP-078 (open): Camera results: centroid or angle.
+    Note ACP-078 (open): see Cam2 centroid X.
     """
-    cam2_capture_status: CaptureResult
+
+    cam2_capture_status: CaptureResult = _base.field(
+        "Cam2 Capture status", 32, 8, "enum", default=CaptureResult.STARTUP
+    )
     """Cam2 Capture status: bits 32 to 39."""
-    cam2_detection_result: DetectResult
+
+    cam2_detection_result: DetectResult = _base.field(
+        "Cam2 Detection result", 40, 8, "enum", default=DetectResult.STARTUP
+    )
     """Cam2 Detection result: bits 40 to 47."""
-    cam1_centroid_x: int
+
+    cam1_centroid_x: int = _base.field("Cam1 centroid X", 48, 16, "int", default=0)
     """Cam1 centroid X: bits 48 to 63, raw -32768 to 32767.
 
     Azimuth angle.
 
-    Note ACP-078 (open): Camera results: centroid or angle.
+    Note ACP-078 (open): see Cam2 centroid X.
     """
-    cam1_centroid_y: int
+
+    cam1_centroid_y: int = _base.field("Cam1 centroid Y", 64, 16, "int", default=0)
     """Cam1 centroid Y: bits 64 to 79, raw -32768 to 32767.
 
     Elevation angle.
 
-    Note ACP-078 (open): Camera results: centroid or angle.
+    Note ACP-078 (open): see Cam2 centroid X.
     """
-    cam1_capture_status: CaptureResult
+
+    cam1_capture_status: CaptureResult = _base.field(
+        "Cam1 Capture status", 80, 8, "enum", default=CaptureResult.STARTUP
+    )
     """Cam1 Capture status: bits 80 to 87."""
-    cam1_detection_result: DetectResult
+
+    cam1_detection_result: DetectResult = _base.field(
+        "Cam1 Detection result", 88, 8, "enum", default=DetectResult.STARTUP
+    )
     """Cam1 Detection result: bits 88 to 95."""
-    css1: int
+
+    css1: int = _base.field("CSS1", 96, 8, "uint", default=0)
     """CSS1: bits 96 to 103, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
     """
-    css2: int
+
+    css2: int = _base.field("CSS2", 104, 8, "uint", default=0)
     """CSS2: bits 104 to 111, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
     """
-    css3: int
+
+    css3: int = _base.field("CSS3", 112, 8, "uint", default=0)
     """CSS3: bits 112 to 119, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
     """
-    css4: int
+
+    css4: int = _base.field("CSS4", 120, 8, "uint", default=0)
     """CSS4: bits 120 to 127, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
     """
-    css5: int
+
+    css5: int = _base.field("CSS5", 128, 8, "uint", default=0)
     """CSS5: bits 128 to 135, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
     """
-    css6: int
+
+    css6: int = _base.field("CSS6", 136, 8, "uint", default=0)
     """CSS6: bits 136 to 143, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
     """
-    css7: int
+
+    css7: int = _base.field("CSS7", 144, 8, "uint", default=0)
     """CSS7: bits 144 to 151, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
     """
-    css8: int
+
+    css8: int = _base.field("CSS8", 152, 8, "uint", default=0)
     """CSS8: bits 152 to 159, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
     """
-    css9: int
+
+    css9: int = _base.field("CSS9", 160, 8, "uint", default=0)
     """CSS9: bits 160 to 167, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
     """
-    css10: int
+
+    css10: int = _base.field("CSS10", 168, 8, "uint", default=0)
     """CSS10: bits 168 to 175, raw 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
     """
-    mag_x: int
+
+    mag_x: int = _base.field("MagX", 176, 16, "int", default=0)
     """MagX: bits 176 to 191, raw -32768 to 32767.
 
     Sampled A/D value.
 
     Erratum ACP-105 (certain): Raw Sensor Measurements repeats four of six bytes of one
-    part.
+    part. Frame 194 holds the frame of the sensors 7 to 10 without its last two bytes:
+    the magnetometer begins where they would stand. The whole has 34 bytes, its parts
+    have 36.
 
     Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    scale. Neither resolution nor unit of the sampled values is given.
     """
-    mag_y: int
+
+    mag_y: int = _base.field("MagY", 192, 16, "int", default=0)
     """MagY: bits 192 to 207, raw -32768 to 32767.
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """
-    mag_z: int
+
+    mag_z: int = _base.field("MagZ", 208, 16, "int", default=0)
     """MagZ: bits 208 to 223, raw -32768 to 32767.
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """
-    rate_x: int
+
+    rate_x: int = _base.field("RateX", 224, 16, "int", default=0)
     """RateX: bits 224 to 239, raw -32768 to 32767.
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """
-    rate_y: int
+
+    rate_y: int = _base.field("RateY", 240, 16, "int", default=0)
     """RateY: bits 240 to 255, raw -32768 to 32767.
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """
-    rate_z: int
+
+    rate_z: int = _base.field("RateZ", 256, 16, "int", default=0)
     """RateZ: bits 256 to 271, raw -32768 to 32767.
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """
-
-    def __init__(
-        self,
-        *,
-        cam2_centroid_x: int = 0,
-        cam2_centroid_y: int = 0,
-        cam2_capture_status: CaptureResult = CaptureResult.STARTUP,
-        cam2_detection_result: DetectResult = DetectResult.STARTUP,
-        cam1_centroid_x: int = 0,
-        cam1_centroid_y: int = 0,
-        cam1_capture_status: CaptureResult = CaptureResult.STARTUP,
-        cam1_detection_result: DetectResult = DetectResult.STARTUP,
-        css1: int = 0,
-        css2: int = 0,
-        css3: int = 0,
-        css4: int = 0,
-        css5: int = 0,
-        css6: int = 0,
-        css7: int = 0,
-        css8: int = 0,
-        css9: int = 0,
-        css10: int = 0,
-        mag_x: int = 0,
-        mag_y: int = 0,
-        mag_z: int = 0,
-        rate_x: int = 0,
-        rate_y: int = 0,
-        rate_z: int = 0,
-    ) -> None:
-        self.cam2_centroid_x = cam2_centroid_x
-        self.cam2_centroid_y = cam2_centroid_y
-        self.cam2_capture_status = cam2_capture_status
-        self.cam2_detection_result = cam2_detection_result
-        self.cam1_centroid_x = cam1_centroid_x
-        self.cam1_centroid_y = cam1_centroid_y
-        self.cam1_capture_status = cam1_capture_status
-        self.cam1_detection_result = cam1_detection_result
-        self.css1 = css1
-        self.css2 = css2
-        self.css3 = css3
-        self.css4 = css4
-        self.css5 = css5
-        self.css6 = css6
-        self.css7 = css7
-        self.css8 = css8
-        self.css9 = css9
-        self.css10 = css10
-        self.mag_x = mag_x
-        self.mag_y = mag_y
-        self.mag_z = mag_z
-        self.rate_x = rate_x
-        self.rate_y = rate_y
-        self.rate_z = rate_z
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RawSensorMeasurements:
-        """The message in a frame of exactly 34 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.cam2_centroid_x,
-                self.cam2_centroid_y,
-                v4,
-                v5,
-                self.cam1_centroid_x,
-                self.cam1_centroid_y,
-                v10,
-                v11,
-                self.css1,
-                self.css2,
-                self.css3,
-                self.css4,
-                self.css5,
-                self.css6,
-                self.css7,
-                self.css8,
-                self.css9,
-                self.css10,
-                self.mag_x,
-                self.mag_y,
-                self.mag_z,
-                self.rate_x,
-                self.rate_y,
-                self.rate_z,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.cam2_capture_status = _BITS_0[v4]
-        self.cam2_detection_result = _BITS_1[v5]
-        self.cam1_capture_status = _BITS_0[v10]
-        self.cam1_detection_result = _BITS_1[v11]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.cam2_centroid_x,
-                self.cam2_centroid_y,
-                self.cam2_capture_status,
-                self.cam2_detection_result,
-                self.cam1_centroid_x,
-                self.cam1_centroid_y,
-                self.cam1_capture_status,
-                self.cam1_detection_result,
-                self.css1,
-                self.css2,
-                self.css3,
-                self.css4,
-                self.css5,
-                self.css6,
-                self.css7,
-                self.css8,
-                self.css9,
-                self.css10,
-                self.mag_x,
-                self.mag_y,
-                self.mag_z,
-                self.rate_x,
-                self.rate_y,
-                self.rate_z,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,29 +5,10 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .star_id_mode_val import StarIdModeVal
 
-_STRUCT = struct.Struct("<7BH3B4H2hH2hH2h3H6h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, StarIdModeVal))
-_BITS_1 = _codec.bit_table(
-    (0, 1, bool),
-    (1, 1, bool),
-    (2, 1, bool),
-    (3, 1, bool),
-    (4, 1, bool),
-    (5, 1, bool),
-    (6, 1, bool),
-    (7, 1, bool),
-)
-_BYTES_1 = _codec.Inverse(_BITS_1)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class RawStarTracker(_base.Message):
     """Raw Star Tracker: telemetry 211, 54 bytes. Table 159.
 
@@ -38,48 +19,6 @@ class RawStarTracker(_base.Message):
     Estimated Quaternion from byte 48.
     """
 
-    __slots__ = (
-        "number_of_stars_detected",
-        "star_image_noise",
-        "invalid_stars",
-        "number_of_stars_identified",
-        "identification_mode",
-        "image_dark_value",
-        "image_capture_success",
-        "detection_success",
-        "identification_success",
-        "attitude_success",
-        "processing_time_error",
-        "tracking_module_enabled",
-        "prediction_enabled",
-        "comms_error",
-        "sample_period",
-        "star_1_confidence",
-        "star_2_confidence",
-        "star_3_confidence",
-        "magnitude_star_1",
-        "magnitude_star_2",
-        "magnitude_star_3",
-        "catalogue_star_1",
-        "centroid_x_star_1",
-        "centroid_y_star_1",
-        "catalogue_star_2",
-        "centroid_x_star_2",
-        "centroid_y_star_2",
-        "catalogue_star_3",
-        "centroid_x_star_3",
-        "centroid_y_star_3",
-        "capture",
-        "detection",
-        "identification",
-        "x_axis_rate",
-        "y_axis_rate",
-        "z_axis_rate",
-        "q0",
-        "q1",
-        "q2",
-    )
-
     NODE = "cubeacp"
     NAME = "Raw Star Tracker"
     KIND = "telemetry"
@@ -87,691 +26,249 @@ class RawStarTracker(_base.Message):
     IDS = (ID,)
     LENGTH = 54
     TABLE = 159
-    FIELDS = (
-        _base.FieldInfo(
-            "number_of_stars_detected",
-            "Number of stars detected",
-            0,
-            8,
-            "uint",
-            unit="stars",
-        ),
-        _base.FieldInfo(
-            "star_image_noise",
-            "Star image noise",
-            8,
-            8,
-            "uint",
-            unit="noise",
-        ),
-        _base.FieldInfo(
-            "invalid_stars",
-            "Invalid Stars",
-            16,
-            8,
-            "uint",
-            unit="Invalid stars",
-        ),
-        _base.FieldInfo(
-            "number_of_stars_identified",
-            "Number of stars identified",
-            24,
-            8,
-            "uint",
-            unit="stars",
-        ),
-        _base.FieldInfo(
-            "identification_mode",
-            "Identification mode",
-            32,
-            8,
-            "enum",
-            enum=StarIdModeVal,
-        ),
-        _base.FieldInfo(
-            "image_dark_value",
-            "Image dark value",
-            40,
-            8,
-            "uint",
-            unit="8-bit pixel value",
-        ),
-        _base.FieldInfo("image_capture_success", "Image Capture Success", 48, 1, "bool"),
-        _base.FieldInfo("detection_success", "Detection Success", 49, 1, "bool"),
-        _base.FieldInfo(
-            "identification_success",
-            "Identification Success",
-            50,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("attitude_success", "AttitudeSuccess", 51, 1, "bool"),
-        _base.FieldInfo("processing_time_error", "Processing Time Error", 52, 1, "bool"),
-        _base.FieldInfo(
-            "tracking_module_enabled",
-            "Tracking Module Enabled",
-            53,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("prediction_enabled", "Prediction Enabled", 54, 1, "bool"),
-        _base.FieldInfo("comms_error", "Comms error", 55, 1, "bool"),
-        _base.FieldInfo("sample_period", "Sample Period", 56, 16, "uint"),
-        _base.FieldInfo(
-            "star_1_confidence",
-            "Star 1 confidence",
-            72,
-            8,
-            "uint",
-            unit="%",
-        ),
-        _base.FieldInfo(
-            "star_2_confidence",
-            "Star 2 confidence",
-            80,
-            8,
-            "uint",
-            unit="%",
-        ),
-        _base.FieldInfo(
-            "star_3_confidence",
-            "Star 3 confidence",
-            88,
-            8,
-            "uint",
-            unit="%",
-        ),
-        _base.FieldInfo("magnitude_star_1", "Magnitude Star 1", 96, 16, "uint"),
-        _base.FieldInfo("magnitude_star_2", "Magnitude Star 2", 112, 16, "uint"),
-        _base.FieldInfo("magnitude_star_3", "Magnitude Star 3", 128, 16, "uint"),
-        _base.FieldInfo("catalogue_star_1", "Catalogue Star 1", 144, 16, "uint"),
-        _base.FieldInfo("centroid_x_star_1", "Centroid X Star 1", 160, 16, "int"),
-        _base.FieldInfo("centroid_y_star_1", "Centroid Y Star 1", 176, 16, "int"),
-        _base.FieldInfo("catalogue_star_2", "Catalogue Star 2", 192, 16, "uint"),
-        _base.FieldInfo("centroid_x_star_2", "Centroid X Star 2", 208, 16, "int"),
-        _base.FieldInfo("centroid_y_star_2", "Centroid Y Star 2", 224, 16, "int"),
-        _base.FieldInfo("catalogue_star_3", "Catalogue Star 3", 240, 16, "uint"),
-        _base.FieldInfo("centroid_x_star_3", "Centroid X Star 3", 256, 16, "int"),
-        _base.FieldInfo("centroid_y_star_3", "Centroid Y Star 3", 272, 16, "int"),
-        _base.FieldInfo("capture", "Capture", 288, 16, "uint", unit="ms"),
-        _base.FieldInfo("detection", "Detection", 304, 16, "uint", unit="ms"),
-        _base.FieldInfo("identification", "Identification", 320, 16, "uint", unit="ms"),
-        _base.FieldInfo(
-            "x_axis_rate",
-            "x-Axis rate",
-            336,
-            16,
-            "int",
-            physical="x_axis_rate_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "y_axis_rate",
-            "y-Axis rate",
-            352,
-            16,
-            "int",
-            physical="y_axis_rate_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "z_axis_rate",
-            "z-Axis rate",
-            368,
-            16,
-            "int",
-            physical="z_axis_rate_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "q0",
-            "Q0",
-            384,
-            16,
-            "int",
-            physical="q0_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "q1",
-            "Q1",
-            400,
-            16,
-            "int",
-            physical="q1_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "q2",
-            "Q2",
-            416,
-            16,
-            "int",
-            physical="q2_physical",
-            scale=(1, 0, 10000),
-        ),
-    )
 
-    number_of_stars_detected: int
+    number_of_stars_detected: int = _base.field("Number of stars detected", 0, 8, "uint", default=0, unit="stars")
     """Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
 
     Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    pixel value. What is counted stands in place of a unit; noise repeats the name. They
+    are kept as units of counts.
     """
-    star_image_noise: int
+
+    star_image_noise: int = _base.field("Star image noise", 8, 8, "uint", default=0, unit="noise")
     """Star image noise: bits 8 to 15, raw 0 to 255, in noise.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
-    invalid_stars: int
+
+    invalid_stars: int = _base.field("Invalid Stars", 16, 8, "uint", default=0, unit="Invalid stars")
     """Invalid Stars: bits 16 to 23, raw 0 to 255, in Invalid stars.
 
     How many of the detected stars are invalid.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
-    number_of_stars_identified: int
+
+    number_of_stars_identified: int = _base.field("Number of stars identified", 24, 8, "uint", default=0, unit="stars")
     """Number of stars identified: bits 24 to 31, raw 0 to 255, in stars.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
-    identification_mode: StarIdModeVal
+
+    identification_mode: StarIdModeVal = _base.field(
+        "Identification mode", 32, 8, "enum", default=StarIdModeVal.TRACKING_MODE
+    )
     """Identification mode: bits 32 to 39."""
-    image_dark_value: int
+
+    image_dark_value: int = _base.field("Image dark value", 40, 8, "uint", default=0, unit="8-bit pixel value")
     """Image dark value: bits 40 to 47, raw 0 to 255, in 8-bit pixel value.
 
     Mean of the centre line of the image.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
-    image_capture_success: bool
+
+    image_capture_success: bool = _base.field("Image Capture Success", 48, 1, "bool", default=False)
     """Image Capture Success: bit 48."""
-    detection_success: bool
+
+    detection_success: bool = _base.field("Detection Success", 49, 1, "bool", default=False)
     """Detection Success: bit 49."""
-    identification_success: bool
+
+    identification_success: bool = _base.field("Identification Success", 50, 1, "bool", default=False)
     """Identification Success: bit 50."""
-    attitude_success: bool
+
+    attitude_success: bool = _base.field("AttitudeSuccess", 51, 1, "bool", default=False)
     """AttitudeSuccess: bit 51.
 
-    Note ACP-115 (certain): AttitudeSuccess is written in one piece.
+    Note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags
+    before it have blanks, as its description has.
     """
-    processing_time_error: bool
+
+    processing_time_error: bool = _base.field("Processing Time Error", 52, 1, "bool", default=False)
     """Processing Time Error: bit 52."""
-    tracking_module_enabled: bool
+
+    tracking_module_enabled: bool = _base.field("Tracking Module Enabled", 53, 1, "bool", default=False)
     """Tracking Module Enabled: bit 53."""
-    prediction_enabled: bool
+
+    prediction_enabled: bool = _base.field("Prediction Enabled", 54, 1, "bool", default=False)
     """Prediction Enabled: bit 54."""
-    comms_error: bool
+
+    comms_error: bool = _base.field("Comms error", 55, 1, "bool", default=False)
     """Comms error: bit 55."""
-    sample_period: int
+
+    sample_period: int = _base.field("Sample Period", 56, 16, "uint", default=0)
     """Sample Period: bits 56 to 71, raw 0 to 65535.
 
-    Note ACP-113 (open): Sample period of the star tracker has no unit.
+    Note ACP-113 (open): Sample period of the star tracker has no unit. Other times of
+    the star tracker are in ms.
     """
-    star_1_confidence: int
+
+    star_1_confidence: int = _base.field("Star 1 confidence", 72, 8, "uint", default=0, unit="%")
     """Star 1 confidence: bits 72 to 79, raw 0 to 255, in %.
 
-    Erratum ACP-114 (certain): percentage is %.
+    Erratum ACP-114 (certain): percentage is %. The unit is spelt out in two frames and
+    a sign elsewhere.
     """
-    star_2_confidence: int
+
+    star_2_confidence: int = _base.field("Star 2 confidence", 80, 8, "uint", default=0, unit="%")
     """Star 2 confidence: bits 80 to 87, raw 0 to 255, in %.
 
-    Erratum ACP-114 (certain): percentage is %.
+    Erratum ACP-114 (certain): see Star 1 confidence.
     """
-    star_3_confidence: int
+
+    star_3_confidence: int = _base.field("Star 3 confidence", 88, 8, "uint", default=0, unit="%")
     """Star 3 confidence: bits 88 to 95, raw 0 to 255, in %.
 
-    Erratum ACP-114 (certain): percentage is %.
+    Erratum ACP-114 (certain): see Star 1 confidence.
     """
-    magnitude_star_1: int
+
+    magnitude_star_1: int = _base.field("Magnitude Star 1", 96, 16, "uint", default=0)
     """Magnitude Star 1: bits 96 to 111, raw 0 to 65535.
 
     Instrument magnitude.
 
-    Note ACP-092 (open): Star magnitudes have no scale.
+    Note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16
+    bits without a factor can be neither fractional nor negative.
     """
-    magnitude_star_2: int
+
+    magnitude_star_2: int = _base.field("Magnitude Star 2", 112, 16, "uint", default=0)
     """Magnitude Star 2: bits 112 to 127, raw 0 to 65535.
 
     Instrument magnitude.
 
-    Note ACP-092 (open): Star magnitudes have no scale.
+    Note ACP-092 (open): see Magnitude Star 1.
     """
-    magnitude_star_3: int
+
+    magnitude_star_3: int = _base.field("Magnitude Star 3", 128, 16, "uint", default=0)
     """Magnitude Star 3: bits 128 to 143, raw 0 to 65535.
 
     Instrument magnitude.
 
-    Note ACP-092 (open): Star magnitudes have no scale.
+    Note ACP-092 (open): see Magnitude Star 1.
     """
-    catalogue_star_1: int
+
+    catalogue_star_1: int = _base.field("Catalogue Star 1", 144, 16, "uint", default=0)
     """Catalogue Star 1: bits 144 to 159, raw 0 to 65535.
 
     Number in the star catalogue.
     """
-    centroid_x_star_1: int
+
+    centroid_x_star_1: int = _base.field("Centroid X Star 1", 160, 16, "int", default=0)
     """Centroid X Star 1: bits 160 to 175, raw -32768 to 32767."""
-    centroid_y_star_1: int
+
+    centroid_y_star_1: int = _base.field("Centroid Y Star 1", 176, 16, "int", default=0)
     """Centroid Y Star 1: bits 176 to 191, raw -32768 to 32767."""
-    catalogue_star_2: int
+
+    catalogue_star_2: int = _base.field("Catalogue Star 2", 192, 16, "uint", default=0)
     """Catalogue Star 2: bits 192 to 207, raw 0 to 65535.
 
     Number in the star catalogue.
     """
-    centroid_x_star_2: int
+
+    centroid_x_star_2: int = _base.field("Centroid X Star 2", 208, 16, "int", default=0)
     """Centroid X Star 2: bits 208 to 223, raw -32768 to 32767."""
-    centroid_y_star_2: int
+
+    centroid_y_star_2: int = _base.field("Centroid Y Star 2", 224, 16, "int", default=0)
     """Centroid Y Star 2: bits 224 to 239, raw -32768 to 32767."""
-    catalogue_star_3: int
+
+    catalogue_star_3: int = _base.field("Catalogue Star 3", 240, 16, "uint", default=0)
     """Catalogue Star 3: bits 240 to 255, raw 0 to 65535.
 
     Number in the star catalogue.
     """
-    centroid_x_star_3: int
+
+    centroid_x_star_3: int = _base.field("Centroid X Star 3", 256, 16, "int", default=0)
     """Centroid X Star 3: bits 256 to 271, raw -32768 to 32767."""
-    centroid_y_star_3: int
+
+    centroid_y_star_3: int = _base.field("Centroid Y Star 3", 272, 16, "int", default=0)
     """Centroid Y Star 3: bits 272 to 287, raw -32768 to 32767."""
-    capture: int
+
+    capture: int = _base.field("Capture", 288, 16, "uint", default=0, unit="ms")
     """Capture: bits 288 to 303, raw 0 to 65535, in ms."""
-    detection: int
+
+    detection: int = _base.field("Detection", 304, 16, "uint", default=0, unit="ms")
     """Detection: bits 304 to 319, raw 0 to 65535, in ms."""
-    identification: int
+
+    identification: int = _base.field("Identification", 320, 16, "uint", default=0, unit="ms")
     """Identification: bits 320 to 335, raw 0 to 65535, in ms."""
-    x_axis_rate: int
+
+    x_axis_rate: int = _base.field("x-Axis rate", 336, 16, "int", default=0)
     """x-Axis rate: bits 336 to 351, raw -32768 to 32767; physical `raw/10000.0`,
     -3.2768 to 3.2767.
 
     Estimated by CubeStar, about its own X axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given
+    without a unit. The other rates are in deg/s; rad/s would fit the range as well.
     """
-    y_axis_rate: int
+    x_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """x-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    x_axis_rate_micro: int = _base.whole(100, 0)
+    """x-Axis rate in millionths, exact: -3276800 to 3276700."""
+
+    y_axis_rate: int = _base.field("y-Axis rate", 352, 16, "int", default=0)
     """y-Axis rate: bits 352 to 367, raw -32768 to 32767; physical `raw/10000.0`,
     -3.2768 to 3.2767.
 
     Estimated by CubeStar, about its own Y axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): see x-Axis rate.
     """
-    z_axis_rate: int
+    y_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """y-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    y_axis_rate_micro: int = _base.whole(100, 0)
+    """y-Axis rate in millionths, exact: -3276800 to 3276700."""
+
+    z_axis_rate: int = _base.field("z-Axis rate", 368, 16, "int", default=0)
     """z-Axis rate: bits 368 to 383, raw -32768 to 32767; physical `raw/10000.0`,
     -3.2768 to 3.2767.
 
     Estimated by CubeStar, about its own Z axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): see x-Axis rate.
     """
-    q0: int
+    z_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """z-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    z_axis_rate_micro: int = _base.whole(100, 0)
+    """z-Axis rate in millionths, exact: -3276800 to 3276700."""
+
+    q0: int = _base.field("Q0", 384, 16, "int", default=0)
     """Q0: bits 384 to 399, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Of the attitude estimated by CubeStar, described as Q1.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names
+    and descriptions count differently. Q1 to Q3 agree with the other quaternions; if Q0
+    were the scalar, the third vector component would be missing.
     """
-    q1: int
+    q0_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Q0, as a physical value: -3.2768 to 3.2767."""
+    q0_micro: int = _base.whole(100, 0)
+    """Q0 in millionths, exact: -3276800 to 3276700."""
+
+    q1: int = _base.field("Q1", 400, 16, "int", default=0)
     """Q1: bits 400 to 415, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Of the attitude estimated by CubeStar, described as Q2.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): see Q0.
     """
-    q2: int
+    q1_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Q1, as a physical value: -3.2768 to 3.2767."""
+    q1_micro: int = _base.whole(100, 0)
+    """Q1 in millionths, exact: -3276800 to 3276700."""
+
+    q2: int = _base.field("Q2", 416, 16, "int", default=0)
     """Q2: bits 416 to 431, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Of the attitude estimated by CubeStar, described as Q3.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): see Q0.
     """
-
-    def __init__(
-        self,
-        *,
-        number_of_stars_detected: int = 0,
-        star_image_noise: int = 0,
-        invalid_stars: int = 0,
-        number_of_stars_identified: int = 0,
-        identification_mode: StarIdModeVal = StarIdModeVal.TRACKING_MODE,
-        image_dark_value: int = 0,
-        image_capture_success: bool = False,
-        detection_success: bool = False,
-        identification_success: bool = False,
-        attitude_success: bool = False,
-        processing_time_error: bool = False,
-        tracking_module_enabled: bool = False,
-        prediction_enabled: bool = False,
-        comms_error: bool = False,
-        sample_period: int = 0,
-        star_1_confidence: int = 0,
-        star_2_confidence: int = 0,
-        star_3_confidence: int = 0,
-        magnitude_star_1: int = 0,
-        magnitude_star_2: int = 0,
-        magnitude_star_3: int = 0,
-        catalogue_star_1: int = 0,
-        centroid_x_star_1: int = 0,
-        centroid_y_star_1: int = 0,
-        catalogue_star_2: int = 0,
-        centroid_x_star_2: int = 0,
-        centroid_y_star_2: int = 0,
-        catalogue_star_3: int = 0,
-        centroid_x_star_3: int = 0,
-        centroid_y_star_3: int = 0,
-        capture: int = 0,
-        detection: int = 0,
-        identification: int = 0,
-        x_axis_rate: int = 0,
-        y_axis_rate: int = 0,
-        z_axis_rate: int = 0,
-        q0: int = 0,
-        q1: int = 0,
-        q2: int = 0,
-    ) -> None:
-        self.number_of_stars_detected = number_of_stars_detected
-        self.star_image_noise = star_image_noise
-        self.invalid_stars = invalid_stars
-        self.number_of_stars_identified = number_of_stars_identified
-        self.identification_mode = identification_mode
-        self.image_dark_value = image_dark_value
-        self.image_capture_success = image_capture_success
-        self.detection_success = detection_success
-        self.identification_success = identification_success
-        self.attitude_success = attitude_success
-        self.processing_time_error = processing_time_error
-        self.tracking_module_enabled = tracking_module_enabled
-        self.prediction_enabled = prediction_enabled
-        self.comms_error = comms_error
-        self.sample_period = sample_period
-        self.star_1_confidence = star_1_confidence
-        self.star_2_confidence = star_2_confidence
-        self.star_3_confidence = star_3_confidence
-        self.magnitude_star_1 = magnitude_star_1
-        self.magnitude_star_2 = magnitude_star_2
-        self.magnitude_star_3 = magnitude_star_3
-        self.catalogue_star_1 = catalogue_star_1
-        self.centroid_x_star_1 = centroid_x_star_1
-        self.centroid_y_star_1 = centroid_y_star_1
-        self.catalogue_star_2 = catalogue_star_2
-        self.centroid_x_star_2 = centroid_x_star_2
-        self.centroid_y_star_2 = centroid_y_star_2
-        self.catalogue_star_3 = catalogue_star_3
-        self.centroid_x_star_3 = centroid_x_star_3
-        self.centroid_y_star_3 = centroid_y_star_3
-        self.capture = capture
-        self.detection = detection
-        self.identification = identification
-        self.x_axis_rate = x_axis_rate
-        self.y_axis_rate = y_axis_rate
-        self.z_axis_rate = z_axis_rate
-        self.q0 = q0
-        self.q1 = q1
-        self.q2 = q2
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        number_of_stars_detected: int = 0,
-        star_image_noise: int = 0,
-        invalid_stars: int = 0,
-        number_of_stars_identified: int = 0,
-        identification_mode: StarIdModeVal = StarIdModeVal.TRACKING_MODE,
-        image_dark_value: int = 0,
-        image_capture_success: bool = False,
-        detection_success: bool = False,
-        identification_success: bool = False,
-        attitude_success: bool = False,
-        processing_time_error: bool = False,
-        tracking_module_enabled: bool = False,
-        prediction_enabled: bool = False,
-        comms_error: bool = False,
-        sample_period: int = 0,
-        star_1_confidence: int = 0,
-        star_2_confidence: int = 0,
-        star_3_confidence: int = 0,
-        magnitude_star_1: int = 0,
-        magnitude_star_2: int = 0,
-        magnitude_star_3: int = 0,
-        catalogue_star_1: int = 0,
-        centroid_x_star_1: int = 0,
-        centroid_y_star_1: int = 0,
-        catalogue_star_2: int = 0,
-        centroid_x_star_2: int = 0,
-        centroid_y_star_2: int = 0,
-        catalogue_star_3: int = 0,
-        centroid_x_star_3: int = 0,
-        centroid_y_star_3: int = 0,
-        capture: int = 0,
-        detection: int = 0,
-        identification: int = 0,
-        x_axis_rate_physical: float = 0.0,
-        y_axis_rate_physical: float = 0.0,
-        z_axis_rate_physical: float = 0.0,
-        q0_physical: float = 0.0,
-        q1_physical: float = 0.0,
-        q2_physical: float = 0.0,
-    ) -> RawStarTracker:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.number_of_stars_detected = number_of_stars_detected
-        self.star_image_noise = star_image_noise
-        self.invalid_stars = invalid_stars
-        self.number_of_stars_identified = number_of_stars_identified
-        self.identification_mode = identification_mode
-        self.image_dark_value = image_dark_value
-        self.image_capture_success = image_capture_success
-        self.detection_success = detection_success
-        self.identification_success = identification_success
-        self.attitude_success = attitude_success
-        self.processing_time_error = processing_time_error
-        self.tracking_module_enabled = tracking_module_enabled
-        self.prediction_enabled = prediction_enabled
-        self.comms_error = comms_error
-        self.sample_period = sample_period
-        self.star_1_confidence = star_1_confidence
-        self.star_2_confidence = star_2_confidence
-        self.star_3_confidence = star_3_confidence
-        self.magnitude_star_1 = magnitude_star_1
-        self.magnitude_star_2 = magnitude_star_2
-        self.magnitude_star_3 = magnitude_star_3
-        self.catalogue_star_1 = catalogue_star_1
-        self.centroid_x_star_1 = centroid_x_star_1
-        self.centroid_y_star_1 = centroid_y_star_1
-        self.catalogue_star_2 = catalogue_star_2
-        self.centroid_x_star_2 = centroid_x_star_2
-        self.centroid_y_star_2 = centroid_y_star_2
-        self.catalogue_star_3 = catalogue_star_3
-        self.centroid_x_star_3 = centroid_x_star_3
-        self.centroid_y_star_3 = centroid_y_star_3
-        self.capture = capture
-        self.detection = detection
-        self.identification = identification
-        self.x_axis_rate_physical = x_axis_rate_physical
-        self.y_axis_rate_physical = y_axis_rate_physical
-        self.z_axis_rate_physical = z_axis_rate_physical
-        self.q0_physical = q0_physical
-        self.q1_physical = q1_physical
-        self.q2_physical = q2_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RawStarTracker:
-        """The message in a frame of exactly 54 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.number_of_stars_detected,
-                self.star_image_noise,
-                self.invalid_stars,
-                self.number_of_stars_identified,
-                v4,
-                self.image_dark_value,
-                v6,
-                self.sample_period,
-                self.star_1_confidence,
-                self.star_2_confidence,
-                self.star_3_confidence,
-                self.magnitude_star_1,
-                self.magnitude_star_2,
-                self.magnitude_star_3,
-                self.catalogue_star_1,
-                self.centroid_x_star_1,
-                self.centroid_y_star_1,
-                self.catalogue_star_2,
-                self.centroid_x_star_2,
-                self.centroid_y_star_2,
-                self.catalogue_star_3,
-                self.centroid_x_star_3,
-                self.centroid_y_star_3,
-                self.capture,
-                self.detection,
-                self.identification,
-                self.x_axis_rate,
-                self.y_axis_rate,
-                self.z_axis_rate,
-                self.q0,
-                self.q1,
-                self.q2,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.identification_mode = _BITS_0[v4]
-        (
-            self.image_capture_success,
-            self.detection_success,
-            self.identification_success,
-            self.attitude_success,
-            self.processing_time_error,
-            self.tracking_module_enabled,
-            self.prediction_enabled,
-            self.comms_error,
-        ) = _BITS_1[v6]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v6 = _BYTES_1[
-                self.image_capture_success,
-                self.detection_success,
-                self.identification_success,
-                self.attitude_success,
-                self.processing_time_error,
-                self.tracking_module_enabled,
-                self.prediction_enabled,
-                self.comms_error,
-            ]
-            return _pack(
-                self.number_of_stars_detected,
-                self.star_image_noise,
-                self.invalid_stars,
-                self.number_of_stars_identified,
-                self.identification_mode,
-                self.image_dark_value,
-                v6,
-                self.sample_period,
-                self.star_1_confidence,
-                self.star_2_confidence,
-                self.star_3_confidence,
-                self.magnitude_star_1,
-                self.magnitude_star_2,
-                self.magnitude_star_3,
-                self.catalogue_star_1,
-                self.centroid_x_star_1,
-                self.centroid_y_star_1,
-                self.catalogue_star_2,
-                self.centroid_x_star_2,
-                self.centroid_y_star_2,
-                self.catalogue_star_3,
-                self.centroid_x_star_3,
-                self.centroid_y_star_3,
-                self.capture,
-                self.detection,
-                self.identification,
-                self.x_axis_rate,
-                self.y_axis_rate,
-                self.z_axis_rate,
-                self.q0,
-                self.q1,
-                self.q2,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def x_axis_rate_physical(self) -> float:
-        """x-Axis rate, as a physical value: -3.2768 to 3.2767."""
-        return self.x_axis_rate / 10000
-
-    @x_axis_rate_physical.setter
-    def x_axis_rate_physical(self, value: float) -> None:
-        self.x_axis_rate = _codec.raw_value(
-            value,
-            "x_axis_rate",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def y_axis_rate_physical(self) -> float:
-        """y-Axis rate, as a physical value: -3.2768 to 3.2767."""
-        return self.y_axis_rate / 10000
-
-    @y_axis_rate_physical.setter
-    def y_axis_rate_physical(self, value: float) -> None:
-        self.y_axis_rate = _codec.raw_value(
-            value,
-            "y_axis_rate",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def z_axis_rate_physical(self) -> float:
-        """z-Axis rate, as a physical value: -3.2768 to 3.2767."""
-        return self.z_axis_rate / 10000
-
-    @z_axis_rate_physical.setter
-    def z_axis_rate_physical(self, value: float) -> None:
-        self.z_axis_rate = _codec.raw_value(
-            value,
-            "z_axis_rate",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def q0_physical(self) -> float:
-        """Q0, as a physical value: -3.2768 to 3.2767."""
-        return self.q0 / 10000
-
-    @q0_physical.setter
-    def q0_physical(self, value: float) -> None:
-        self.q0 = _codec.raw_value(value, "q0", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def q1_physical(self) -> float:
-        """Q1, as a physical value: -3.2768 to 3.2767."""
-        return self.q1 / 10000
-
-    @q1_physical.setter
-    def q1_physical(self, value: float) -> None:
-        self.q1 = _codec.raw_value(value, "q1", (1, 0, 10000), -32768, 32767)
-
-    @property
-    def q2_physical(self) -> float:
-        """Q2, as a physical value: -3.2768 to 3.2767."""
-        return self.q2 / 10000
-
-    @q2_physical.setter
-    def q2_physical(self, value: float) -> None:
-        self.q2 = _codec.raw_value(value, "q2", (1, 0, 10000), -32768, 32767)
+    q2_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Q2, as a physical value: -3.2768 to 3.2767."""
+    q2_micro: int = _base.whole(100, 0)
+    """Q2 in millionths, exact: -3276800 to 3276700."""

@@ -5,40 +5,16 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<15h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Configuration: configuration, set by telecommand 36, got
     by telemetry 205, 30 bytes. Table 191.
 
-    Note ACP-051 (certain): Magnetometers have four names for two.
+    Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and
+    none stand for one; redundant, secondary and 2nd for the other.
     """
-
-    __slots__ = (
-        "mounting_alpha",
-        "mounting_beta",
-        "mounting_gamma",
-        "channel_1_offset",
-        "channel_2_offset",
-        "channel_3_offset",
-        "sensitivity_s11",
-        "sensitivity_s22",
-        "sensitivity_s33",
-        "sensitivity_s12",
-        "sensitivity_s13",
-        "sensitivity_s21",
-        "sensitivity_s23",
-        "sensitivity_s31",
-        "sensitivity_s32",
-    )
 
     NODE = "cubeacp"
     NAME = "Redundant Magnetometer Configuration"
@@ -48,594 +24,210 @@ class RedundantMagConfiguration(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 30
     TABLE = 191
-    FIELDS = (
-        _base.FieldInfo(
-            "mounting_alpha",
-            "Redundant Magnetometer Mounting Transform Alpha Angle",
-            0,
-            16,
-            "int",
-            unit="deg",
-            physical="mounting_alpha_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "mounting_beta",
-            "Redundant Magnetometer Mounting Transform Beta Angle",
-            16,
-            16,
-            "int",
-            unit="deg",
-            physical="mounting_beta_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "mounting_gamma",
-            "Redundant Magnetometer Mounting Transform Gamma Angle",
-            32,
-            16,
-            "int",
-            unit="deg",
-            physical="mounting_gamma_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "channel_1_offset",
-            "Redundant Magnetometer Channel 1 Offset",
-            48,
-            16,
-            "int",
-            physical="channel_1_offset_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "channel_2_offset",
-            "Redundant Magnetometer Channel 2 Offset",
-            64,
-            16,
-            "int",
-            physical="channel_2_offset_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "channel_3_offset",
-            "Redundant Magnetometer Channel 3 Offset",
-            80,
-            16,
-            "int",
-            physical="channel_3_offset_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "sensitivity_s11",
-            "Redundant Magnetometer Sensitivity Matrix S11",
-            96,
-            16,
-            "int",
-            physical="sensitivity_s11_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "sensitivity_s22",
-            "Redundant Magnetometer Sensitivity Matrix S22",
-            112,
-            16,
-            "int",
-            physical="sensitivity_s22_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "sensitivity_s33",
-            "Redundant Magnetometer Sensitivity Matrix S33",
-            128,
-            16,
-            "int",
-            physical="sensitivity_s33_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "sensitivity_s12",
-            "Redundant Magnetometer Sensitivity Matrix S12",
-            144,
-            16,
-            "int",
-            physical="sensitivity_s12_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "sensitivity_s13",
-            "Redundant Magnetometer Sensitivity Matrix S13",
-            160,
-            16,
-            "int",
-            physical="sensitivity_s13_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "sensitivity_s21",
-            "Redundant Magnetometer Sensitivity Matrix S21",
-            176,
-            16,
-            "int",
-            physical="sensitivity_s21_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "sensitivity_s23",
-            "Redundant Magnetometer Sensitivity Matrix S23",
-            192,
-            16,
-            "int",
-            physical="sensitivity_s23_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "sensitivity_s31",
-            "Redundant Magnetometer Sensitivity Matrix S31",
-            208,
-            16,
-            "int",
-            physical="sensitivity_s31_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "sensitivity_s32",
-            "Redundant Magnetometer Sensitivity Matrix S32",
-            224,
-            16,
-            "int",
-            physical="sensitivity_s32_physical",
-            scale=(1, 0, 1000),
-        ),
-    )
 
-    mounting_alpha: int
+    mounting_alpha: int = _base.field(
+        "Redundant Magnetometer Mounting Transform Alpha Angle", 0, 16, "int", default=0, unit="deg"
+    )
     """Redundant Magnetometer Mounting Transform Alpha Angle: bits 0 to 15, raw -32768
     to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need
+    a sequence of axes and a direction. None is given.
     """
-    mounting_beta: int
+    mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
+    """
+    mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg,
+    exact: -327680 to 327670.
+    """
+
+    mounting_beta: int = _base.field(
+        "Redundant Magnetometer Mounting Transform Beta Angle", 16, 16, "int", default=0, unit="deg"
+    )
     """Redundant Magnetometer Mounting Transform Beta Angle: bits 16 to 31, raw -32768
     to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Redundant Magnetometer Mounting Transform Alpha Angle.
     """
-    mounting_gamma: int
+    mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
+    """
+    mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg,
+    exact: -327680 to 327670.
+    """
+
+    mounting_gamma: int = _base.field(
+        "Redundant Magnetometer Mounting Transform Gamma Angle", 32, 16, "int", default=0, unit="deg"
+    )
     """Redundant Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, raw -32768
     to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Redundant Magnetometer Mounting Transform Alpha Angle.
     """
-    channel_1_offset: int
+    mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
+    """
+    mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg,
+    exact: -327680 to 327670.
+    """
+
+    channel_1_offset: int = _base.field("Redundant Magnetometer Channel 1 Offset", 48, 16, "int", default=0)
     """Redundant Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-155 (open): Magnetometer offsets have no unit.
+    Note ACP-155 (open): Magnetometer offsets have no unit. Channel offsets have a
+    factor and no unit. The field itself is in uT; the sensitivity that would convert
+    has no unit either.
     """
-    channel_2_offset: int
+    channel_1_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767.
+    """
+    channel_1_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767.
+    """
+
+    channel_2_offset: int = _base.field("Redundant Magnetometer Channel 2 Offset", 64, 16, "int", default=0)
     """Redundant Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-155 (open): Magnetometer offsets have no unit.
+    Note ACP-155 (open): see Redundant Magnetometer Channel 1 Offset.
     """
-    channel_3_offset: int
+    channel_2_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767.
+    """
+    channel_2_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767.
+    """
+
+    channel_3_offset: int = _base.field("Redundant Magnetometer Channel 3 Offset", 80, 16, "int", default=0)
     """Redundant Magnetometer Channel 3 Offset: bits 80 to 95, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-155 (open): Magnetometer offsets have no unit.
+    Note ACP-155 (open): see Redundant Magnetometer Channel 1 Offset.
     """
-    sensitivity_s11: int
+    channel_3_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767.
+    """
+    channel_3_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767.
+    """
+
+    sensitivity_s11: int = _base.field("Redundant Magnetometer Sensitivity Matrix S11", 96, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S11: bits 96 to 111, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    sensitivity_s22: int
+    sensitivity_s11_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to
+    32.767.
+    """
+    sensitivity_s11_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    sensitivity_s22: int = _base.field("Redundant Magnetometer Sensitivity Matrix S22", 112, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S22: bits 112 to 127, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    sensitivity_s33: int
+    sensitivity_s22_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to
+    32.767.
+    """
+    sensitivity_s22_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    sensitivity_s33: int = _base.field("Redundant Magnetometer Sensitivity Matrix S33", 128, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S33: bits 128 to 143, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    sensitivity_s12: int
+    sensitivity_s33_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to
+    32.767.
+    """
+    sensitivity_s33_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    sensitivity_s12: int = _base.field("Redundant Magnetometer Sensitivity Matrix S12", 144, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S12: bits 144 to 159, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    sensitivity_s13: int
+    sensitivity_s12_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to
+    32.767.
+    """
+    sensitivity_s12_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    sensitivity_s13: int = _base.field("Redundant Magnetometer Sensitivity Matrix S13", 160, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S13: bits 160 to 175, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    sensitivity_s21: int
+    sensitivity_s13_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to
+    32.767.
+    """
+    sensitivity_s13_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    sensitivity_s21: int = _base.field("Redundant Magnetometer Sensitivity Matrix S21", 176, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S21: bits 176 to 191, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    sensitivity_s23: int
+    sensitivity_s21_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to
+    32.767.
+    """
+    sensitivity_s21_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    sensitivity_s23: int = _base.field("Redundant Magnetometer Sensitivity Matrix S23", 192, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S23: bits 192 to 207, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    sensitivity_s31: int
+    sensitivity_s23_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to
+    32.767.
+    """
+    sensitivity_s23_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    sensitivity_s31: int = _base.field("Redundant Magnetometer Sensitivity Matrix S31", 208, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S31: bits 208 to 223, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    sensitivity_s32: int
+    sensitivity_s31_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to
+    32.767.
+    """
+    sensitivity_s31_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to
+    32767.
+    """
+
+    sensitivity_s32: int = _base.field("Redundant Magnetometer Sensitivity Matrix S32", 224, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S32: bits 224 to 239, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-
-    def __init__(
-        self,
-        *,
-        mounting_alpha: int = 0,
-        mounting_beta: int = 0,
-        mounting_gamma: int = 0,
-        channel_1_offset: int = 0,
-        channel_2_offset: int = 0,
-        channel_3_offset: int = 0,
-        sensitivity_s11: int = 0,
-        sensitivity_s22: int = 0,
-        sensitivity_s33: int = 0,
-        sensitivity_s12: int = 0,
-        sensitivity_s13: int = 0,
-        sensitivity_s21: int = 0,
-        sensitivity_s23: int = 0,
-        sensitivity_s31: int = 0,
-        sensitivity_s32: int = 0,
-    ) -> None:
-        self.mounting_alpha = mounting_alpha
-        self.mounting_beta = mounting_beta
-        self.mounting_gamma = mounting_gamma
-        self.channel_1_offset = channel_1_offset
-        self.channel_2_offset = channel_2_offset
-        self.channel_3_offset = channel_3_offset
-        self.sensitivity_s11 = sensitivity_s11
-        self.sensitivity_s22 = sensitivity_s22
-        self.sensitivity_s33 = sensitivity_s33
-        self.sensitivity_s12 = sensitivity_s12
-        self.sensitivity_s13 = sensitivity_s13
-        self.sensitivity_s21 = sensitivity_s21
-        self.sensitivity_s23 = sensitivity_s23
-        self.sensitivity_s31 = sensitivity_s31
-        self.sensitivity_s32 = sensitivity_s32
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        mounting_alpha_deg: float = 0.0,
-        mounting_beta_deg: float = 0.0,
-        mounting_gamma_deg: float = 0.0,
-        channel_1_offset_physical: float = 0.0,
-        channel_2_offset_physical: float = 0.0,
-        channel_3_offset_physical: float = 0.0,
-        sensitivity_s11_physical: float = 0.0,
-        sensitivity_s22_physical: float = 0.0,
-        sensitivity_s33_physical: float = 0.0,
-        sensitivity_s12_physical: float = 0.0,
-        sensitivity_s13_physical: float = 0.0,
-        sensitivity_s21_physical: float = 0.0,
-        sensitivity_s23_physical: float = 0.0,
-        sensitivity_s31_physical: float = 0.0,
-        sensitivity_s32_physical: float = 0.0,
-    ) -> RedundantMagConfiguration:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.mounting_alpha_deg = mounting_alpha_deg
-        self.mounting_beta_deg = mounting_beta_deg
-        self.mounting_gamma_deg = mounting_gamma_deg
-        self.channel_1_offset_physical = channel_1_offset_physical
-        self.channel_2_offset_physical = channel_2_offset_physical
-        self.channel_3_offset_physical = channel_3_offset_physical
-        self.sensitivity_s11_physical = sensitivity_s11_physical
-        self.sensitivity_s22_physical = sensitivity_s22_physical
-        self.sensitivity_s33_physical = sensitivity_s33_physical
-        self.sensitivity_s12_physical = sensitivity_s12_physical
-        self.sensitivity_s13_physical = sensitivity_s13_physical
-        self.sensitivity_s21_physical = sensitivity_s21_physical
-        self.sensitivity_s23_physical = sensitivity_s23_physical
-        self.sensitivity_s31_physical = sensitivity_s31_physical
-        self.sensitivity_s32_physical = sensitivity_s32_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RedundantMagConfiguration:
-        """The message in a frame of exactly 30 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.mounting_alpha,
-                self.mounting_beta,
-                self.mounting_gamma,
-                self.channel_1_offset,
-                self.channel_2_offset,
-                self.channel_3_offset,
-                self.sensitivity_s11,
-                self.sensitivity_s22,
-                self.sensitivity_s33,
-                self.sensitivity_s12,
-                self.sensitivity_s13,
-                self.sensitivity_s21,
-                self.sensitivity_s23,
-                self.sensitivity_s31,
-                self.sensitivity_s32,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.mounting_alpha,
-                self.mounting_beta,
-                self.mounting_gamma,
-                self.channel_1_offset,
-                self.channel_2_offset,
-                self.channel_3_offset,
-                self.sensitivity_s11,
-                self.sensitivity_s22,
-                self.sensitivity_s33,
-                self.sensitivity_s12,
-                self.sensitivity_s13,
-                self.sensitivity_s21,
-                self.sensitivity_s23,
-                self.sensitivity_s31,
-                self.sensitivity_s32,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def mounting_alpha_deg(self) -> float:
-        """Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to
-        327.67.
-        """
-        return self.mounting_alpha / 100
-
-    @mounting_alpha_deg.setter
-    def mounting_alpha_deg(self, value: float) -> None:
-        self.mounting_alpha = _codec.raw_value(
-            value,
-            "mounting_alpha",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def mounting_beta_deg(self) -> float:
-        """Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to
-        327.67.
-        """
-        return self.mounting_beta / 100
-
-    @mounting_beta_deg.setter
-    def mounting_beta_deg(self, value: float) -> None:
-        self.mounting_beta = _codec.raw_value(
-            value,
-            "mounting_beta",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def mounting_gamma_deg(self) -> float:
-        """Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to
-        327.67.
-        """
-        return self.mounting_gamma / 100
-
-    @mounting_gamma_deg.setter
-    def mounting_gamma_deg(self, value: float) -> None:
-        self.mounting_gamma = _codec.raw_value(
-            value,
-            "mounting_gamma",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def channel_1_offset_physical(self) -> float:
-        """Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to
-        32.767.
-        """
-        return self.channel_1_offset / 1000
-
-    @channel_1_offset_physical.setter
-    def channel_1_offset_physical(self, value: float) -> None:
-        self.channel_1_offset = _codec.raw_value(
-            value,
-            "channel_1_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def channel_2_offset_physical(self) -> float:
-        """Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to
-        32.767.
-        """
-        return self.channel_2_offset / 1000
-
-    @channel_2_offset_physical.setter
-    def channel_2_offset_physical(self, value: float) -> None:
-        self.channel_2_offset = _codec.raw_value(
-            value,
-            "channel_2_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def channel_3_offset_physical(self) -> float:
-        """Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to
-        32.767.
-        """
-        return self.channel_3_offset / 1000
-
-    @channel_3_offset_physical.setter
-    def channel_3_offset_physical(self, value: float) -> None:
-        self.channel_3_offset = _codec.raw_value(
-            value,
-            "channel_3_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def sensitivity_s11_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S11, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.sensitivity_s11 / 1000
-
-    @sensitivity_s11_physical.setter
-    def sensitivity_s11_physical(self, value: float) -> None:
-        self.sensitivity_s11 = _codec.raw_value(
-            value,
-            "sensitivity_s11",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def sensitivity_s22_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S22, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.sensitivity_s22 / 1000
-
-    @sensitivity_s22_physical.setter
-    def sensitivity_s22_physical(self, value: float) -> None:
-        self.sensitivity_s22 = _codec.raw_value(
-            value,
-            "sensitivity_s22",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def sensitivity_s33_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S33, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.sensitivity_s33 / 1000
-
-    @sensitivity_s33_physical.setter
-    def sensitivity_s33_physical(self, value: float) -> None:
-        self.sensitivity_s33 = _codec.raw_value(
-            value,
-            "sensitivity_s33",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def sensitivity_s12_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S12, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.sensitivity_s12 / 1000
-
-    @sensitivity_s12_physical.setter
-    def sensitivity_s12_physical(self, value: float) -> None:
-        self.sensitivity_s12 = _codec.raw_value(
-            value,
-            "sensitivity_s12",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def sensitivity_s13_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S13, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.sensitivity_s13 / 1000
-
-    @sensitivity_s13_physical.setter
-    def sensitivity_s13_physical(self, value: float) -> None:
-        self.sensitivity_s13 = _codec.raw_value(
-            value,
-            "sensitivity_s13",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def sensitivity_s21_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S21, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.sensitivity_s21 / 1000
-
-    @sensitivity_s21_physical.setter
-    def sensitivity_s21_physical(self, value: float) -> None:
-        self.sensitivity_s21 = _codec.raw_value(
-            value,
-            "sensitivity_s21",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def sensitivity_s23_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S23, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.sensitivity_s23 / 1000
-
-    @sensitivity_s23_physical.setter
-    def sensitivity_s23_physical(self, value: float) -> None:
-        self.sensitivity_s23 = _codec.raw_value(
-            value,
-            "sensitivity_s23",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def sensitivity_s31_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S31, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.sensitivity_s31 / 1000
-
-    @sensitivity_s31_physical.setter
-    def sensitivity_s31_physical(self, value: float) -> None:
-        self.sensitivity_s31 = _codec.raw_value(
-            value,
-            "sensitivity_s31",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def sensitivity_s32_physical(self) -> float:
-        """Redundant Magnetometer Sensitivity Matrix S32, as a physical value: -32.768
-        to 32.767.
-        """
-        return self.sensitivity_s32 / 1000
-
-    @sensitivity_s32_physical.setter
-    def sensitivity_s32_physical(self, value: float) -> None:
-        self.sensitivity_s32 = _codec.raw_value(
-            value,
-            "sensitivity_s32",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
+    sensitivity_s32_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Redundant Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to
+    32.767.
+    """
+    sensitivity_s32_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to
+    32767.
+    """

@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class SatellitePositionEci(_base.Message):
     """Satellite Position (ECI): telemetry 148, 6 bytes. Table 104.
 
     Bit 31 of the log mask.
     """
-
-    __slots__ = (
-        "x_position",
-        "y_position",
-        "z_position",
-    )
 
     NODE = "cubeacp"
     NAME = "Satellite Position (ECI)"
@@ -34,136 +21,30 @@ class SatellitePositionEci(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 104
-    FIELDS = (
-        _base.FieldInfo(
-            "x_position",
-            "X position",
-            0,
-            16,
-            "int",
-            unit="km",
-            physical="x_position_km",
-            scale=(1, 0, 4),
-        ),
-        _base.FieldInfo(
-            "y_position",
-            "Y position",
-            16,
-            16,
-            "int",
-            unit="km",
-            physical="y_position_km",
-            scale=(1, 0, 4),
-        ),
-        _base.FieldInfo(
-            "z_position",
-            "Z position",
-            32,
-            16,
-            "int",
-            unit="km",
-            physical="z_position_km",
-            scale=(1, 0, 4),
-        ),
-    )
 
-    x_position: int
+    x_position: int = _base.field("X position", 0, 16, "int", default=0, unit="km")
     """X position: bits 0 to 15, raw -32768 to 32767; physical `raw*0.25`, -8192 to
     8191.75 km.
     """
-    y_position: int
+    x_position_km: float = _base.scaled(1, 0, 4, default=0.0)
+    """X position in km: -8192 to 8191.75."""
+    x_position_m: int = _base.whole(250, 0)
+    """X position in m, exact: -8192000 to 8191750."""
+
+    y_position: int = _base.field("Y position", 16, 16, "int", default=0, unit="km")
     """Y position: bits 16 to 31, raw -32768 to 32767; physical `raw*0.25`, -8192 to
     8191.75 km.
     """
-    z_position: int
+    y_position_km: float = _base.scaled(1, 0, 4, default=0.0)
+    """Y position in km: -8192 to 8191.75."""
+    y_position_m: int = _base.whole(250, 0)
+    """Y position in m, exact: -8192000 to 8191750."""
+
+    z_position: int = _base.field("Z position", 32, 16, "int", default=0, unit="km")
     """Z position: bits 32 to 47, raw -32768 to 32767; physical `raw*0.25`, -8192 to
     8191.75 km.
     """
-
-    def __init__(
-        self,
-        *,
-        x_position: int = 0,
-        y_position: int = 0,
-        z_position: int = 0,
-    ) -> None:
-        self.x_position = x_position
-        self.y_position = y_position
-        self.z_position = z_position
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        x_position_km: float = 0.0,
-        y_position_km: float = 0.0,
-        z_position_km: float = 0.0,
-    ) -> SatellitePositionEci:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.x_position_km = x_position_km
-        self.y_position_km = y_position_km
-        self.z_position_km = z_position_km
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SatellitePositionEci:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.x_position, self.y_position, self.z_position = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.x_position, self.y_position, self.z_position)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def x_position_km(self) -> float:
-        """X position in km: -8192 to 8191.75."""
-        return self.x_position / 4
-
-    @x_position_km.setter
-    def x_position_km(self, value: float) -> None:
-        self.x_position = _codec.raw_value(
-            value,
-            "x_position",
-            (1, 0, 4),
-            -32768,
-            32767,
-        )
-
-    @property
-    def y_position_km(self) -> float:
-        """Y position in km: -8192 to 8191.75."""
-        return self.y_position / 4
-
-    @y_position_km.setter
-    def y_position_km(self, value: float) -> None:
-        self.y_position = _codec.raw_value(
-            value,
-            "y_position",
-            (1, 0, 4),
-            -32768,
-            32767,
-        )
-
-    @property
-    def z_position_km(self) -> float:
-        """Z position in km: -8192 to 8191.75."""
-        return self.z_position / 4
-
-    @z_position_km.setter
-    def z_position_km(self, value: float) -> None:
-        self.z_position = _codec.raw_value(
-            value,
-            "z_position",
-            (1, 0, 4),
-            -32768,
-            32767,
-        )
+    z_position_km: float = _base.scaled(1, 0, 4, default=0.0)
+    """Z position in km: -8192 to 8191.75."""
+    z_position_m: int = _base.whole(250, 0)
+    """Z position in m, exact: -8192000 to 8191750."""

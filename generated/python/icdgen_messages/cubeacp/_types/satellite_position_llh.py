@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<2hH")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class SatellitePositionLlh(_base.Message):
     """Satellite Position (LLH): telemetry 150, 6 bytes. Table 106.
 
@@ -23,12 +16,6 @@ class SatellitePositionLlh(_base.Message):
     Bit 33 of the log mask.
     """
 
-    __slots__ = (
-        "latitude",
-        "longitude",
-        "altitude",
-    )
-
     NODE = "cubeacp"
     NAME = "Satellite Position (LLH)"
     KIND = "telemetry"
@@ -36,127 +23,37 @@ class SatellitePositionLlh(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 106
-    FIELDS = (
-        _base.FieldInfo(
-            "latitude",
-            "Latitude",
-            0,
-            16,
-            "int",
-            unit="deg",
-            physical="latitude_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "longitude",
-            "Longitude",
-            16,
-            16,
-            "int",
-            unit="deg",
-            physical="longitude_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "altitude",
-            "Altitude",
-            32,
-            16,
-            "uint",
-            unit="km",
-            physical="altitude_km",
-            scale=(1, 0, 100),
-        ),
-    )
 
-    latitude: int
+    latitude: int = _base.field("Latitude", 0, 16, "int", default=0, unit="deg")
     """Latitude: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     327.67 deg.
     """
-    longitude: int
+    latitude_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Latitude in deg: -327.68 to 327.67."""
+    latitude_mdeg: int = _base.whole(10, 0)
+    """Latitude in thousandths of deg, exact: -327680 to 327670."""
+
+    longitude: int = _base.field("Longitude", 16, 16, "int", default=0, unit="deg")
     """Longitude: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     327.67 deg.
 
-    Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
+    Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The
+    datum is missing in one of three rows; the frame is called LLH by name and WGS-84
+    frame by description.
     """
-    altitude: int
+    longitude_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """Longitude in deg: -327.68 to 327.67."""
+    longitude_mdeg: int = _base.whole(10, 0)
+    """Longitude in thousandths of deg, exact: -327680 to 327670."""
+
+    altitude: int = _base.field("Altitude", 32, 16, "uint", default=0, unit="km")
     """Altitude: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
 
-    Note ACP-067 (open): Position and altitude do not reach equally far.
+    Note ACP-067 (open): Position and altitude do not reach equally far. The inertial
+    position fits orbits up to 1800 km, the altitude of 16 bits ends at 655.35 km. Above
+    that it wraps or sticks; which is not said.
     """
-
-    def __init__(
-        self,
-        *,
-        latitude: int = 0,
-        longitude: int = 0,
-        altitude: int = 0,
-    ) -> None:
-        self.latitude = latitude
-        self.longitude = longitude
-        self.altitude = altitude
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        latitude_deg: float = 0.0,
-        longitude_deg: float = 0.0,
-        altitude_km: float = 0.0,
-    ) -> SatellitePositionLlh:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.latitude_deg = latitude_deg
-        self.longitude_deg = longitude_deg
-        self.altitude_km = altitude_km
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SatellitePositionLlh:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.latitude, self.longitude, self.altitude = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.latitude, self.longitude, self.altitude)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def latitude_deg(self) -> float:
-        """Latitude in deg: -327.68 to 327.67."""
-        return self.latitude / 100
-
-    @latitude_deg.setter
-    def latitude_deg(self, value: float) -> None:
-        self.latitude = _codec.raw_value(value, "latitude", (1, 0, 100), -32768, 32767)
-
-    @property
-    def longitude_deg(self) -> float:
-        """Longitude in deg: -327.68 to 327.67."""
-        return self.longitude / 100
-
-    @longitude_deg.setter
-    def longitude_deg(self, value: float) -> None:
-        self.longitude = _codec.raw_value(
-            value,
-            "longitude",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def altitude_km(self) -> float:
-        """Altitude in km: 0 to 655.35."""
-        return self.altitude / 100
-
-    @altitude_km.setter
-    def altitude_km(self, value: float) -> None:
-        self.altitude = _codec.raw_value(value, "altitude", (1, 0, 100), 0, 65535)
+    altitude_km: float = _base.scaled(1, 0, 100, default=0.0)
+    """Altitude in km: 0 to 655.35."""
+    altitude_m: int = _base.whole(10, 0)
+    """Altitude in m, exact: 0 to 655350."""

@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class SatelliteVelocityEci(_base.Message):
     """Satellite Velocity (ECI): telemetry 149, 6 bytes. Table 105.
 
     Bit 32 of the log mask.
     """
-
-    __slots__ = (
-        "x_velocity",
-        "y_velocity",
-        "z_velocity",
-    )
 
     NODE = "cubeacp"
     NAME = "Satellite Velocity (ECI)"
@@ -34,136 +21,30 @@ class SatelliteVelocityEci(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 105
-    FIELDS = (
-        _base.FieldInfo(
-            "x_velocity",
-            "X Velocity",
-            0,
-            16,
-            "int",
-            unit="m/s",
-            physical="x_velocity_m_per_s",
-            scale=(1, 0, 4),
-        ),
-        _base.FieldInfo(
-            "y_velocity",
-            "Y Velocity",
-            16,
-            16,
-            "int",
-            unit="m/s",
-            physical="y_velocity_m_per_s",
-            scale=(1, 0, 4),
-        ),
-        _base.FieldInfo(
-            "z_velocity",
-            "Z Velocity",
-            32,
-            16,
-            "int",
-            unit="m/s",
-            physical="z_velocity_m_per_s",
-            scale=(1, 0, 4),
-        ),
-    )
 
-    x_velocity: int
+    x_velocity: int = _base.field("X Velocity", 0, 16, "int", default=0, unit="m/s")
     """X Velocity: bits 0 to 15, raw -32768 to 32767; physical `raw*0.25`, -8192 to
     8191.75 m/s.
     """
-    y_velocity: int
+    x_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
+    """X Velocity in m/s: -8192 to 8191.75."""
+    x_velocity_mm_per_s: int = _base.whole(250, 0)
+    """X Velocity in mm/s, exact: -8192000 to 8191750."""
+
+    y_velocity: int = _base.field("Y Velocity", 16, 16, "int", default=0, unit="m/s")
     """Y Velocity: bits 16 to 31, raw -32768 to 32767; physical `raw*0.25`, -8192 to
     8191.75 m/s.
     """
-    z_velocity: int
+    y_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
+    """Y Velocity in m/s: -8192 to 8191.75."""
+    y_velocity_mm_per_s: int = _base.whole(250, 0)
+    """Y Velocity in mm/s, exact: -8192000 to 8191750."""
+
+    z_velocity: int = _base.field("Z Velocity", 32, 16, "int", default=0, unit="m/s")
     """Z Velocity: bits 32 to 47, raw -32768 to 32767; physical `raw*0.25`, -8192 to
     8191.75 m/s.
     """
-
-    def __init__(
-        self,
-        *,
-        x_velocity: int = 0,
-        y_velocity: int = 0,
-        z_velocity: int = 0,
-    ) -> None:
-        self.x_velocity = x_velocity
-        self.y_velocity = y_velocity
-        self.z_velocity = z_velocity
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        x_velocity_m_per_s: float = 0.0,
-        y_velocity_m_per_s: float = 0.0,
-        z_velocity_m_per_s: float = 0.0,
-    ) -> SatelliteVelocityEci:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.x_velocity_m_per_s = x_velocity_m_per_s
-        self.y_velocity_m_per_s = y_velocity_m_per_s
-        self.z_velocity_m_per_s = z_velocity_m_per_s
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SatelliteVelocityEci:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.x_velocity, self.y_velocity, self.z_velocity = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.x_velocity, self.y_velocity, self.z_velocity)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def x_velocity_m_per_s(self) -> float:
-        """X Velocity in m/s: -8192 to 8191.75."""
-        return self.x_velocity / 4
-
-    @x_velocity_m_per_s.setter
-    def x_velocity_m_per_s(self, value: float) -> None:
-        self.x_velocity = _codec.raw_value(
-            value,
-            "x_velocity",
-            (1, 0, 4),
-            -32768,
-            32767,
-        )
-
-    @property
-    def y_velocity_m_per_s(self) -> float:
-        """Y Velocity in m/s: -8192 to 8191.75."""
-        return self.y_velocity / 4
-
-    @y_velocity_m_per_s.setter
-    def y_velocity_m_per_s(self, value: float) -> None:
-        self.y_velocity = _codec.raw_value(
-            value,
-            "y_velocity",
-            (1, 0, 4),
-            -32768,
-            32767,
-        )
-
-    @property
-    def z_velocity_m_per_s(self) -> float:
-        """Z Velocity in m/s: -8192 to 8191.75."""
-        return self.z_velocity / 4
-
-    @z_velocity_m_per_s.setter
-    def z_velocity_m_per_s(self, value: float) -> None:
-        self.z_velocity = _codec.raw_value(
-            value,
-            "z_velocity",
-            (1, 0, 4),
-            -32768,
-            32767,
-        )
+    z_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
+    """Z Velocity in m/s: -8192 to 8191.75."""
+    z_velocity_mm_per_s: int = _base.whole(250, 0)
+    """Z Velocity in mm/s, exact: -8192000 to 8191750."""

@@ -5,25 +5,19 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class SaveConfiguration(_base.Message):
     """Save Configuration: telecommand 63, 0 bytes. Table 92.
 
     Keeps the current configuration in flash.
 
-    Note ACP-054 (open): Two saves for three stored sets.
+    Note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS
+    configuration, the orbit parameters and the system configuration. Telecommands save
+    the current configuration and the orbit parameters; which the first covers is not
+    said.
     """
-
-    __slots__ = ()
 
     NODE = "cubeacp"
     NAME = "Save Configuration"
@@ -32,20 +26,3 @@ class SaveConfiguration(_base.Message):
     IDS = (ID,)
     LENGTH = 0
     TABLE = 92
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SaveConfiguration:
-        """The message in a frame of exactly 0 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack()
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,32 +5,19 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .cam_select import CamSelect
 from .im_size import ImSize
 
-_STRUCT = struct.Struct("<2B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, CamSelect))
-_BITS_1 = _codec.bit_table((0, 8, ImSize))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class SaveImage(_base.Message):
     """Save Image: telecommand 80, 2 bytes. Table 94.
 
     Takes a picture with a CubeSense or the CubeStar camera and saves it to the SD card.
 
-    Note ACP-055 (certain): Save Image saves before it captures.
+    Note ACP-055 (certain): Save Image saves before it captures. The description has the
+    steps in the wrong order.
     """
-
-    __slots__ = (
-        "camera_select",
-        "image_size",
-    )
 
     NODE = "cubeacp"
     NAME = "Save Image"
@@ -39,40 +26,9 @@ class SaveImage(_base.Message):
     IDS = (ID,)
     LENGTH = 2
     TABLE = 94
-    FIELDS = (
-        _base.FieldInfo("camera_select", "Camera Select", 0, 8, "enum", enum=CamSelect),
-        _base.FieldInfo("image_size", "Image Size", 8, 8, "enum", enum=ImSize),
-    )
 
-    camera_select: CamSelect
+    camera_select: CamSelect = _base.field("Camera Select", 0, 8, "enum", default=CamSelect.CAM1)
     """Camera Select: bits 0 to 7."""
-    image_size: ImSize
+
+    image_size: ImSize = _base.field("Image Size", 8, 8, "enum", default=ImSize.SIZE_0)
     """Image Size: bits 8 to 15."""
-
-    def __init__(
-        self,
-        *,
-        camera_select: CamSelect = CamSelect.CAM1,
-        image_size: ImSize = ImSize.SIZE_0,
-    ) -> None:
-        self.camera_select = camera_select
-        self.image_size = image_size
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SaveImage:
-        """The message in a frame of exactly 2 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, v1 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.camera_select = _BITS_0[v0]
-        self.image_size = _BITS_1[v1]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.camera_select, self.image_size)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,35 +5,23 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .sd_log_select import SdLogSelect
 
-_STRUCT = struct.Struct("<10sHB")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, SdLogSelect))
-_DEFAULT_0 = bytes(10)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class SdLog2Configuration(_base.Message):
     """SD Log2 Configuration: configuration, set by telecommand 105, got by telemetry
     236, 13 bytes. Table 212.
 
     Which frames go into log 2, how often, and to which card.
 
-    Note ACP-185 (certain): Log1 is LOG1 in its description.
+    Note ACP-185 (certain): Log1 is LOG1 in its description. Names have Log1 and Log2,
+    descriptions LOG1 and LOG2.
 
-    Note ACP-186 (open): A log that is reconfigured while it runs.
+    Note ACP-186 (open): A log that is reconfigured while it runs. The mask in the file
+    header is that of the start. Whether a new selection starts a new file, and which
+    counter it gets, is not said.
     """
-
-    __slots__ = (
-        "log_selection",
-        "log_period",
-        "log_destination",
-    )
 
     NODE = "cubeacp"
     NAME = "SD Log2 Configuration"
@@ -43,71 +31,35 @@ class SdLog2Configuration(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 13
     TABLE = 212
-    FIELDS = (
-        _base.FieldInfo("log_selection", "Log Selection", 0, 80, "bytes"),
-        _base.FieldInfo(
-            "log_period",
-            "Log Period",
-            80,
-            16,
-            "uint",
-            special=(
-                (0, "logging disabled"),
-            ),
-        ),
-        _base.FieldInfo(
-            "log_destination",
-            "Log Destination",
-            96,
-            8,
-            "enum",
-            enum=SdLogSelect,
-        ),
-    )
 
-    log_selection: bytes
+    log_selection: bytes = _base.field("Log Selection", 0, 80, "bytes", default=bytes(10))
     """Log Selection: bytes 0 to 9.
 
     Mask of up to 80 telemetry frames.
 
     Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
+    Seventeen bits of the mask have no frame: 2, 5, 6 and 66 to 79. What a log with one
+    of them set holds is not said.
     """
-    log_period: int
+
+    log_period: int = _base.field(
+        "Log Period",
+        80,
+        16,
+        "uint",
+        default=0,
+        special=(
+            (0, "logging disabled"),
+        ),
+    )
     """Log Period: bits 80 to 95, raw 0 to 65535.
 
     0: logging disabled.
 
-    Note ACP-183 (open): Log period has no unit.
+    Note ACP-183 (open): Log period has no unit. Zero switches logging off; seconds or
+    iterations of the loop are both possible, and equal only while the loop runs at 1
+    Hz.
     """
-    log_destination: SdLogSelect
+
+    log_destination: SdLogSelect = _base.field("Log Destination", 96, 8, "enum", default=SdLogSelect.PRIMARY_SD_CARD)
     """Log Destination: bits 96 to 103."""
-
-    def __init__(
-        self,
-        *,
-        log_selection: bytes = _DEFAULT_0,
-        log_period: int = 0,
-        log_destination: SdLogSelect = SdLogSelect.PRIMARY_SD_CARD,
-    ) -> None:
-        self.log_selection = log_selection
-        self.log_period = log_period
-        self.log_destination = log_destination
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SdLog2Configuration:
-        """The message in a frame of exactly 13 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.log_selection, self.log_period, v12 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.log_destination = _BITS_0[v12]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _codec.sized(self.log_selection, 10)
-            return _pack(v0, self.log_period, self.log_destination)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

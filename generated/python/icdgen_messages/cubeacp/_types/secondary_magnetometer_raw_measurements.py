@@ -5,31 +5,21 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class SecondaryMagnetometerRawMeasurements(_base.Message):
     """Secondary Magnetometer Raw Measurements: telemetry 215, 6 bytes. Table 163.
 
     Bit 58 of the log mask.
 
-    Note ACP-051 (certain): Magnetometers have four names for two.
+    Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and
+    none stand for one; redundant, secondary and 2nd for the other.
 
-    Note ACP-118 (likely): Secondary magnetometer: fixed or selected.
+    Note ACP-118 (likely): Secondary magnetometer: fixed or selected. The frame is named
+    for the secondary magnetometer, with the field names of the primary one. A setting
+    selects which magnetometer, sampled how, it shows.
     """
-
-    __slots__ = (
-        "mag_x",
-        "mag_y",
-        "mag_z",
-    )
 
     NODE = "cubeacp"
     NAME = "Secondary Magnetometer Raw Measurements"
@@ -38,61 +28,28 @@ class SecondaryMagnetometerRawMeasurements(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 163
-    FIELDS = (
-        _base.FieldInfo("mag_x", "MagX", 0, 16, "int"),
-        _base.FieldInfo("mag_y", "MagY", 16, 16, "int"),
-        _base.FieldInfo("mag_z", "MagZ", 32, 16, "int"),
-    )
 
-    mag_x: int
+    mag_x: int = _base.field("MagX", 0, 16, "int", default=0)
     """MagX: bits 0 to 15, raw -32768 to 32767.
 
     Sampled A/D value.
 
     Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    scale. Neither resolution nor unit of the sampled values is given.
     """
-    mag_y: int
+
+    mag_y: int = _base.field("MagY", 16, 16, "int", default=0)
     """MagY: bits 16 to 31, raw -32768 to 32767.
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """
-    mag_z: int
+
+    mag_z: int = _base.field("MagZ", 32, 16, "int", default=0)
     """MagZ: bits 32 to 47, raw -32768 to 32767.
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """
-
-    def __init__(
-        self,
-        *,
-        mag_x: int = 0,
-        mag_y: int = 0,
-        mag_z: int = 0,
-    ) -> None:
-        self.mag_x = mag_x
-        self.mag_y = mag_y
-        self.mag_z = mag_z
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SecondaryMagnetometerRawMeasurements:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.mag_x, self.mag_y, self.mag_z = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.mag_x, self.mag_y, self.mag_z)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,27 +5,15 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .adcs_run_mode import AdcsRunMode
 
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, AdcsRunMode))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class SetAdcsRunMode(_base.Message):
     """ADCS Run Mode: telecommand 10, 1 byte. Table 74.
 
     Switches the control loop and chooses how it runs.
     """
-
-    __slots__ = (
-        "enabled",
-    )
 
     NODE = "cubeacp"
     NAME = "ADCS Run Mode"
@@ -34,39 +22,12 @@ class SetAdcsRunMode(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 74
-    FIELDS = (
-        _base.FieldInfo("enabled", "Enabled", 0, 8, "enum", enum=AdcsRunMode),
-    )
 
-    enabled: AdcsRunMode
+    enabled: AdcsRunMode = _base.field("Enabled", 0, 8, "enum", default=AdcsRunMode.OFF)
     """Enabled: bits 0 to 7.
 
     While off, the control program leaves the ADCS I2C bus alone.
 
-    Note ACP-017 (certain): A run mode called Enabled.
+    Note ACP-017 (certain): A run mode called Enabled. The parameter is an enumeration
+    of four modes, its name that of one of them. The frames call it ADCS Run Mode.
     """
-
-    def __init__(
-        self,
-        *,
-        enabled: AdcsRunMode = AdcsRunMode.OFF,
-    ) -> None:
-        self.enabled = enabled
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetAdcsRunMode:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.enabled = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.enabled)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,25 +5,12 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .con_mode_select import ConModeSelect
 
-_STRUCT = struct.Struct("<BH")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, ConModeSelect))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class SetAttitudeControlMode(_base.Message):
     """Set Attitude Control Mode: telecommand 13, 3 bytes. Table 77."""
-
-    __slots__ = (
-        "control_mode",
-        "timeout",
-    )
 
     NODE = "cubeacp"
     NAME = "Set Attitude Control Mode"
@@ -32,65 +19,31 @@ class SetAttitudeControlMode(_base.Message):
     IDS = (ID,)
     LENGTH = 3
     TABLE = 77
-    FIELDS = (
-        _base.FieldInfo(
-            "control_mode",
-            "Control Mode",
-            0,
-            8,
-            "enum",
-            enum=ConModeSelect,
-        ),
-        _base.FieldInfo(
-            "timeout",
-            "Timeout",
-            8,
-            16,
-            "uint",
-            unit="s",
-            special=(
-                (65535, "no timeout"),
-            ),
+
+    control_mode: ConModeSelect = _base.field("Control Mode", 0, 8, "enum", default=ConModeSelect.NO_CONTROL)
+    """Control Mode: bits 0 to 7."""
+
+    timeout: int = _base.field(
+        "Timeout",
+        8,
+        16,
+        "uint",
+        default=0,
+        unit="s",
+        special=(
+            (65535, "no timeout"),
         ),
     )
-
-    control_mode: ConModeSelect
-    """Control Mode: bits 0 to 7."""
-    timeout: int
     """Timeout: bits 8 to 23, raw 0 to 65535, in s.
 
     The mode returns to None when it runs out.
 
     65535 (0xFFFF): no timeout.
 
-    Note ACP-022 (open): Timeout of a control mode: 0.
+    Note ACP-022 (open): Timeout of a control mode: 0. 0xFFFF is for ever; what 0 does
+    is not said. No frame returns the time left.
 
-    Note ACP-023 (certain): Control mode None does not exist.
+    Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid,
+    and the mode falls back, when the control mode is None. The member with value 0 is
+    called No control.
     """
-
-    def __init__(
-        self,
-        *,
-        control_mode: ConModeSelect = ConModeSelect.NO_CONTROL,
-        timeout: int = 0,
-    ) -> None:
-        self.control_mode = control_mode
-        self.timeout = timeout
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetAttitudeControlMode:
-        """The message in a frame of exactly 3 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, self.timeout = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.control_mode = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.control_mode, self.timeout)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,24 +5,12 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .estim_mode_select import EstimModeSelect
 
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, EstimModeSelect))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class SetAttitudeEstimationMode(_base.Message):
     """Set Attitude Estimation Mode: telecommand 14, 1 byte. Table 79."""
-
-    __slots__ = (
-        "attitude_estimation_mode",
-    )
 
     NODE = "cubeacp"
     NAME = "Set Attitude Estimation Mode"
@@ -31,41 +19,8 @@ class SetAttitudeEstimationMode(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 79
-    FIELDS = (
-        _base.FieldInfo(
-            "attitude_estimation_mode",
-            "Attitude Estimation Mode",
-            0,
-            8,
-            "enum",
-            enum=EstimModeSelect,
-        ),
+
+    attitude_estimation_mode: EstimModeSelect = _base.field(
+        "Attitude Estimation Mode", 0, 8, "enum", default=EstimModeSelect.NO_ATTITUDE_ESTIMATION
     )
-
-    attitude_estimation_mode: EstimModeSelect
     """Attitude Estimation Mode: bits 0 to 7."""
-
-    def __init__(
-        self,
-        *,
-        attitude_estimation_mode: EstimModeSelect = EstimModeSelect.NO_ATTITUDE_ESTIMATION,
-    ) -> None:
-        self.attitude_estimation_mode = attitude_estimation_mode
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetAttitudeEstimationMode:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.attitude_estimation_mode = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.attitude_estimation_mode)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,31 +5,19 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
-
-_STRUCT = struct.Struct("<2fhf")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class SetDetumblingControlParameters(_base.Message):
     """Set Detumbling Control Parameters: configuration, set by telecommand 38, got by
     telemetry 208, 14 bytes. Table 195.
 
     Gains and references of the detumbling mode.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
-
-    __slots__ = (
-        "detumbling_spin_gain",
-        "detumbling_damping_gain",
-        "spin_rate",
-        "fast_bdot_detumbling_gain",
-    )
 
     NODE = "cubeacp"
     NAME = "Set Detumbling Control Parameters"
@@ -39,50 +27,25 @@ class SetDetumblingControlParameters(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 14
     TABLE = 195
-    FIELDS = (
-        _base.FieldInfo("detumbling_spin_gain", "Detumbling Spin Gain", 0, 32, "float"),
-        _base.FieldInfo(
-            "detumbling_damping_gain",
-            "Detumbling Damping Gain",
-            32,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "spin_rate",
-            "Reference spin rate",
-            64,
-            16,
-            "int",
-            unit="deg/s",
-            physical="spin_rate_deg_per_s",
-            scale=(1, 0, 1000),
-            below=0,
-        ),
-        _base.FieldInfo(
-            "fast_bdot_detumbling_gain",
-            "Fast BDot Detumbling Gain",
-            80,
-            32,
-            "float",
-        ),
-    )
 
-    detumbling_spin_gain: float
+    detumbling_spin_gain: float = _base.field("Detumbling Spin Gain", 0, 32, "float", default=0.0)
     """Detumbling Spin Gain: bits 0 to 31, 32-bit float.
 
     Ks.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): Gains have no units. Controller gains are floats without units,
+    and the control laws are in another document.
     """
-    detumbling_damping_gain: float
+
+    detumbling_damping_gain: float = _base.field("Detumbling Damping Gain", 32, 32, "float", default=0.0)
     """Detumbling Damping Gain: bits 32 to 63, 32-bit float.
 
     Kd.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Detumbling Spin Gain.
     """
-    spin_rate: int
+
+    spin_rate: int = _base.field("Reference spin rate", 64, 16, "int", default=0, unit="deg/s", below=0)
     """Reference spin rate: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
 
@@ -90,97 +53,19 @@ class SetDetumblingControlParameters(_base.Message):
 
     Must be below 0 deg/s.
 
-    Note ACP-162 (certain): Limits of a sign in words only.
+    Note ACP-162 (certain): Limits of a sign in words only. Two references must always
+    be smaller than 0; the types allow the opposite, and what the program does with it
+    is not said.
     """
-    fast_bdot_detumbling_gain: float
+    spin_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s."""
+    spin_rate_mdeg_per_s: int = _base.whole(1, 0)
+    """Reference spin rate in thousandths of deg/s, exact: -32768 to 32767."""
+
+    fast_bdot_detumbling_gain: float = _base.field("Fast BDot Detumbling Gain", 80, 32, "float", default=0.0)
     """Fast BDot Detumbling Gain: bits 80 to 111, 32-bit float.
 
     Kdf.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Detumbling Spin Gain.
     """
-
-    def __init__(
-        self,
-        *,
-        detumbling_spin_gain: float = 0.0,
-        detumbling_damping_gain: float = 0.0,
-        spin_rate: int = 0,
-        fast_bdot_detumbling_gain: float = 0.0,
-    ) -> None:
-        self.detumbling_spin_gain = detumbling_spin_gain
-        self.detumbling_damping_gain = detumbling_damping_gain
-        self.spin_rate = spin_rate
-        self.fast_bdot_detumbling_gain = fast_bdot_detumbling_gain
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        detumbling_spin_gain: float = 0.0,
-        detumbling_damping_gain: float = 0.0,
-        spin_rate_deg_per_s: float = 0.0,
-        fast_bdot_detumbling_gain: float = 0.0,
-    ) -> SetDetumblingControlParameters:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.detumbling_spin_gain = detumbling_spin_gain
-        self.detumbling_damping_gain = detumbling_damping_gain
-        self.spin_rate_deg_per_s = spin_rate_deg_per_s
-        self.fast_bdot_detumbling_gain = fast_bdot_detumbling_gain
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetDetumblingControlParameters:
-        """The message in a frame of exactly 14 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.detumbling_spin_gain,
-                self.detumbling_damping_gain,
-                self.spin_rate,
-                self.fast_bdot_detumbling_gain,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        total = (
-            self.detumbling_spin_gain
-            + self.detumbling_damping_gain
-            + self.fast_bdot_detumbling_gain
-        )
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            frame = _pack(
-                self.detumbling_spin_gain,
-                self.detumbling_damping_gain,
-                self.spin_rate,
-                self.fast_bdot_detumbling_gain,
-            )
-            total = (
-                self.detumbling_spin_gain
-                + self.detumbling_damping_gain
-                + self.fast_bdot_detumbling_gain
-            )
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def spin_rate_deg_per_s(self) -> float:
-        """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s."""
-        return self.spin_rate / 1000
-
-    @spin_rate_deg_per_s.setter
-    def spin_rate_deg_per_s(self, value: float) -> None:
-        self.spin_rate = _codec.raw_value(
-            value,
-            "spin_rate",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )

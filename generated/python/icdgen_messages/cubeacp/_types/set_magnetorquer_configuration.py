@@ -5,30 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .axis_select import AxisSelect
 
-_STRUCT = struct.Struct("<3B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, AxisSelect))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class SetMagnetorquerConfiguration(_base.Message):
     """Set Magnetorquer Configuration: configuration, set by telecommand 21, got by
     telemetry 136, 3 bytes. Table 179.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
-
-    __slots__ = (
-        "magnetorquer_1_configuration",
-        "magnetorquer_2_configuration",
-        "magnetorquer_3_configuration",
-    )
 
     NODE = "cubeacp"
     NAME = "Set Magnetorquer Configuration"
@@ -38,80 +26,29 @@ class SetMagnetorquerConfiguration(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 3
     TABLE = 179
-    FIELDS = (
-        _base.FieldInfo(
-            "magnetorquer_1_configuration",
-            "Magnetorquer 1 Configuration",
-            0,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "magnetorquer_2_configuration",
-            "Magnetorquer 2 Configuration",
-            8,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "magnetorquer_3_configuration",
-            "Magnetorquer 3 Configuration",
-            16,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-    )
 
-    magnetorquer_1_configuration: AxisSelect
+    magnetorquer_1_configuration: AxisSelect = _base.field(
+        "Magnetorquer 1 Configuration", 0, 8, "enum", default=AxisSelect.POSITIVE_X
+    )
     """Magnetorquer 1 Configuration: bits 0 to 7.
 
-    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output. Each
+    axis is said to need a torquer output 1, 2 or 3. The configuration works the other
+    way round and gives an axis to each torquer, or Not Used.
     """
-    magnetorquer_2_configuration: AxisSelect
+
+    magnetorquer_2_configuration: AxisSelect = _base.field(
+        "Magnetorquer 2 Configuration", 8, 8, "enum", default=AxisSelect.POSITIVE_X
+    )
     """Magnetorquer 2 Configuration: bits 8 to 15.
 
-    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    Note ACP-103 (open): see Magnetorquer 1 Configuration.
     """
-    magnetorquer_3_configuration: AxisSelect
+
+    magnetorquer_3_configuration: AxisSelect = _base.field(
+        "Magnetorquer 3 Configuration", 16, 8, "enum", default=AxisSelect.POSITIVE_X
+    )
     """Magnetorquer 3 Configuration: bits 16 to 23.
 
-    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    Note ACP-103 (open): see Magnetorquer 1 Configuration.
     """
-
-    def __init__(
-        self,
-        *,
-        magnetorquer_1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        magnetorquer_2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        magnetorquer_3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-    ) -> None:
-        self.magnetorquer_1_configuration = magnetorquer_1_configuration
-        self.magnetorquer_2_configuration = magnetorquer_2_configuration
-        self.magnetorquer_3_configuration = magnetorquer_3_configuration
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetMagnetorquerConfiguration:
-        """The message in a frame of exactly 3 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, v1, v2 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.magnetorquer_1_configuration = _BITS_0[v0]
-        self.magnetorquer_2_configuration = _BITS_0[v1]
-        self.magnetorquer_3_configuration = _BITS_0[v2]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.magnetorquer_1_configuration,
-                self.magnetorquer_2_configuration,
-                self.magnetorquer_3_configuration,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,29 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class SetMagnetorquerOutput(_base.Message):
     """Set Magnetorquer Output: telecommand 16, 6 bytes. Table 81.
 
     Only valid while the control mode is None.
 
-    Note ACP-023 (certain): Control mode None does not exist.
+    Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid,
+    and the mode falls back, when the control mode is None. The member with value 0 is
+    called No control.
     """
-
-    __slots__ = (
-        "x_duty_cycle",
-        "y_duty_cycle",
-        "z_duty_cycle",
-    )
 
     NODE = "cubeacp"
     NAME = "Set Magnetorquer Output"
@@ -36,148 +25,46 @@ class SetMagnetorquerOutput(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 81
-    FIELDS = (
-        _base.FieldInfo(
-            "x_duty_cycle",
-            "Commanded X Magnetorquer duty cycle",
-            0,
-            16,
-            "int",
-            physical="x_duty_cycle_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "y_duty_cycle",
-            "Commanded Y Magnetorquer duty cycle",
-            16,
-            16,
-            "int",
-            physical="y_duty_cycle_physical",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "z_duty_cycle",
-            "Commanded Z Magnetorquer duty cycle",
-            32,
-            16,
-            "int",
-            physical="z_duty_cycle_physical",
-            scale=(1, 0, 1000),
-        ),
-    )
 
-    x_duty_cycle: int
+    x_duty_cycle: int = _base.field("Commanded X Magnetorquer duty cycle", 0, 16, "int", default=0)
     """Commanded X Magnetorquer duty cycle: bits 0 to 15, raw -32768 to 32767; physical
     `raw = value*1000.0`, -32.768 to 32.767.
 
-    Note ACP-030 (certain): Formulas are written in two directions.
+    Note ACP-030 (certain): Formulas are written in two directions. Two telecommands
+    give the raw value as a multiple of the physical one, everything else the physical
+    value from the raw one. Both are held as printed.
 
-    Note ACP-031 (likely): Duty cycle: unit and range are not given.
+    Note ACP-031 (likely): Duty cycle: unit and range are not given. The factor of 1000
+    suggests a fraction of one, so that raw values run from -1000 to 1000. The type
+    allows 32 times that.
     """
-    y_duty_cycle: int
+    x_duty_cycle_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Commanded X Magnetorquer duty cycle, as a physical value: -32.768 to 32.767."""
+    x_duty_cycle_milli: int = _base.whole(1, 0)
+    """Commanded X Magnetorquer duty cycle in thousandths, exact: -32768 to 32767."""
+
+    y_duty_cycle: int = _base.field("Commanded Y Magnetorquer duty cycle", 16, 16, "int", default=0)
     """Commanded Y Magnetorquer duty cycle: bits 16 to 31, raw -32768 to 32767; physical
     `raw = value*1000.0`, -32.768 to 32.767.
 
-    Note ACP-030 (certain): Formulas are written in two directions.
+    Note ACP-030 (certain): see Commanded X Magnetorquer duty cycle.
 
-    Note ACP-031 (likely): Duty cycle: unit and range are not given.
+    Note ACP-031 (likely): see Commanded X Magnetorquer duty cycle.
     """
-    z_duty_cycle: int
+    y_duty_cycle_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Commanded Y Magnetorquer duty cycle, as a physical value: -32.768 to 32.767."""
+    y_duty_cycle_milli: int = _base.whole(1, 0)
+    """Commanded Y Magnetorquer duty cycle in thousandths, exact: -32768 to 32767."""
+
+    z_duty_cycle: int = _base.field("Commanded Z Magnetorquer duty cycle", 32, 16, "int", default=0)
     """Commanded Z Magnetorquer duty cycle: bits 32 to 47, raw -32768 to 32767; physical
     `raw = value*1000.0`, -32.768 to 32.767.
 
-    Note ACP-030 (certain): Formulas are written in two directions.
+    Note ACP-030 (certain): see Commanded X Magnetorquer duty cycle.
 
-    Note ACP-031 (likely): Duty cycle: unit and range are not given.
+    Note ACP-031 (likely): see Commanded X Magnetorquer duty cycle.
     """
-
-    def __init__(
-        self,
-        *,
-        x_duty_cycle: int = 0,
-        y_duty_cycle: int = 0,
-        z_duty_cycle: int = 0,
-    ) -> None:
-        self.x_duty_cycle = x_duty_cycle
-        self.y_duty_cycle = y_duty_cycle
-        self.z_duty_cycle = z_duty_cycle
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        x_duty_cycle_physical: float = 0.0,
-        y_duty_cycle_physical: float = 0.0,
-        z_duty_cycle_physical: float = 0.0,
-    ) -> SetMagnetorquerOutput:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.x_duty_cycle_physical = x_duty_cycle_physical
-        self.y_duty_cycle_physical = y_duty_cycle_physical
-        self.z_duty_cycle_physical = z_duty_cycle_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetMagnetorquerOutput:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.x_duty_cycle, self.y_duty_cycle, self.z_duty_cycle = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.x_duty_cycle, self.y_duty_cycle, self.z_duty_cycle)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def x_duty_cycle_physical(self) -> float:
-        """Commanded X Magnetorquer duty cycle, as a physical value: -32.768 to 32.767.
-        """
-        return self.x_duty_cycle / 1000
-
-    @x_duty_cycle_physical.setter
-    def x_duty_cycle_physical(self, value: float) -> None:
-        self.x_duty_cycle = _codec.raw_value(
-            value,
-            "x_duty_cycle",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def y_duty_cycle_physical(self) -> float:
-        """Commanded Y Magnetorquer duty cycle, as a physical value: -32.768 to 32.767.
-        """
-        return self.y_duty_cycle / 1000
-
-    @y_duty_cycle_physical.setter
-    def y_duty_cycle_physical(self, value: float) -> None:
-        self.y_duty_cycle = _codec.raw_value(
-            value,
-            "y_duty_cycle",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def z_duty_cycle_physical(self) -> float:
-        """Commanded Z Magnetorquer duty cycle, as a physical value: -32.768 to 32.767.
-        """
-        return self.z_duty_cycle / 1000
-
-    @z_duty_cycle_physical.setter
-    def z_duty_cycle_physical(self, value: float) -> None:
-        self.z_duty_cycle = _codec.raw_value(
-            value,
-            "z_duty_cycle",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
+    z_duty_cycle_physical: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Commanded Z Magnetorquer duty cycle, as a physical value: -32.768 to 32.767."""
+    z_duty_cycle_milli: int = _base.whole(1, 0)
+    """Commanded Z Magnetorquer duty cycle in thousandths, exact: -32768 to 32767."""

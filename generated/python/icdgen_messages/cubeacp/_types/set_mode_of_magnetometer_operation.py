@@ -5,27 +5,15 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .mag_mode_val import MagModeVal
 
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, MagModeVal))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class SetModeOfMagnetometerOperation(_base.Message):
     """Set Mode of Magnetometer Operation: telecommand 56, 1 byte. Table 89.
 
     Chooses between the main and the redundant magnetometer.
     """
-
-    __slots__ = (
-        "magnetometer_mode",
-    )
 
     NODE = "cubeacp"
     NAME = "Set Mode of Magnetometer Operation"
@@ -34,46 +22,15 @@ class SetModeOfMagnetometerOperation(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 89
-    FIELDS = (
-        _base.FieldInfo(
-            "magnetometer_mode",
-            "Magnetometer Mode",
-            0,
-            8,
-            "enum",
-            enum=MagModeVal,
-        ),
-    )
 
-    magnetometer_mode: MagModeVal
+    magnetometer_mode: MagModeVal = _base.field(
+        "Magnetometer Mode", 0, 8, "enum", default=MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL
+    )
     """Magnetometer Mode: bits 0 to 7.
 
     The magnetometer that estimation and control use.
 
-    Note ACP-049 (open): Magnetometer mode can be set in two places.
+    Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a
+    configuration message set the same mode. Which wins after a restart, and whether the
+    telecommand changes what the configuration returns, is not said.
     """
-
-    def __init__(
-        self,
-        *,
-        magnetometer_mode: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
-    ) -> None:
-        self.magnetometer_mode = magnetometer_mode
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetModeOfMagnetometerOperation:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.magnetometer_mode = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.magnetometer_mode)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

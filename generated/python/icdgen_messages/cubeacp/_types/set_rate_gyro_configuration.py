@@ -5,36 +5,21 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .axis_select import AxisSelect
 
-_STRUCT = struct.Struct("<3B3hB")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, AxisSelect))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class SetRateGyroConfiguration(_base.Message):
     """Set Rate Gyro Configuration: configuration, set by telecommand 23, got by
     telemetry 138, 10 bytes. Table 182.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
 
-    Note ACP-131 (certain): Gyro, rate sensor and MEMS.
+    Note ACP-131 (certain): Gyro, rate sensor and MEMS. One sensor has three names, two
+    of them in one message.
     """
-
-    __slots__ = (
-        "gyro1_configuration",
-        "gyro2_configuration",
-        "gyro3_configuration",
-        "x_rate_sensor_offset",
-        "y_rate_sensor_offset",
-        "z_rate_sensor_offset",
-        "rate_sensor_mult",
-    )
 
     NODE = "cubeacp"
     NAME = "Set Rate Gyro Configuration"
@@ -44,215 +29,56 @@ class SetRateGyroConfiguration(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 10
     TABLE = 182
-    FIELDS = (
-        _base.FieldInfo(
-            "gyro1_configuration",
-            "Gyro1 Configuration",
-            0,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "gyro2_configuration",
-            "Gyro2 Configuration",
-            8,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "gyro3_configuration",
-            "Gyro3 Configuration",
-            16,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "x_rate_sensor_offset",
-            "X-Rate Sensor Offset",
-            24,
-            16,
-            "int",
-            unit="deg/s",
-            physical="x_rate_sensor_offset_deg_per_s",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "y_rate_sensor_offset",
-            "Y-Rate Sensor Offset",
-            40,
-            16,
-            "int",
-            unit="deg/s",
-            physical="y_rate_sensor_offset_deg_per_s",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo(
-            "z_rate_sensor_offset",
-            "Z-Rate Sensor Offset",
-            56,
-            16,
-            "int",
-            unit="deg/s",
-            physical="z_rate_sensor_offset_deg_per_s",
-            scale=(1, 0, 1000),
-        ),
-        _base.FieldInfo("rate_sensor_mult", "RateSensorMult", 72, 8, "uint"),
-    )
 
-    gyro1_configuration: AxisSelect
+    gyro1_configuration: AxisSelect = _base.field("Gyro1 Configuration", 0, 8, "enum", default=AxisSelect.POSITIVE_X)
     """Gyro1 Configuration: bits 0 to 7."""
-    gyro2_configuration: AxisSelect
+
+    gyro2_configuration: AxisSelect = _base.field("Gyro2 Configuration", 8, 8, "enum", default=AxisSelect.POSITIVE_X)
     """Gyro2 Configuration: bits 8 to 15."""
-    gyro3_configuration: AxisSelect
+
+    gyro3_configuration: AxisSelect = _base.field("Gyro3 Configuration", 16, 8, "enum", default=AxisSelect.POSITIVE_X)
     """Gyro3 Configuration: bits 16 to 23."""
-    x_rate_sensor_offset: int
+
+    x_rate_sensor_offset: int = _base.field("X-Rate Sensor Offset", 24, 16, "int", default=0, unit="deg/s")
     """X-Rate Sensor Offset: bits 24 to 39, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
 
-    Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    Note ACP-132 (open): Rate sensor offset and estimated gyro bias. Whether the offset
+    is added or subtracted, and hence whether the estimated bias can be copied into it,
+    is not said. Both have the same factor.
     """
-    y_rate_sensor_offset: int
+    x_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """X-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    x_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """X-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
+
+    y_rate_sensor_offset: int = _base.field("Y-Rate Sensor Offset", 40, 16, "int", default=0, unit="deg/s")
     """Y-Rate Sensor Offset: bits 40 to 55, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
 
-    Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    Note ACP-132 (open): see X-Rate Sensor Offset.
     """
-    z_rate_sensor_offset: int
+    y_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Y-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    y_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """Y-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
+
+    z_rate_sensor_offset: int = _base.field("Z-Rate Sensor Offset", 56, 16, "int", default=0, unit="deg/s")
     """Z-Rate Sensor Offset: bits 56 to 71, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
 
-    Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    Note ACP-132 (open): see X-Rate Sensor Offset.
     """
-    rate_sensor_mult: int
+    z_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
+    """Z-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    z_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """Z-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
+
+    rate_sensor_mult: int = _base.field("RateSensorMult", 72, 8, "uint", default=0)
     """RateSensorMult: bits 72 to 79, raw 0 to 255.
 
     Factor on the rate sensor measurements.
 
-    Note ACP-130 (open): RateSensorMult has no scale and no blanks.
+    Note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8
+    bits; whether it is a whole factor, and of which quantity, is not said.
     """
-
-    def __init__(
-        self,
-        *,
-        gyro1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        gyro2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        gyro3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        x_rate_sensor_offset: int = 0,
-        y_rate_sensor_offset: int = 0,
-        z_rate_sensor_offset: int = 0,
-        rate_sensor_mult: int = 0,
-    ) -> None:
-        self.gyro1_configuration = gyro1_configuration
-        self.gyro2_configuration = gyro2_configuration
-        self.gyro3_configuration = gyro3_configuration
-        self.x_rate_sensor_offset = x_rate_sensor_offset
-        self.y_rate_sensor_offset = y_rate_sensor_offset
-        self.z_rate_sensor_offset = z_rate_sensor_offset
-        self.rate_sensor_mult = rate_sensor_mult
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        gyro1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        gyro2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        gyro3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        x_rate_sensor_offset_deg_per_s: float = 0.0,
-        y_rate_sensor_offset_deg_per_s: float = 0.0,
-        z_rate_sensor_offset_deg_per_s: float = 0.0,
-        rate_sensor_mult: int = 0,
-    ) -> SetRateGyroConfiguration:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.gyro1_configuration = gyro1_configuration
-        self.gyro2_configuration = gyro2_configuration
-        self.gyro3_configuration = gyro3_configuration
-        self.x_rate_sensor_offset_deg_per_s = x_rate_sensor_offset_deg_per_s
-        self.y_rate_sensor_offset_deg_per_s = y_rate_sensor_offset_deg_per_s
-        self.z_rate_sensor_offset_deg_per_s = z_rate_sensor_offset_deg_per_s
-        self.rate_sensor_mult = rate_sensor_mult
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetRateGyroConfiguration:
-        """The message in a frame of exactly 10 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                v0,
-                v1,
-                v2,
-                self.x_rate_sensor_offset,
-                self.y_rate_sensor_offset,
-                self.z_rate_sensor_offset,
-                self.rate_sensor_mult,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.gyro1_configuration = _BITS_0[v0]
-        self.gyro2_configuration = _BITS_0[v1]
-        self.gyro3_configuration = _BITS_0[v2]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.gyro1_configuration,
-                self.gyro2_configuration,
-                self.gyro3_configuration,
-                self.x_rate_sensor_offset,
-                self.y_rate_sensor_offset,
-                self.z_rate_sensor_offset,
-                self.rate_sensor_mult,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def x_rate_sensor_offset_deg_per_s(self) -> float:
-        """X-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
-        return self.x_rate_sensor_offset / 1000
-
-    @x_rate_sensor_offset_deg_per_s.setter
-    def x_rate_sensor_offset_deg_per_s(self, value: float) -> None:
-        self.x_rate_sensor_offset = _codec.raw_value(
-            value,
-            "x_rate_sensor_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def y_rate_sensor_offset_deg_per_s(self) -> float:
-        """Y-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
-        return self.y_rate_sensor_offset / 1000
-
-    @y_rate_sensor_offset_deg_per_s.setter
-    def y_rate_sensor_offset_deg_per_s(self, value: float) -> None:
-        self.y_rate_sensor_offset = _codec.raw_value(
-            value,
-            "y_rate_sensor_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def z_rate_sensor_offset_deg_per_s(self) -> float:
-        """Z-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
-        return self.z_rate_sensor_offset / 1000
-
-    @z_rate_sensor_offset_deg_per_s.setter
-    def z_rate_sensor_offset_deg_per_s(self, value: float) -> None:
-        self.z_rate_sensor_offset = _codec.raw_value(
-            value,
-            "z_rate_sensor_offset",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )

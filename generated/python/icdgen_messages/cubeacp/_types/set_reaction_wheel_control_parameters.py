@@ -5,35 +5,20 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
+from ... import _base
 from .axis_select import AxisSelect
 
-_STRUCT = struct.Struct("<3fB")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 7, AxisSelect), (7, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class SetReactionWheelControlParameters(_base.Message):
     """Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, got
     by telemetry 217, 13 bytes. Table 197.
 
     Gains and reference of the reaction-wheel mode.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
-
-    __slots__ = (
-        "rwheel_proportional_gain",
-        "rwheel_derivative_gain",
-        "y_wheel_bias_momentum",
-        "sun_pointing_facet",
-        "control_transition_on_wheel_error",
-    )
 
     NODE = "cubeacp"
     NAME = "Set Reaction Wheel Control Parameters"
@@ -43,138 +28,52 @@ class SetReactionWheelControlParameters(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 13
     TABLE = 197
-    FIELDS = (
-        _base.FieldInfo(
-            "rwheel_proportional_gain",
-            "RWheel Proportional Gain",
-            0,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "rwheel_derivative_gain",
-            "RWheel Derivative Gain",
-            32,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "y_wheel_bias_momentum",
-            "Y-Wheel Bias Momentum",
-            64,
-            32,
-            "float",
-            unit="Nms",
-        ),
-        _base.FieldInfo(
-            "sun_pointing_facet",
-            "Sun-pointing Facet",
-            96,
-            7,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "control_transition_on_wheel_error",
-            "Automatic Control Transition due to Wheel Errors",
-            103,
-            1,
-            "bool",
-        ),
-    )
 
-    rwheel_proportional_gain: float
+    rwheel_proportional_gain: float = _base.field("RWheel Proportional Gain", 0, 32, "float", default=0.0)
     """RWheel Proportional Gain: bits 0 to 31, 32-bit float.
 
     Kp2.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): Gains have no units. Controller gains are floats without units,
+    and the control laws are in another document.
     """
-    rwheel_derivative_gain: float
+
+    rwheel_derivative_gain: float = _base.field("RWheel Derivative Gain", 32, 32, "float", default=0.0)
     """RWheel Derivative Gain: bits 32 to 63, 32-bit float.
 
     Kd2.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see RWheel Proportional Gain.
     """
-    y_wheel_bias_momentum: float
+
+    y_wheel_bias_momentum: float = _base.field("Y-Wheel Bias Momentum", 64, 32, "float", default=0.0, unit="Nms")
     """Y-Wheel Bias Momentum: bits 64 to 95, 32-bit float, in Nms.
 
     H-bias.
 
-    Note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels.
+    Note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels. The
+    description promises gains and a reference value for the reaction wheels; the
+    reference is a bias of the Y-wheel.
     """
-    sun_pointing_facet: AxisSelect
+
+    sun_pointing_facet: AxisSelect = _base.field("Sun-pointing Facet", 96, 7, "enum", default=AxisSelect.POSITIVE_X)
     """Sun-pointing Facet: bits 96 to 102.
 
     Body axis that is turned towards the sun.
 
-    Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
+    Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration
+    serves actuators, sensors and facets. A facet that points to the sun or to a target
+    as Not Used is allowed by its table and not explained.
 
-    Note ACP-177 (open): Sun-pointing facet and special control selection.
+    Note ACP-177 (open): Sun-pointing facet and special control selection. Facets can be
+    chosen by a setting, and sun pointing with Z or Y by the system configuration. Which
+    one counts is not said.
     """
-    control_transition_on_wheel_error: bool
+
+    control_transition_on_wheel_error: bool = _base.field(
+        "Automatic Control Transition due to Wheel Errors", 103, 1, "bool", default=False
+    )
     """Automatic Control Transition due to Wheel Errors: bit 103.
 
     From the wheel modes to Y-Thomson on a wheel error.
     """
-
-    def __init__(
-        self,
-        *,
-        rwheel_proportional_gain: float = 0.0,
-        rwheel_derivative_gain: float = 0.0,
-        y_wheel_bias_momentum: float = 0.0,
-        sun_pointing_facet: AxisSelect = AxisSelect.POSITIVE_X,
-        control_transition_on_wheel_error: bool = False,
-    ) -> None:
-        self.rwheel_proportional_gain = rwheel_proportional_gain
-        self.rwheel_derivative_gain = rwheel_derivative_gain
-        self.y_wheel_bias_momentum = y_wheel_bias_momentum
-        self.sun_pointing_facet = sun_pointing_facet
-        self.control_transition_on_wheel_error = control_transition_on_wheel_error
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetReactionWheelControlParameters:
-        """The message in a frame of exactly 13 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.rwheel_proportional_gain,
-                self.rwheel_derivative_gain,
-                self.y_wheel_bias_momentum,
-                v12,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.sun_pointing_facet, self.control_transition_on_wheel_error = _BITS_0[v12]
-        total = (
-            self.rwheel_proportional_gain
-            + self.rwheel_derivative_gain
-            + self.y_wheel_bias_momentum
-        )
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v12 = _BYTES_0[
-                self.sun_pointing_facet,
-                self.control_transition_on_wheel_error,
-            ]
-            frame = _pack(
-                self.rwheel_proportional_gain,
-                self.rwheel_derivative_gain,
-                self.y_wheel_bias_momentum,
-                v12,
-            )
-            total = (
-                self.rwheel_proportional_gain
-                + self.rwheel_derivative_gain
-                + self.y_wheel_bias_momentum
-            )
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

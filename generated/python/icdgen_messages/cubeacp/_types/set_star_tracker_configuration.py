@@ -5,57 +5,22 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
-
-_STRUCT = struct.Struct("<3h2H3BH3BH7f5B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool), (1, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class SetStarTrackerConfiguration(_base.Message):
     """Set Star Tracker Configuration: configuration, set by telecommand 37, got by
     telemetry 202, 53 bytes. Table 188.
 
     Of CubeStar.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
-
-    __slots__ = (
-        "mounting_alpha",
-        "mounting_beta",
-        "mounting_gamma",
-        "star_tracker_exposure_time",
-        "star_tracker_analog_gain",
-        "star_tracker_detection_threshold",
-        "star_tracker_star_threshold",
-        "maximum_star_matched",
-        "detection_timeout_duration",
-        "maximum_star_pixel",
-        "minimum_star_pixel",
-        "error_margin",
-        "star_tracker_delay_time",
-        "star_tracker_centroid_x",
-        "star_tracker_centroid_y",
-        "star_tracker_focal_length",
-        "k1_radial_distortion_coefficient",
-        "k2_radial_distortion_coefficient",
-        "p1_tangential_distortion_coefficient",
-        "p2_tangential_distortion_coefficient",
-        "star_tracking_window_width",
-        "tracking_margin",
-        "validation_margin",
-        "star_tracking_module_enable",
-        "star_tracking_location_prediction_enable",
-        "search_width",
-    )
 
     NODE = "cubeacp"
     NAME = "Set Star Tracker Configuration"
@@ -65,659 +30,241 @@ class SetStarTrackerConfiguration(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 53
     TABLE = 188
-    FIELDS = (
-        _base.FieldInfo(
-            "mounting_alpha",
-            "StarTracker Mounting Transform Alpha Angle",
-            0,
-            16,
-            "int",
-            unit="deg",
-            physical="mounting_alpha_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "mounting_beta",
-            "StarTracker Mounting Transform Beta Angle",
-            16,
-            16,
-            "int",
-            unit="deg",
-            physical="mounting_beta_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "mounting_gamma",
-            "StarTracker Mounting Transform Gamma Angle",
-            32,
-            16,
-            "int",
-            unit="deg",
-            physical="mounting_gamma_deg",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "star_tracker_exposure_time",
-            "StarTracker exposure time",
-            48,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "star_tracker_analog_gain",
-            "StarTracker analog gain",
-            64,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "star_tracker_detection_threshold",
-            "StarTracker detection threshold",
-            80,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "star_tracker_star_threshold",
-            "StarTracker star threshold",
-            88,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo("maximum_star_matched", "Maximum Star Matched", 96, 8, "uint"),
-        _base.FieldInfo(
-            "detection_timeout_duration",
-            "Detection Timeout duration",
-            104,
-            16,
-            "uint",
-        ),
-        _base.FieldInfo("maximum_star_pixel", "Maximum Star Pixel", 120, 8, "uint"),
-        _base.FieldInfo("minimum_star_pixel", "Minimum Star Pixel", 128, 8, "uint"),
-        _base.FieldInfo(
-            "error_margin",
-            "Star Tracker Error Margin",
-            136,
-            8,
-            "uint",
-            unit="%",
-            physical="error_margin_percent",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "star_tracker_delay_time",
-            "Star Tracker Delay Time",
-            144,
-            16,
-            "uint",
-            unit="ms",
-        ),
-        _base.FieldInfo(
-            "star_tracker_centroid_x",
-            "Star Tracker Centroid X",
-            160,
-            32,
-            "float",
-            unit="pixels",
-        ),
-        _base.FieldInfo(
-            "star_tracker_centroid_y",
-            "Star Tracker Centroid Y",
-            192,
-            32,
-            "float",
-            unit="pixels",
-        ),
-        _base.FieldInfo(
-            "star_tracker_focal_length",
-            "Star Tracker Focal Length",
-            224,
-            32,
-            "float",
-            unit="mm",
-        ),
-        _base.FieldInfo(
-            "k1_radial_distortion_coefficient",
-            "K1 radial distortion coefficient",
-            256,
-            32,
-            "float",
-            unit="gain",
-        ),
-        _base.FieldInfo(
-            "k2_radial_distortion_coefficient",
-            "K2 radial distortion coefficient",
-            288,
-            32,
-            "float",
-            unit="gain",
-        ),
-        _base.FieldInfo(
-            "p1_tangential_distortion_coefficient",
-            "P1 tangential distortion coefficient",
-            320,
-            32,
-            "float",
-            unit="gain",
-        ),
-        _base.FieldInfo(
-            "p2_tangential_distortion_coefficient",
-            "P2 tangential distortion coefficient",
-            352,
-            32,
-            "float",
-            unit="gain",
-        ),
-        _base.FieldInfo(
-            "star_tracking_window_width",
-            "Star tracking window width",
-            384,
-            8,
-            "uint",
-        ),
-        _base.FieldInfo(
-            "tracking_margin",
-            "Star Tracking Margin",
-            392,
-            8,
-            "uint",
-            physical="tracking_margin_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "validation_margin",
-            "Star Validation Margin",
-            400,
-            8,
-            "uint",
-            physical="validation_margin_physical",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "star_tracking_module_enable",
-            "Star Tracking Module Enable",
-            408,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "star_tracking_location_prediction_enable",
-            "Star Tracking Location Prediction Enable",
-            409,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "search_width",
-            "Star Tracking Search Width",
-            416,
-            8,
-            "uint",
-            physical="search_width_physical",
-            scale=(1, 0, 5),
-        ),
-    )
 
-    mounting_alpha: int
+    mounting_alpha: int = _base.field("StarTracker Mounting Transform Alpha Angle", 0, 16, "int", default=0, unit="deg")
     """StarTracker Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need
+    a sequence of axes and a direction. None is given.
     """
-    mounting_beta: int
+    mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    mounting_beta: int = _base.field("StarTracker Mounting Transform Beta Angle", 16, 16, "int", default=0, unit="deg")
     """StarTracker Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see StarTracker Mounting Transform Alpha Angle.
     """
-    mounting_gamma: int
+    mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    mounting_beta_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    mounting_gamma: int = _base.field(
+        "StarTracker Mounting Transform Gamma Angle", 32, 16, "int", default=0, unit="deg"
+    )
     """StarTracker Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see StarTracker Mounting Transform Alpha Angle.
     """
-    star_tracker_exposure_time: int
+    mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
+    """StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
+
+    star_tracker_exposure_time: int = _base.field("StarTracker exposure time", 48, 16, "uint", default=0)
     """StarTracker exposure time: bits 48 to 63, raw 0 to 65535.
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): Exposure and gain are register values. Neither the register nor
+    its scale is given, so times and gains cannot be told from them.
 
     Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star
-    tracking.
+    tracking. Three spellings stand in one message, and one description is a variable
+    name.
     """
-    star_tracker_analog_gain: int
+
+    star_tracker_analog_gain: int = _base.field("StarTracker analog gain", 64, 16, "uint", default=0)
     """StarTracker analog gain: bits 64 to 79, raw 0 to 65535.
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): see StarTracker exposure time.
     """
-    star_tracker_detection_threshold: int
+
+    star_tracker_detection_threshold: int = _base.field("StarTracker detection threshold", 80, 8, "uint", default=0)
     """StarTracker detection threshold: bits 80 to 87, raw 0 to 255.
 
     Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Names are repeated or a noun is missing, as in maximum of stars.
     """
-    star_tracker_star_threshold: int
+
+    star_tracker_star_threshold: int = _base.field("StarTracker star threshold", 88, 8, "uint", default=0)
     """StarTracker star threshold: bits 88 to 95, raw 0 to 255.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
     """
-    maximum_star_matched: int
+
+    maximum_star_matched: int = _base.field("Maximum Star Matched", 96, 8, "uint", default=0)
     """Maximum Star Matched: bits 96 to 103, raw 0 to 255.
 
     Most stars that are matched.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
     """
-    detection_timeout_duration: int
+
+    detection_timeout_duration: int = _base.field("Detection Timeout duration", 104, 16, "uint", default=0)
     """Detection Timeout duration: bits 104 to 119, raw 0 to 65535.
 
-    Note ACP-141 (open): Detection timeout has no unit.
+    Note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in
+    milliseconds; registers and pixels stand in between.
     """
-    maximum_star_pixel: int
+
+    maximum_star_pixel: int = _base.field("Maximum Star Pixel", 120, 8, "uint", default=0)
     """Maximum Star Pixel: bits 120 to 127, raw 0 to 255.
 
     Most pixels of a star.
     """
-    minimum_star_pixel: int
+
+    minimum_star_pixel: int = _base.field("Minimum Star Pixel", 128, 8, "uint", default=0)
     """Minimum Star Pixel: bits 128 to 135, raw 0 to 255.
 
     Fewest pixels of a star.
     """
-    error_margin: int
+
+    error_margin: int = _base.field("Star Tracker Error Margin", 136, 8, "uint", default=0, unit="%")
     """Star Tracker Error Margin: bits 136 to 143, raw 0 to 255; physical `raw*0.01`, 0
     to 2.55 %.
 
     Of the star identification.
 
-    Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
+    Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit
+    % and a factor of 0.01 give steps of 0.01 % in 8 bits. If the factor already makes a
+    fraction, as in the margins that follow without a unit, the range is 255 %.
     """
-    star_tracker_delay_time: int
+    error_margin_percent: float = _base.scaled(1, 0, 100, default=0.0)
+    """Star Tracker Error Margin in %: 0 to 2.55."""
+    error_margin_milli_percent: int = _base.whole(10, 0)
+    """Star Tracker Error Margin in thousandths of %, exact: 0 to 2550."""
+
+    star_tracker_delay_time: int = _base.field("Star Tracker Delay Time", 144, 16, "uint", default=0, unit="ms")
     """Star Tracker Delay Time: bits 144 to 159, raw 0 to 65535, in ms.
 
-    Erratum ACP-140 (certain): milliseconds is ms.
+    Erratum ACP-140 (certain): milliseconds is ms. The unit is spelt out in one field.
 
-    Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star
-    tracking.
+    Note ACP-147 (certain): see StarTracker exposure time.
     """
-    star_tracker_centroid_x: float
+
+    star_tracker_centroid_x: float = _base.field(
+        "Star Tracker Centroid X", 160, 32, "float", default=0.0, unit="pixels"
+    )
     """Star Tracker Centroid X: bits 160 to 191, 32-bit float, in pixels.
 
     Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words
-    only.
+    only. The fields are described as pixel centroids, without the unit of measure that
+    the boresights of the cameras have.
     """
-    star_tracker_centroid_y: float
+
+    star_tracker_centroid_y: float = _base.field(
+        "Star Tracker Centroid Y", 192, 32, "float", default=0.0, unit="pixels"
+    )
     """Star Tracker Centroid Y: bits 192 to 223, 32-bit float, in pixels.
 
-    Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words
-    only.
+    Erratum ACP-202 (likely): see Star Tracker Centroid X.
     """
-    star_tracker_focal_length: float
+
+    star_tracker_focal_length: float = _base.field(
+        "Star Tracker Focal Length", 224, 32, "float", default=0.0, unit="mm"
+    )
     """Star Tracker Focal Length: bits 224 to 255, 32-bit float, in mm."""
-    k1_radial_distortion_coefficient: float
+
+    k1_radial_distortion_coefficient: float = _base.field(
+        "K1 radial distortion coefficient", 256, 32, "float", default=0.0, unit="gain"
+    )
     """K1 radial distortion coefficient: bits 256 to 287, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain.
+    It is kept as a plain factor; which lens model and which normalisation they belong
+    to is not said.
     """
-    k2_radial_distortion_coefficient: float
+
+    k2_radial_distortion_coefficient: float = _base.field(
+        "K2 radial distortion coefficient", 288, 32, "float", default=0.0, unit="gain"
+    )
     """K2 radial distortion coefficient: bits 288 to 319, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
-    p1_tangential_distortion_coefficient: float
+
+    p1_tangential_distortion_coefficient: float = _base.field(
+        "P1 tangential distortion coefficient", 320, 32, "float", default=0.0, unit="gain"
+    )
     """P1 tangential distortion coefficient: bits 320 to 351, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
-    p2_tangential_distortion_coefficient: float
+
+    p2_tangential_distortion_coefficient: float = _base.field(
+        "P2 tangential distortion coefficient", 352, 32, "float", default=0.0, unit="gain"
+    )
     """P2 tangential distortion coefficient: bits 352 to 383, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
-    star_tracking_window_width: int
+
+    star_tracking_window_width: int = _base.field("Star tracking window width", 384, 8, "uint", default=0)
     """Star tracking window width: bits 384 to 391, raw 0 to 255.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
 
-    Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star
-    tracking.
+    Note ACP-147 (certain): see StarTracker exposure time.
     """
-    tracking_margin: int
+
+    tracking_margin: int = _base.field("Star Tracking Margin", 392, 8, "uint", default=0)
     """Star Tracking Margin: bits 392 to 399, raw 0 to 255; physical `raw/100.0`, 0 to
     2.55.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): Margins and search width have no unit. Factors are given, units
+    are not; pixels, fractions and degrees are all possible.
 
-    Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star
-    tracking.
+    Note ACP-147 (certain): see StarTracker exposure time.
     """
-    validation_margin: int
+    tracking_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """Star Tracking Margin, as a physical value: 0 to 2.55."""
+    tracking_margin_milli: int = _base.whole(10, 0)
+    """Star Tracking Margin in thousandths, exact: 0 to 2550."""
+
+    validation_margin: int = _base.field("Star Validation Margin", 400, 8, "uint", default=0)
     """Star Validation Margin: bits 400 to 407, raw 0 to 255; physical `raw/100.0`, 0 to
     2.55.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): see Star Tracking Margin.
     """
-    star_tracking_module_enable: bool
+    validation_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
+    """Star Validation Margin, as a physical value: 0 to 2.55."""
+    validation_margin_milli: int = _base.whole(10, 0)
+    """Star Validation Margin in thousandths, exact: 0 to 2550."""
+
+    star_tracking_module_enable: bool = _base.field("Star Tracking Module Enable", 408, 1, "bool", default=False)
     """Star Tracking Module Enable: bit 408."""
-    star_tracking_location_prediction_enable: bool
+
+    star_tracking_location_prediction_enable: bool = _base.field(
+        "Star Tracking Location Prediction Enable", 409, 1, "bool", default=False
+    )
     """Star Tracking Location Prediction Enable: bit 409.
 
-    Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star
-    tracking.
+    Note ACP-147 (certain): see StarTracker exposure time.
     """
-    search_width: int
+
+    search_width: int = _base.field("Star Tracking Search Width", 416, 8, "uint", default=0)
     """Star Tracking Search Width: bits 416 to 423, raw 0 to 255; physical `raw/5.0`, 0
     to 51.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): see Star Tracking Margin.
     """
-
-    def __init__(
-        self,
-        *,
-        mounting_alpha: int = 0,
-        mounting_beta: int = 0,
-        mounting_gamma: int = 0,
-        star_tracker_exposure_time: int = 0,
-        star_tracker_analog_gain: int = 0,
-        star_tracker_detection_threshold: int = 0,
-        star_tracker_star_threshold: int = 0,
-        maximum_star_matched: int = 0,
-        detection_timeout_duration: int = 0,
-        maximum_star_pixel: int = 0,
-        minimum_star_pixel: int = 0,
-        error_margin: int = 0,
-        star_tracker_delay_time: int = 0,
-        star_tracker_centroid_x: float = 0.0,
-        star_tracker_centroid_y: float = 0.0,
-        star_tracker_focal_length: float = 0.0,
-        k1_radial_distortion_coefficient: float = 0.0,
-        k2_radial_distortion_coefficient: float = 0.0,
-        p1_tangential_distortion_coefficient: float = 0.0,
-        p2_tangential_distortion_coefficient: float = 0.0,
-        star_tracking_window_width: int = 0,
-        tracking_margin: int = 0,
-        validation_margin: int = 0,
-        star_tracking_module_enable: bool = False,
-        star_tracking_location_prediction_enable: bool = False,
-        search_width: int = 0,
-    ) -> None:
-        self.mounting_alpha = mounting_alpha
-        self.mounting_beta = mounting_beta
-        self.mounting_gamma = mounting_gamma
-        self.star_tracker_exposure_time = star_tracker_exposure_time
-        self.star_tracker_analog_gain = star_tracker_analog_gain
-        self.star_tracker_detection_threshold = star_tracker_detection_threshold
-        self.star_tracker_star_threshold = star_tracker_star_threshold
-        self.maximum_star_matched = maximum_star_matched
-        self.detection_timeout_duration = detection_timeout_duration
-        self.maximum_star_pixel = maximum_star_pixel
-        self.minimum_star_pixel = minimum_star_pixel
-        self.error_margin = error_margin
-        self.star_tracker_delay_time = star_tracker_delay_time
-        self.star_tracker_centroid_x = star_tracker_centroid_x
-        self.star_tracker_centroid_y = star_tracker_centroid_y
-        self.star_tracker_focal_length = star_tracker_focal_length
-        self.k1_radial_distortion_coefficient = k1_radial_distortion_coefficient
-        self.k2_radial_distortion_coefficient = k2_radial_distortion_coefficient
-        self.p1_tangential_distortion_coefficient = p1_tangential_distortion_coefficient
-        self.p2_tangential_distortion_coefficient = p2_tangential_distortion_coefficient
-        self.star_tracking_window_width = star_tracking_window_width
-        self.tracking_margin = tracking_margin
-        self.validation_margin = validation_margin
-        self.star_tracking_module_enable = star_tracking_module_enable
-        self.star_tracking_location_prediction_enable = star_tracking_location_prediction_enable
-        self.search_width = search_width
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        mounting_alpha_deg: float = 0.0,
-        mounting_beta_deg: float = 0.0,
-        mounting_gamma_deg: float = 0.0,
-        star_tracker_exposure_time: int = 0,
-        star_tracker_analog_gain: int = 0,
-        star_tracker_detection_threshold: int = 0,
-        star_tracker_star_threshold: int = 0,
-        maximum_star_matched: int = 0,
-        detection_timeout_duration: int = 0,
-        maximum_star_pixel: int = 0,
-        minimum_star_pixel: int = 0,
-        error_margin_percent: float = 0.0,
-        star_tracker_delay_time: int = 0,
-        star_tracker_centroid_x: float = 0.0,
-        star_tracker_centroid_y: float = 0.0,
-        star_tracker_focal_length: float = 0.0,
-        k1_radial_distortion_coefficient: float = 0.0,
-        k2_radial_distortion_coefficient: float = 0.0,
-        p1_tangential_distortion_coefficient: float = 0.0,
-        p2_tangential_distortion_coefficient: float = 0.0,
-        star_tracking_window_width: int = 0,
-        tracking_margin_physical: float = 0.0,
-        validation_margin_physical: float = 0.0,
-        star_tracking_module_enable: bool = False,
-        star_tracking_location_prediction_enable: bool = False,
-        search_width_physical: float = 0.0,
-    ) -> SetStarTrackerConfiguration:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.mounting_alpha_deg = mounting_alpha_deg
-        self.mounting_beta_deg = mounting_beta_deg
-        self.mounting_gamma_deg = mounting_gamma_deg
-        self.star_tracker_exposure_time = star_tracker_exposure_time
-        self.star_tracker_analog_gain = star_tracker_analog_gain
-        self.star_tracker_detection_threshold = star_tracker_detection_threshold
-        self.star_tracker_star_threshold = star_tracker_star_threshold
-        self.maximum_star_matched = maximum_star_matched
-        self.detection_timeout_duration = detection_timeout_duration
-        self.maximum_star_pixel = maximum_star_pixel
-        self.minimum_star_pixel = minimum_star_pixel
-        self.error_margin_percent = error_margin_percent
-        self.star_tracker_delay_time = star_tracker_delay_time
-        self.star_tracker_centroid_x = star_tracker_centroid_x
-        self.star_tracker_centroid_y = star_tracker_centroid_y
-        self.star_tracker_focal_length = star_tracker_focal_length
-        self.k1_radial_distortion_coefficient = k1_radial_distortion_coefficient
-        self.k2_radial_distortion_coefficient = k2_radial_distortion_coefficient
-        self.p1_tangential_distortion_coefficient = p1_tangential_distortion_coefficient
-        self.p2_tangential_distortion_coefficient = p2_tangential_distortion_coefficient
-        self.star_tracking_window_width = star_tracking_window_width
-        self.tracking_margin_physical = tracking_margin_physical
-        self.validation_margin_physical = validation_margin_physical
-        self.star_tracking_module_enable = star_tracking_module_enable
-        self.star_tracking_location_prediction_enable = star_tracking_location_prediction_enable
-        self.search_width_physical = search_width_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetStarTrackerConfiguration:
-        """The message in a frame of exactly 53 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.mounting_alpha,
-                self.mounting_beta,
-                self.mounting_gamma,
-                self.star_tracker_exposure_time,
-                self.star_tracker_analog_gain,
-                self.star_tracker_detection_threshold,
-                self.star_tracker_star_threshold,
-                self.maximum_star_matched,
-                self.detection_timeout_duration,
-                self.maximum_star_pixel,
-                self.minimum_star_pixel,
-                self.error_margin,
-                self.star_tracker_delay_time,
-                self.star_tracker_centroid_x,
-                self.star_tracker_centroid_y,
-                self.star_tracker_focal_length,
-                self.k1_radial_distortion_coefficient,
-                self.k2_radial_distortion_coefficient,
-                self.p1_tangential_distortion_coefficient,
-                self.p2_tangential_distortion_coefficient,
-                self.star_tracking_window_width,
-                self.tracking_margin,
-                self.validation_margin,
-                v51,
-                self.search_width,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        (
-            self.star_tracking_module_enable,
-            self.star_tracking_location_prediction_enable,
-        ) = _BITS_0[v51]
-        total = (
-            self.star_tracker_centroid_x
-            + self.star_tracker_centroid_y
-            + self.star_tracker_focal_length
-            + self.k1_radial_distortion_coefficient
-            + self.k2_radial_distortion_coefficient
-            + self.p1_tangential_distortion_coefficient
-            + self.p2_tangential_distortion_coefficient
-        )
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v51 = _BYTES_0[
-                self.star_tracking_module_enable,
-                self.star_tracking_location_prediction_enable,
-            ]
-            frame = _pack(
-                self.mounting_alpha,
-                self.mounting_beta,
-                self.mounting_gamma,
-                self.star_tracker_exposure_time,
-                self.star_tracker_analog_gain,
-                self.star_tracker_detection_threshold,
-                self.star_tracker_star_threshold,
-                self.maximum_star_matched,
-                self.detection_timeout_duration,
-                self.maximum_star_pixel,
-                self.minimum_star_pixel,
-                self.error_margin,
-                self.star_tracker_delay_time,
-                self.star_tracker_centroid_x,
-                self.star_tracker_centroid_y,
-                self.star_tracker_focal_length,
-                self.k1_radial_distortion_coefficient,
-                self.k2_radial_distortion_coefficient,
-                self.p1_tangential_distortion_coefficient,
-                self.p2_tangential_distortion_coefficient,
-                self.star_tracking_window_width,
-                self.tracking_margin,
-                self.validation_margin,
-                v51,
-                self.search_width,
-            )
-            total = (
-                self.star_tracker_centroid_x
-                + self.star_tracker_centroid_y
-                + self.star_tracker_focal_length
-                + self.k1_radial_distortion_coefficient
-                + self.k2_radial_distortion_coefficient
-                + self.p1_tangential_distortion_coefficient
-                + self.p2_tangential_distortion_coefficient
-            )
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def mounting_alpha_deg(self) -> float:
-        """StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.mounting_alpha / 100
-
-    @mounting_alpha_deg.setter
-    def mounting_alpha_deg(self, value: float) -> None:
-        self.mounting_alpha = _codec.raw_value(
-            value,
-            "mounting_alpha",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def mounting_beta_deg(self) -> float:
-        """StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.mounting_beta / 100
-
-    @mounting_beta_deg.setter
-    def mounting_beta_deg(self, value: float) -> None:
-        self.mounting_beta = _codec.raw_value(
-            value,
-            "mounting_beta",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def mounting_gamma_deg(self) -> float:
-        """StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.mounting_gamma / 100
-
-    @mounting_gamma_deg.setter
-    def mounting_gamma_deg(self, value: float) -> None:
-        self.mounting_gamma = _codec.raw_value(
-            value,
-            "mounting_gamma",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
-
-    @property
-    def error_margin_percent(self) -> float:
-        """Star Tracker Error Margin in %: 0 to 2.55."""
-        return self.error_margin / 100
-
-    @error_margin_percent.setter
-    def error_margin_percent(self, value: float) -> None:
-        self.error_margin = _codec.raw_value(value, "error_margin", (1, 0, 100), 0, 255)
-
-    @property
-    def tracking_margin_physical(self) -> float:
-        """Star Tracking Margin, as a physical value: 0 to 2.55."""
-        return self.tracking_margin / 100
-
-    @tracking_margin_physical.setter
-    def tracking_margin_physical(self, value: float) -> None:
-        self.tracking_margin = _codec.raw_value(
-            value,
-            "tracking_margin",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def validation_margin_physical(self) -> float:
-        """Star Validation Margin, as a physical value: 0 to 2.55."""
-        return self.validation_margin / 100
-
-    @validation_margin_physical.setter
-    def validation_margin_physical(self, value: float) -> None:
-        self.validation_margin = _codec.raw_value(
-            value,
-            "validation_margin",
-            (1, 0, 100),
-            0,
-            255,
-        )
-
-    @property
-    def search_width_physical(self) -> float:
-        """Star Tracking Search Width, as a physical value: 0 to 51."""
-        return self.search_width / 5
-
-    @search_width_physical.setter
-    def search_width_physical(self, value: float) -> None:
-        self.search_width = _codec.raw_value(value, "search_width", (1, 0, 5), 0, 255)
+    search_width_physical: float = _base.scaled(1, 0, 5, default=0.0)
+    """Star Tracking Search Width, as a physical value: 0 to 51."""
+    search_width_milli: int = _base.whole(200, 0)
+    """Star Tracking Search Width in thousandths, exact: 0 to 51000."""

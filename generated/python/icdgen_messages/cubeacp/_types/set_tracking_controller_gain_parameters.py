@@ -5,33 +5,20 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
+from ... import _base
 from .axis_select import AxisSelect
 
-_STRUCT = struct.Struct("<3fB")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, AxisSelect))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class SetTrackingControllerGainParameters(_base.Message):
     """Set Tracking Controller Gain Parameters: configuration, set by telecommand 54,
     got by telemetry 221, 13 bytes. Table 198.
 
     Gains of the tracking mode.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
-
-    __slots__ = (
-        "tracking_proportional_gain",
-        "tracking_derivative_gain",
-        "tracking_integral_gain",
-        "target_tracking_facet",
-    )
 
     NODE = "cubeacp"
     NAME = "Set Tracking Controller Gain Parameters"
@@ -41,117 +28,40 @@ class SetTrackingControllerGainParameters(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 13
     TABLE = 198
-    FIELDS = (
-        _base.FieldInfo(
-            "tracking_proportional_gain",
-            "Tracking Proportional Gain",
-            0,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "tracking_derivative_gain",
-            "Tracking Derivative Gain",
-            32,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "tracking_integral_gain",
-            "Tracking Integral Gain",
-            64,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "target_tracking_facet",
-            "Target-tracking Facet",
-            96,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-    )
 
-    tracking_proportional_gain: float
+    tracking_proportional_gain: float = _base.field("Tracking Proportional Gain", 0, 32, "float", default=0.0)
     """Tracking Proportional Gain: bits 0 to 31, 32-bit float.
 
     Kp3.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): Gains have no units. Controller gains are floats without units,
+    and the control laws are in another document.
     """
-    tracking_derivative_gain: float
+
+    tracking_derivative_gain: float = _base.field("Tracking Derivative Gain", 32, 32, "float", default=0.0)
     """Tracking Derivative Gain: bits 32 to 63, 32-bit float.
 
     Kd3.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Tracking Proportional Gain.
     """
-    tracking_integral_gain: float
+
+    tracking_integral_gain: float = _base.field("Tracking Integral Gain", 64, 32, "float", default=0.0)
     """Tracking Integral Gain: bits 64 to 95, 32-bit float.
 
     Ki3.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Tracking Proportional Gain.
     """
-    target_tracking_facet: AxisSelect
+
+    target_tracking_facet: AxisSelect = _base.field(
+        "Target-tracking Facet", 96, 8, "enum", default=AxisSelect.POSITIVE_X
+    )
     """Target-tracking Facet: bits 96 to 103.
 
     Body axis that is pointed at the target.
 
-    Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
+    Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration
+    serves actuators, sensors and facets. A facet that points to the sun or to a target
+    as Not Used is allowed by its table and not explained.
     """
-
-    def __init__(
-        self,
-        *,
-        tracking_proportional_gain: float = 0.0,
-        tracking_derivative_gain: float = 0.0,
-        tracking_integral_gain: float = 0.0,
-        target_tracking_facet: AxisSelect = AxisSelect.POSITIVE_X,
-    ) -> None:
-        self.tracking_proportional_gain = tracking_proportional_gain
-        self.tracking_derivative_gain = tracking_derivative_gain
-        self.tracking_integral_gain = tracking_integral_gain
-        self.target_tracking_facet = target_tracking_facet
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetTrackingControllerGainParameters:
-        """The message in a frame of exactly 13 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.tracking_proportional_gain,
-                self.tracking_derivative_gain,
-                self.tracking_integral_gain,
-                v12,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.target_tracking_facet = _BITS_0[v12]
-        total = (
-            self.tracking_proportional_gain
-            + self.tracking_derivative_gain
-            + self.tracking_integral_gain
-        )
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            frame = _pack(
-                self.tracking_proportional_gain,
-                self.tracking_derivative_gain,
-                self.tracking_integral_gain,
-                self.target_tracking_facet,
-            )
-            total = (
-                self.tracking_proportional_gain
-                + self.tracking_derivative_gain
-                + self.tracking_integral_gain
-            )
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

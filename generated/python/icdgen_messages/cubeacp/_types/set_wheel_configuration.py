@@ -5,31 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .axis_select import AxisSelect
 
-_STRUCT = struct.Struct("<4B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, AxisSelect))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class SetWheelConfiguration(_base.Message):
     """Set Wheel Configuration: configuration, set by telecommand 22, got by telemetry
     137, 4 bytes. Table 181.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
-
-    __slots__ = (
-        "rw1_configuration",
-        "rw2_configuration",
-        "rw3_configuration",
-        "rw4_configuration",
-    )
 
     NODE = "cubeacp"
     NAME = "Set Wheel Configuration"
@@ -39,101 +26,35 @@ class SetWheelConfiguration(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 4
     TABLE = 181
-    FIELDS = (
-        _base.FieldInfo(
-            "rw1_configuration",
-            "RW1 Configuration",
-            0,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "rw2_configuration",
-            "RW2 Configuration",
-            8,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "rw3_configuration",
-            "RW3 Configuration",
-            16,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-        _base.FieldInfo(
-            "rw4_configuration",
-            "RW4 Configuration",
-            24,
-            8,
-            "enum",
-            enum=AxisSelect,
-        ),
-    )
 
-    rw1_configuration: AxisSelect
+    rw1_configuration: AxisSelect = _base.field("RW1 Configuration", 0, 8, "enum", default=AxisSelect.POSITIVE_X)
     """RW1 Configuration: bits 0 to 7.
 
-    Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    Note ACP-129 (open): Reaction wheels are RW1 and RW-X. Numbers in one message, axes
+    in the other. The two agree only after the wheel configuration has been applied.
     """
-    rw2_configuration: AxisSelect
+
+    rw2_configuration: AxisSelect = _base.field("RW2 Configuration", 8, 8, "enum", default=AxisSelect.POSITIVE_X)
     """RW2 Configuration: bits 8 to 15.
 
-    Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    Note ACP-129 (open): see RW1 Configuration.
     """
-    rw3_configuration: AxisSelect
+
+    rw3_configuration: AxisSelect = _base.field("RW3 Configuration", 16, 8, "enum", default=AxisSelect.POSITIVE_X)
     """RW3 Configuration: bits 16 to 23.
 
-    Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    Note ACP-129 (open): see RW1 Configuration.
     """
-    rw4_configuration: AxisSelect
+
+    rw4_configuration: AxisSelect = _base.field("RW4 Configuration", 24, 8, "enum", default=AxisSelect.POSITIVE_X)
     """RW4 Configuration: bits 24 to 31.
 
     Wheel 4 or the momentum wheel.
 
-    Note ACP-127 (open): Four wheels can be configured, three are reported.
+    Note ACP-127 (open): Four wheels can be configured, three are reported. RW4 has a
+    configuration. No state, speed, current, error flag or power switch exists for it,
+    and speeds are by axis while currents are by number.
 
-    Note ACP-128 (open): RW4 or Momentum wheel.
+    Note ACP-128 (open): RW4 or Momentum wheel. One field is for the fourth wheel or for
+    a momentum wheel; how the program tells them apart is not said, perhaps by its type.
     """
-
-    def __init__(
-        self,
-        *,
-        rw1_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        rw2_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        rw3_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-        rw4_configuration: AxisSelect = AxisSelect.POSITIVE_X,
-    ) -> None:
-        self.rw1_configuration = rw1_configuration
-        self.rw2_configuration = rw2_configuration
-        self.rw3_configuration = rw3_configuration
-        self.rw4_configuration = rw4_configuration
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetWheelConfiguration:
-        """The message in a frame of exactly 4 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, v1, v2, v3 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.rw1_configuration = _BITS_0[v0]
-        self.rw2_configuration = _BITS_0[v1]
-        self.rw3_configuration = _BITS_0[v2]
-        self.rw4_configuration = _BITS_0[v3]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.rw1_configuration,
-                self.rw2_configuration,
-                self.rw3_configuration,
-                self.rw4_configuration,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,29 +5,18 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class SetWheelSpeed(_base.Message):
     """Set Wheel Speed: telecommand 17, 6 bytes. Table 82.
 
     Only valid while the control mode is None.
 
-    Note ACP-023 (certain): Control mode None does not exist.
+    Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid,
+    and the mode falls back, when the control mode is None. The member with value 0 is
+    called No control.
     """
-
-    __slots__ = (
-        "commanded_x_speed",
-        "commanded_y_speed",
-        "commanded_z_speed",
-    )
 
     NODE = "cubeacp"
     NAME = "Set Wheel Speed"
@@ -36,72 +25,12 @@ class SetWheelSpeed(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 82
-    FIELDS = (
-        _base.FieldInfo(
-            "commanded_x_speed",
-            "Commanded X speed",
-            0,
-            16,
-            "int",
-            unit="rpm",
-        ),
-        _base.FieldInfo(
-            "commanded_y_speed",
-            "Commanded Y speed",
-            16,
-            16,
-            "int",
-            unit="rpm",
-        ),
-        _base.FieldInfo(
-            "commanded_z_speed",
-            "Commanded Z speed",
-            32,
-            16,
-            "int",
-            unit="rpm",
-        ),
-    )
 
-    commanded_x_speed: int
+    commanded_x_speed: int = _base.field("Commanded X speed", 0, 16, "int", default=0, unit="rpm")
     """Commanded X speed: bits 0 to 15, raw -32768 to 32767, in rpm."""
-    commanded_y_speed: int
+
+    commanded_y_speed: int = _base.field("Commanded Y speed", 16, 16, "int", default=0, unit="rpm")
     """Commanded Y speed: bits 16 to 31, raw -32768 to 32767, in rpm."""
-    commanded_z_speed: int
+
+    commanded_z_speed: int = _base.field("Commanded Z speed", 32, 16, "int", default=0, unit="rpm")
     """Commanded Z speed: bits 32 to 47, raw -32768 to 32767, in rpm."""
-
-    def __init__(
-        self,
-        *,
-        commanded_x_speed: int = 0,
-        commanded_y_speed: int = 0,
-        commanded_z_speed: int = 0,
-    ) -> None:
-        self.commanded_x_speed = commanded_x_speed
-        self.commanded_y_speed = commanded_y_speed
-        self.commanded_z_speed = commanded_z_speed
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetWheelSpeed:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.commanded_x_speed,
-                self.commanded_y_speed,
-                self.commanded_z_speed,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.commanded_x_speed,
-                self.commanded_y_speed,
-                self.commanded_z_speed,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,32 +5,19 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
-
-_STRUCT = struct.Struct("<5f")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class SetYWheelControlParameters(_base.Message):
     """Set Y-Wheel Control Parameters: configuration, set by telecommand 39, got by
     telemetry 209, 20 bytes. Table 196.
 
     Gains and reference of the Y-wheel mode.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
-
-    __slots__ = (
-        "y_momentum_control_gain",
-        "y_momentum_nutation_damping_gain",
-        "y_momentum_proportional_gain",
-        "y_momentum_derivative_gain",
-        "reference_wheel_momentum",
-    )
 
     NODE = "cubeacp"
     NAME = "Set Y-Wheel Control Parameters"
@@ -40,145 +27,57 @@ class SetYWheelControlParameters(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 20
     TABLE = 196
-    FIELDS = (
-        _base.FieldInfo(
-            "y_momentum_control_gain",
-            "Y-Momentum Control Gain",
-            0,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "y_momentum_nutation_damping_gain",
-            "Y-momentum Nutation Damping Gain",
-            32,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "y_momentum_proportional_gain",
-            "Y-momentum Proportional Gain",
-            64,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "y_momentum_derivative_gain",
-            "Y-momentum Derivative Gain",
-            96,
-            32,
-            "float",
-        ),
-        _base.FieldInfo(
-            "reference_wheel_momentum",
-            "Reference Wheel Momentum",
-            128,
-            32,
-            "float",
-            unit="Nms",
-            below=0,
-        ),
-    )
 
-    y_momentum_control_gain: float
+    y_momentum_control_gain: float = _base.field("Y-Momentum Control Gain", 0, 32, "float", default=0.0)
     """Y-Momentum Control Gain: bits 0 to 31, 32-bit float.
 
     Kh.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): Gains have no units. Controller gains are floats without units,
+    and the control laws are in another document.
 
-    Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel.
+    Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel. The message is for the
+    Y-wheel, its gains are for Y-Momentum and Y-momentum, capital and small.
     """
-    y_momentum_nutation_damping_gain: float
+
+    y_momentum_nutation_damping_gain: float = _base.field(
+        "Y-momentum Nutation Damping Gain", 32, 32, "float", default=0.0
+    )
     """Y-momentum Nutation Damping Gain: bits 32 to 63, 32-bit float.
 
     Kn.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Y-Momentum Control Gain.
 
-    Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel.
+    Note ACP-164 (certain): see Y-Momentum Control Gain.
     """
-    y_momentum_proportional_gain: float
+
+    y_momentum_proportional_gain: float = _base.field("Y-momentum Proportional Gain", 64, 32, "float", default=0.0)
     """Y-momentum Proportional Gain: bits 64 to 95, 32-bit float.
 
     Kp1.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Y-Momentum Control Gain.
     """
-    y_momentum_derivative_gain: float
+
+    y_momentum_derivative_gain: float = _base.field("Y-momentum Derivative Gain", 96, 32, "float", default=0.0)
     """Y-momentum Derivative Gain: bits 96 to 127, 32-bit float.
 
     Kd1.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Y-Momentum Control Gain.
     """
-    reference_wheel_momentum: float
+
+    reference_wheel_momentum: float = _base.field(
+        "Reference Wheel Momentum", 128, 32, "float", default=0.0, unit="Nms", below=0
+    )
     """Reference Wheel Momentum: bits 128 to 159, 32-bit float, in Nms.
 
     H-ref.
 
     Must be below 0 Nms.
 
-    Note ACP-162 (certain): Limits of a sign in words only.
+    Note ACP-162 (certain): Limits of a sign in words only. Two references must always
+    be smaller than 0; the types allow the opposite, and what the program does with it
+    is not said.
     """
-
-    def __init__(
-        self,
-        *,
-        y_momentum_control_gain: float = 0.0,
-        y_momentum_nutation_damping_gain: float = 0.0,
-        y_momentum_proportional_gain: float = 0.0,
-        y_momentum_derivative_gain: float = 0.0,
-        reference_wheel_momentum: float = 0.0,
-    ) -> None:
-        self.y_momentum_control_gain = y_momentum_control_gain
-        self.y_momentum_nutation_damping_gain = y_momentum_nutation_damping_gain
-        self.y_momentum_proportional_gain = y_momentum_proportional_gain
-        self.y_momentum_derivative_gain = y_momentum_derivative_gain
-        self.reference_wheel_momentum = reference_wheel_momentum
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> SetYWheelControlParameters:
-        """The message in a frame of exactly 20 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.y_momentum_control_gain,
-                self.y_momentum_nutation_damping_gain,
-                self.y_momentum_proportional_gain,
-                self.y_momentum_derivative_gain,
-                self.reference_wheel_momentum,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        total = (
-            self.y_momentum_control_gain
-            + self.y_momentum_nutation_damping_gain
-            + self.y_momentum_proportional_gain
-            + self.y_momentum_derivative_gain
-            + self.reference_wheel_momentum
-        )
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            frame = _pack(
-                self.y_momentum_control_gain,
-                self.y_momentum_nutation_damping_gain,
-                self.y_momentum_proportional_gain,
-                self.y_momentum_derivative_gain,
-                self.reference_wheel_momentum,
-            )
-            total = (
-                self.y_momentum_control_gain
-                + self.y_momentum_nutation_damping_gain
-                + self.y_momentum_proportional_gain
-                + self.y_momentum_derivative_gain
-                + self.reference_wheel_momentum
-            )
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,31 +5,13 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<8d")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class Sgp4OrbitParameters(_base.Message):
     """SGP4 Orbit Parameters: configuration, set by telecommand 45, got by telemetry
     207, 64 bytes. Table 194.
     """
-
-    __slots__ = (
-        "inclination",
-        "eccentricity",
-        "right_ascension_of_the_ascending_node",
-        "argument_of_perigee",
-        "b_star_drag_term",
-        "mean_motion",
-        "mean_anomaly",
-        "epoch",
-    )
 
     NODE = "cubeacp"
     NAME = "SGP4 Orbit Parameters"
@@ -39,115 +21,40 @@ class Sgp4OrbitParameters(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 64
     TABLE = 194
-    FIELDS = (
-        _base.FieldInfo("inclination", "Inclination", 0, 64, "float", unit="deg"),
-        _base.FieldInfo("eccentricity", "Eccentricity", 64, 64, "float"),
-        _base.FieldInfo(
-            "right_ascension_of_the_ascending_node",
-            "Right-ascension of the Ascending Node",
-            128,
-            64,
-            "float",
-            unit="deg",
-        ),
-        _base.FieldInfo(
-            "argument_of_perigee",
-            "Argument of Perigee",
-            192,
-            64,
-            "float",
-            unit="deg",
-        ),
-        _base.FieldInfo("b_star_drag_term", "B-Star drag term", 256, 64, "float"),
-        _base.FieldInfo(
-            "mean_motion",
-            "Mean Motion",
-            320,
-            64,
-            "float",
-            unit="orbits/day",
-        ),
-        _base.FieldInfo("mean_anomaly", "Mean Anomaly", 384, 64, "float", unit="deg"),
-        _base.FieldInfo("epoch", "Epoch", 448, 64, "float", unit="year.day"),
-    )
 
-    inclination: float
+    inclination: float = _base.field("Inclination", 0, 64, "float", default=0.0, unit="deg")
     """Inclination: bits 0 to 63, 64-bit float, in deg."""
-    eccentricity: float
+
+    eccentricity: float = _base.field("Eccentricity", 64, 64, "float", default=0.0)
     """Eccentricity: bits 64 to 127, 64-bit float."""
-    right_ascension_of_the_ascending_node: float
+
+    right_ascension_of_the_ascending_node: float = _base.field(
+        "Right-ascension of the Ascending Node", 128, 64, "float", default=0.0, unit="deg"
+    )
     """Right-ascension of the Ascending Node: bits 128 to 191, 64-bit float, in deg."""
-    argument_of_perigee: float
+
+    argument_of_perigee: float = _base.field("Argument of Perigee", 192, 64, "float", default=0.0, unit="deg")
     """Argument of Perigee: bits 192 to 255, 64-bit float, in deg."""
-    b_star_drag_term: float
+
+    b_star_drag_term: float = _base.field("B-Star drag term", 256, 64, "float", default=0.0)
     """B-Star drag term: bits 256 to 319, 64-bit float.
 
-    Note ACP-161 (open): B-Star has no unit.
+    Note ACP-161 (open): B-Star has no unit. The drag term of two-line elements is per
+    earth radius; the table has none.
     """
-    mean_motion: float
+
+    mean_motion: float = _base.field("Mean Motion", 320, 64, "float", default=0.0, unit="orbits/day")
     """Mean Motion: bits 320 to 383, 64-bit float, in orbits/day."""
-    mean_anomaly: float
+
+    mean_anomaly: float = _base.field("Mean Anomaly", 384, 64, "float", default=0.0, unit="deg")
     """Mean Anomaly: bits 384 to 447, 64-bit float, in deg."""
-    epoch: float
+
+    epoch: float = _base.field("Epoch", 448, 64, "float", default=0.0, unit="year.day")
     """Epoch: bits 448 to 511, 64-bit float, in year.day.
 
     Year and day in one number.
 
-    Note ACP-160 (open): Epoch: year.day.
+    Note ACP-160 (open): Epoch: year.day. The unit is a format. Two or four digits of
+    the year, and whether day 1 is the first of January, are left open; as a fraction of
+    a year it would be something else.
     """
-
-    def __init__(
-        self,
-        *,
-        inclination: float = 0.0,
-        eccentricity: float = 0.0,
-        right_ascension_of_the_ascending_node: float = 0.0,
-        argument_of_perigee: float = 0.0,
-        b_star_drag_term: float = 0.0,
-        mean_motion: float = 0.0,
-        mean_anomaly: float = 0.0,
-        epoch: float = 0.0,
-    ) -> None:
-        self.inclination = inclination
-        self.eccentricity = eccentricity
-        self.right_ascension_of_the_ascending_node = right_ascension_of_the_ascending_node
-        self.argument_of_perigee = argument_of_perigee
-        self.b_star_drag_term = b_star_drag_term
-        self.mean_motion = mean_motion
-        self.mean_anomaly = mean_anomaly
-        self.epoch = epoch
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> Sgp4OrbitParameters:
-        """The message in a frame of exactly 64 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.inclination,
-                self.eccentricity,
-                self.right_ascension_of_the_ascending_node,
-                self.argument_of_perigee,
-                self.b_star_drag_term,
-                self.mean_motion,
-                self.mean_anomaly,
-                self.epoch,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.inclination,
-                self.eccentricity,
-                self.right_ascension_of_the_ascending_node,
-                self.argument_of_perigee,
-                self.b_star_drag_term,
-                self.mean_motion,
-                self.mean_anomaly,
-                self.epoch,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class Star1OrbitVector(_base.Message):
     """Star 1 Orbit Vector: telemetry 184, 6 bytes. Table 142.
 
     Bit 16 of the log mask.
     """
-
-    __slots__ = (
-        "star1_orbit_x",
-        "star1_orbit_y",
-        "star1_orbit_z",
-    )
 
     NODE = "cubeacp"
     NAME = "Star 1 Orbit Vector"
@@ -34,145 +21,44 @@ class Star1OrbitVector(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 142
-    FIELDS = (
-        _base.FieldInfo(
-            "star1_orbit_x",
-            "Star1OX",
-            0,
-            16,
-            "int",
-            physical="star1_orbit_x_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star1_orbit_y",
-            "Star1OY",
-            16,
-            16,
-            "int",
-            physical="star1_orbit_y_physical",
-            scale=(1, 0, 10000),
-        ),
-        _base.FieldInfo(
-            "star1_orbit_z",
-            "Star1OZ",
-            32,
-            16,
-            "int",
-            physical="star1_orbit_z_physical",
-            scale=(1, 0, 10000),
-        ),
-    )
 
-    star1_orbit_x: int
+    star1_orbit_x: int = _base.field("Star1OX", 0, 16, "int", default=0)
     """Star1OX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the orbit frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is
+    described as a vector, of which it is one component; names abbreviate body and orbit
+    to a letter.
     """
-    star1_orbit_y: int
+    star1_orbit_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star1OX, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_x_micro: int = _base.whole(100, 0)
+    """Star1OX in millionths, exact: -3276800 to 3276700."""
+
+    star1_orbit_y: int = _base.field("Star1OY", 16, 16, "int", default=0)
     """Star1OY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the orbit frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star1OX.
     """
-    star1_orbit_z: int
+    star1_orbit_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star1OY, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_y_micro: int = _base.whole(100, 0)
+    """Star1OY in millionths, exact: -3276800 to 3276700."""
+
+    star1_orbit_z: int = _base.field("Star1OZ", 32, 16, "int", default=0)
     """Star1OZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     3.2767.
 
     Vector in the orbit frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star1OX.
     """
-
-    def __init__(
-        self,
-        *,
-        star1_orbit_x: int = 0,
-        star1_orbit_y: int = 0,
-        star1_orbit_z: int = 0,
-    ) -> None:
-        self.star1_orbit_x = star1_orbit_x
-        self.star1_orbit_y = star1_orbit_y
-        self.star1_orbit_z = star1_orbit_z
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        star1_orbit_x_physical: float = 0.0,
-        star1_orbit_y_physical: float = 0.0,
-        star1_orbit_z_physical: float = 0.0,
-    ) -> Star1OrbitVector:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.star1_orbit_x_physical = star1_orbit_x_physical
-        self.star1_orbit_y_physical = star1_orbit_y_physical
-        self.star1_orbit_z_physical = star1_orbit_z_physical
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> Star1OrbitVector:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.star1_orbit_x, self.star1_orbit_y, self.star1_orbit_z = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.star1_orbit_x, self.star1_orbit_y, self.star1_orbit_z)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def star1_orbit_x_physical(self) -> float:
-        """Star1OX, as a physical value: -3.2768 to 3.2767."""
-        return self.star1_orbit_x / 10000
-
-    @star1_orbit_x_physical.setter
-    def star1_orbit_x_physical(self, value: float) -> None:
-        self.star1_orbit_x = _codec.raw_value(
-            value,
-            "star1_orbit_x",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star1_orbit_y_physical(self) -> float:
-        """Star1OY, as a physical value: -3.2768 to 3.2767."""
-        return self.star1_orbit_y / 10000
-
-    @star1_orbit_y_physical.setter
-    def star1_orbit_y_physical(self, value: float) -> None:
-        self.star1_orbit_y = _codec.raw_value(
-            value,
-            "star1_orbit_y",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
-
-    @property
-    def star1_orbit_z_physical(self) -> float:
-        """Star1OZ, as a physical value: -3.2768 to 3.2767."""
-        return self.star1_orbit_z / 10000
-
-    @star1_orbit_z_physical.setter
-    def star1_orbit_z_physical(self, value: float) -> None:
-        self.star1_orbit_z = _codec.raw_value(
-            value,
-            "star1_orbit_z",
-            (1, 0, 10000),
-            -32768,
-            32767,
-        )
+    star1_orbit_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
+    """Star1OZ, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_z_micro: int = _base.whole(100, 0)
+    """Star1OZ in millionths, exact: -3276800 to 3276700."""

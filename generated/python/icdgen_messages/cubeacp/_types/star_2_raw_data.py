@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<H2h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class Star2RawData(_base.Message):
     """Star 2 Raw Data: telemetry 213, 6 bytes. Table 161.
 
@@ -23,12 +16,6 @@ class Star2RawData(_base.Message):
     Bit 55 of the log mask.
     """
 
-    __slots__ = (
-        "catalogue_star_2",
-        "centroid_x_star_2",
-        "centroid_y_star_2",
-    )
-
     NODE = "cubeacp"
     NAME = "Star 2 Raw Data"
     KIND = "telemetry"
@@ -36,62 +23,25 @@ class Star2RawData(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 161
-    FIELDS = (
-        _base.FieldInfo("catalogue_star_2", "Catalogue Star 2", 0, 16, "uint"),
-        _base.FieldInfo("centroid_x_star_2", "Centroid X Star 2", 16, 16, "int"),
-        _base.FieldInfo("centroid_y_star_2", "Centroid Y Star 2", 32, 16, "int"),
-    )
 
-    catalogue_star_2: int
+    catalogue_star_2: int = _base.field("Catalogue Star 2", 0, 16, "uint", default=0)
     """Catalogue Star 2: bits 0 to 15, raw 0 to 65535.
 
     Number in the star catalogue.
 
-    Note ACP-117 (open): Catalogue number or catalogue index.
+    Note ACP-117 (open): Catalogue number or catalogue index. The frames are described
+    with an index, their fields with a number of a catalogue that is not named.
     """
-    centroid_x_star_2: int
+
+    centroid_x_star_2: int = _base.field("Centroid X Star 2", 16, 16, "int", default=0)
     """Centroid X Star 2: bits 16 to 31, raw -32768 to 32767.
 
-    Note ACP-116 (open): Star centroids have no scale.
+    Note ACP-116 (open): Star centroids have no scale. Signed 16-bit centroids without
+    pixel, angle or factor; the configuration has the image centre as a float in pixels.
     """
-    centroid_y_star_2: int
+
+    centroid_y_star_2: int = _base.field("Centroid Y Star 2", 32, 16, "int", default=0)
     """Centroid Y Star 2: bits 32 to 47, raw -32768 to 32767.
 
-    Note ACP-116 (open): Star centroids have no scale.
+    Note ACP-116 (open): see Centroid X Star 2.
     """
-
-    def __init__(
-        self,
-        *,
-        catalogue_star_2: int = 0,
-        centroid_x_star_2: int = 0,
-        centroid_y_star_2: int = 0,
-    ) -> None:
-        self.catalogue_star_2 = catalogue_star_2
-        self.centroid_x_star_2 = centroid_x_star_2
-        self.centroid_y_star_2 = centroid_y_star_2
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> Star2RawData:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.catalogue_star_2,
-                self.centroid_x_star_2,
-                self.centroid_y_star_2,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.catalogue_star_2,
-                self.centroid_x_star_2,
-                self.centroid_y_star_2,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

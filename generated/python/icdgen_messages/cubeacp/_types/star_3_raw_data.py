@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<H2h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class Star3RawData(_base.Message):
     """Star 3 Raw Data: telemetry 214, 6 bytes. Table 162.
 
@@ -23,12 +16,6 @@ class Star3RawData(_base.Message):
     Bit 56 of the log mask.
     """
 
-    __slots__ = (
-        "catalogue_star_3",
-        "centroid_x_star_3",
-        "centroid_y_star_3",
-    )
-
     NODE = "cubeacp"
     NAME = "Star 3 Raw Data"
     KIND = "telemetry"
@@ -36,62 +23,25 @@ class Star3RawData(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 162
-    FIELDS = (
-        _base.FieldInfo("catalogue_star_3", "Catalogue Star 3", 0, 16, "uint"),
-        _base.FieldInfo("centroid_x_star_3", "Centroid X Star 3", 16, 16, "int"),
-        _base.FieldInfo("centroid_y_star_3", "Centroid Y Star 3", 32, 16, "int"),
-    )
 
-    catalogue_star_3: int
+    catalogue_star_3: int = _base.field("Catalogue Star 3", 0, 16, "uint", default=0)
     """Catalogue Star 3: bits 0 to 15, raw 0 to 65535.
 
     Number in the star catalogue.
 
-    Note ACP-117 (open): Catalogue number or catalogue index.
+    Note ACP-117 (open): Catalogue number or catalogue index. The frames are described
+    with an index, their fields with a number of a catalogue that is not named.
     """
-    centroid_x_star_3: int
+
+    centroid_x_star_3: int = _base.field("Centroid X Star 3", 16, 16, "int", default=0)
     """Centroid X Star 3: bits 16 to 31, raw -32768 to 32767.
 
-    Note ACP-116 (open): Star centroids have no scale.
+    Note ACP-116 (open): Star centroids have no scale. Signed 16-bit centroids without
+    pixel, angle or factor; the configuration has the image centre as a float in pixels.
     """
-    centroid_y_star_3: int
+
+    centroid_y_star_3: int = _base.field("Centroid Y Star 3", 32, 16, "int", default=0)
     """Centroid Y Star 3: bits 32 to 47, raw -32768 to 32767.
 
-    Note ACP-116 (open): Star centroids have no scale.
+    Note ACP-116 (open): see Centroid X Star 3.
     """
-
-    def __init__(
-        self,
-        *,
-        catalogue_star_3: int = 0,
-        centroid_x_star_3: int = 0,
-        centroid_y_star_3: int = 0,
-    ) -> None:
-        self.catalogue_star_3 = catalogue_star_3
-        self.centroid_x_star_3 = centroid_x_star_3
-        self.centroid_y_star_3 = centroid_y_star_3
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> Star3RawData:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.catalogue_star_3,
-                self.centroid_x_star_3,
-                self.centroid_y_star_3,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.catalogue_star_3,
-                self.centroid_x_star_3,
-                self.centroid_y_star_3,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3H")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class StarMagnitude(_base.Message):
     """Star Magnitude: telemetry 187, 6 bytes. Table 145.
 
@@ -23,12 +16,6 @@ class StarMagnitude(_base.Message):
     Bit 53 of the log mask.
     """
 
-    __slots__ = (
-        "magnitude_star_1",
-        "magnitude_star_2",
-        "magnitude_star_3",
-    )
-
     NODE = "cubeacp"
     NAME = "Star Magnitude"
     KIND = "telemetry"
@@ -36,66 +23,28 @@ class StarMagnitude(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 145
-    FIELDS = (
-        _base.FieldInfo("magnitude_star_1", "Magnitude Star 1", 0, 16, "uint"),
-        _base.FieldInfo("magnitude_star_2", "Magnitude Star 2", 16, 16, "uint"),
-        _base.FieldInfo("magnitude_star_3", "Magnitude Star 3", 32, 16, "uint"),
-    )
 
-    magnitude_star_1: int
+    magnitude_star_1: int = _base.field("Magnitude Star 1", 0, 16, "uint", default=0)
     """Magnitude Star 1: bits 0 to 15, raw 0 to 65535.
 
     Instrument magnitude.
 
-    Note ACP-092 (open): Star magnitudes have no scale.
+    Note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16
+    bits without a factor can be neither fractional nor negative.
     """
-    magnitude_star_2: int
+
+    magnitude_star_2: int = _base.field("Magnitude Star 2", 16, 16, "uint", default=0)
     """Magnitude Star 2: bits 16 to 31, raw 0 to 65535.
 
     Instrument magnitude.
 
-    Note ACP-092 (open): Star magnitudes have no scale.
+    Note ACP-092 (open): see Magnitude Star 1.
     """
-    magnitude_star_3: int
+
+    magnitude_star_3: int = _base.field("Magnitude Star 3", 32, 16, "uint", default=0)
     """Magnitude Star 3: bits 32 to 47, raw 0 to 65535.
 
     Instrument magnitude.
 
-    Note ACP-092 (open): Star magnitudes have no scale.
+    Note ACP-092 (open): see Magnitude Star 1.
     """
-
-    def __init__(
-        self,
-        *,
-        magnitude_star_1: int = 0,
-        magnitude_star_2: int = 0,
-        magnitude_star_3: int = 0,
-    ) -> None:
-        self.magnitude_star_1 = magnitude_star_1
-        self.magnitude_star_2 = magnitude_star_2
-        self.magnitude_star_3 = magnitude_star_3
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> StarMagnitude:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.magnitude_star_1,
-                self.magnitude_star_2,
-                self.magnitude_star_3,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.magnitude_star_1,
-                self.magnitude_star_2,
-                self.magnitude_star_3,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

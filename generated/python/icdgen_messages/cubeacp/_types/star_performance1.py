@@ -5,18 +5,10 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .star_id_mode_val import StarIdModeVal
 
-_STRUCT = struct.Struct("<6B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, StarIdModeVal))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class StarPerformance1(_base.Message):
     """Star Performance1: telemetry 188, 6 bytes. Table 146.
 
@@ -25,16 +17,9 @@ class StarPerformance1(_base.Message):
     Bit 52 of the log mask.
 
     Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
+    Both are described as performance parameters of the star measurement; the second
+    holds flags, a period and confidences.
     """
-
-    __slots__ = (
-        "number_of_stars_detected",
-        "star_image_noise",
-        "invalid_stars",
-        "number_of_stars_identified",
-        "identification_mode",
-        "image_dark_value",
-    )
 
     NODE = "cubeacp"
     NAME = "Star Performance1"
@@ -43,139 +28,44 @@ class StarPerformance1(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 146
-    FIELDS = (
-        _base.FieldInfo(
-            "number_of_stars_detected",
-            "Number of stars detected",
-            0,
-            8,
-            "uint",
-            unit="stars",
-        ),
-        _base.FieldInfo(
-            "star_image_noise",
-            "Star image noise",
-            8,
-            8,
-            "uint",
-            unit="noise",
-        ),
-        _base.FieldInfo(
-            "invalid_stars",
-            "Invalid Stars",
-            16,
-            8,
-            "uint",
-            unit="Invalid stars",
-        ),
-        _base.FieldInfo(
-            "number_of_stars_identified",
-            "Number of stars identified",
-            24,
-            8,
-            "uint",
-            unit="stars",
-        ),
-        _base.FieldInfo(
-            "identification_mode",
-            "Identification mode",
-            32,
-            8,
-            "enum",
-            enum=StarIdModeVal,
-        ),
-        _base.FieldInfo(
-            "image_dark_value",
-            "Image dark value",
-            40,
-            8,
-            "uint",
-            unit="8-bit pixel value",
-        ),
-    )
 
-    number_of_stars_detected: int
+    number_of_stars_detected: int = _base.field("Number of stars detected", 0, 8, "uint", default=0, unit="stars")
     """Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
 
     Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    pixel value. What is counted stands in place of a unit; noise repeats the name. They
+    are kept as units of counts.
     """
-    star_image_noise: int
+
+    star_image_noise: int = _base.field("Star image noise", 8, 8, "uint", default=0, unit="noise")
     """Star image noise: bits 8 to 15, raw 0 to 255, in noise.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
-    invalid_stars: int
+
+    invalid_stars: int = _base.field("Invalid Stars", 16, 8, "uint", default=0, unit="Invalid stars")
     """Invalid Stars: bits 16 to 23, raw 0 to 255, in Invalid stars.
 
     How many of the detected stars are invalid.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
-    number_of_stars_identified: int
+
+    number_of_stars_identified: int = _base.field("Number of stars identified", 24, 8, "uint", default=0, unit="stars")
     """Number of stars identified: bits 24 to 31, raw 0 to 255, in stars.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
-    identification_mode: StarIdModeVal
+
+    identification_mode: StarIdModeVal = _base.field(
+        "Identification mode", 32, 8, "enum", default=StarIdModeVal.TRACKING_MODE
+    )
     """Identification mode: bits 32 to 39."""
-    image_dark_value: int
+
+    image_dark_value: int = _base.field("Image dark value", 40, 8, "uint", default=0, unit="8-bit pixel value")
     """Image dark value: bits 40 to 47, raw 0 to 255, in 8-bit pixel value.
 
     Mean of the centre line of the image.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
-
-    def __init__(
-        self,
-        *,
-        number_of_stars_detected: int = 0,
-        star_image_noise: int = 0,
-        invalid_stars: int = 0,
-        number_of_stars_identified: int = 0,
-        identification_mode: StarIdModeVal = StarIdModeVal.TRACKING_MODE,
-        image_dark_value: int = 0,
-    ) -> None:
-        self.number_of_stars_detected = number_of_stars_detected
-        self.star_image_noise = star_image_noise
-        self.invalid_stars = invalid_stars
-        self.number_of_stars_identified = number_of_stars_identified
-        self.identification_mode = identification_mode
-        self.image_dark_value = image_dark_value
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> StarPerformance1:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.number_of_stars_detected,
-                self.star_image_noise,
-                self.invalid_stars,
-                self.number_of_stars_identified,
-                v4,
-                self.image_dark_value,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.identification_mode = _BITS_0[v4]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.number_of_stars_detected,
-                self.star_image_noise,
-                self.invalid_stars,
-                self.number_of_stars_identified,
-                self.identification_mode,
-                self.image_dark_value,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

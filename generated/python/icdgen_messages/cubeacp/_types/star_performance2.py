@@ -5,27 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<BH3B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table(
-    (0, 1, bool),
-    (1, 1, bool),
-    (2, 1, bool),
-    (3, 1, bool),
-    (4, 1, bool),
-    (5, 1, bool),
-    (6, 1, bool),
-    (7, 1, bool),
-)
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class StarPerformance2(_base.Message):
     """Star Performance2: telemetry 231, 6 bytes. Table 174.
 
@@ -34,22 +16,9 @@ class StarPerformance2(_base.Message):
     Bit 64 of the log mask.
 
     Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
+    Both are described as performance parameters of the star measurement; the second
+    holds flags, a period and confidences.
     """
-
-    __slots__ = (
-        "image_capture_success",
-        "detection_success",
-        "identification_success",
-        "attitude_success",
-        "processing_time_error",
-        "tracking_module_enabled",
-        "prediction_enabled",
-        "comms_error",
-        "sample_period",
-        "star_1_confidence",
-        "star_2_confidence",
-        "star_3_confidence",
-    )
 
     NODE = "cubeacp"
     NAME = "Star Performance2"
@@ -58,168 +27,57 @@ class StarPerformance2(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 174
-    FIELDS = (
-        _base.FieldInfo("image_capture_success", "Image Capture Success", 0, 1, "bool"),
-        _base.FieldInfo("detection_success", "Detection Success", 1, 1, "bool"),
-        _base.FieldInfo(
-            "identification_success",
-            "Identification Success",
-            2,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("attitude_success", "AttitudeSuccess", 3, 1, "bool"),
-        _base.FieldInfo("processing_time_error", "Processing Time Error", 4, 1, "bool"),
-        _base.FieldInfo(
-            "tracking_module_enabled",
-            "Tracking Module Enabled",
-            5,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("prediction_enabled", "Prediction Enabled", 6, 1, "bool"),
-        _base.FieldInfo("comms_error", "Comms error", 7, 1, "bool"),
-        _base.FieldInfo("sample_period", "Sample Period", 8, 16, "uint"),
-        _base.FieldInfo(
-            "star_1_confidence",
-            "Star 1 confidence",
-            24,
-            8,
-            "uint",
-            unit="%",
-        ),
-        _base.FieldInfo(
-            "star_2_confidence",
-            "Star 2 confidence",
-            32,
-            8,
-            "uint",
-            unit="%",
-        ),
-        _base.FieldInfo(
-            "star_3_confidence",
-            "Star 3 confidence",
-            40,
-            8,
-            "uint",
-            unit="%",
-        ),
-    )
 
-    image_capture_success: bool
+    image_capture_success: bool = _base.field("Image Capture Success", 0, 1, "bool", default=False)
     """Image Capture Success: bit 0."""
-    detection_success: bool
+
+    detection_success: bool = _base.field("Detection Success", 1, 1, "bool", default=False)
     """Detection Success: bit 1."""
-    identification_success: bool
+
+    identification_success: bool = _base.field("Identification Success", 2, 1, "bool", default=False)
     """Identification Success: bit 2."""
-    attitude_success: bool
+
+    attitude_success: bool = _base.field("AttitudeSuccess", 3, 1, "bool", default=False)
     """AttitudeSuccess: bit 3.
 
-    Note ACP-115 (certain): AttitudeSuccess is written in one piece.
+    Note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags
+    before it have blanks, as its description has.
     """
-    processing_time_error: bool
+
+    processing_time_error: bool = _base.field("Processing Time Error", 4, 1, "bool", default=False)
     """Processing Time Error: bit 4."""
-    tracking_module_enabled: bool
+
+    tracking_module_enabled: bool = _base.field("Tracking Module Enabled", 5, 1, "bool", default=False)
     """Tracking Module Enabled: bit 5."""
-    prediction_enabled: bool
+
+    prediction_enabled: bool = _base.field("Prediction Enabled", 6, 1, "bool", default=False)
     """Prediction Enabled: bit 6."""
-    comms_error: bool
+
+    comms_error: bool = _base.field("Comms error", 7, 1, "bool", default=False)
     """Comms error: bit 7."""
-    sample_period: int
+
+    sample_period: int = _base.field("Sample Period", 8, 16, "uint", default=0)
     """Sample Period: bits 8 to 23, raw 0 to 65535.
 
-    Note ACP-113 (open): Sample period of the star tracker has no unit.
+    Note ACP-113 (open): Sample period of the star tracker has no unit. Other times of
+    the star tracker are in ms.
     """
-    star_1_confidence: int
+
+    star_1_confidence: int = _base.field("Star 1 confidence", 24, 8, "uint", default=0, unit="%")
     """Star 1 confidence: bits 24 to 31, raw 0 to 255, in %.
 
-    Erratum ACP-114 (certain): percentage is %.
+    Erratum ACP-114 (certain): percentage is %. The unit is spelt out in two frames and
+    a sign elsewhere.
     """
-    star_2_confidence: int
+
+    star_2_confidence: int = _base.field("Star 2 confidence", 32, 8, "uint", default=0, unit="%")
     """Star 2 confidence: bits 32 to 39, raw 0 to 255, in %.
 
-    Erratum ACP-114 (certain): percentage is %.
+    Erratum ACP-114 (certain): see Star 1 confidence.
     """
-    star_3_confidence: int
+
+    star_3_confidence: int = _base.field("Star 3 confidence", 40, 8, "uint", default=0, unit="%")
     """Star 3 confidence: bits 40 to 47, raw 0 to 255, in %.
 
-    Erratum ACP-114 (certain): percentage is %.
+    Erratum ACP-114 (certain): see Star 1 confidence.
     """
-
-    def __init__(
-        self,
-        *,
-        image_capture_success: bool = False,
-        detection_success: bool = False,
-        identification_success: bool = False,
-        attitude_success: bool = False,
-        processing_time_error: bool = False,
-        tracking_module_enabled: bool = False,
-        prediction_enabled: bool = False,
-        comms_error: bool = False,
-        sample_period: int = 0,
-        star_1_confidence: int = 0,
-        star_2_confidence: int = 0,
-        star_3_confidence: int = 0,
-    ) -> None:
-        self.image_capture_success = image_capture_success
-        self.detection_success = detection_success
-        self.identification_success = identification_success
-        self.attitude_success = attitude_success
-        self.processing_time_error = processing_time_error
-        self.tracking_module_enabled = tracking_module_enabled
-        self.prediction_enabled = prediction_enabled
-        self.comms_error = comms_error
-        self.sample_period = sample_period
-        self.star_1_confidence = star_1_confidence
-        self.star_2_confidence = star_2_confidence
-        self.star_3_confidence = star_3_confidence
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> StarPerformance2:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                v0,
-                self.sample_period,
-                self.star_1_confidence,
-                self.star_2_confidence,
-                self.star_3_confidence,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        (
-            self.image_capture_success,
-            self.detection_success,
-            self.identification_success,
-            self.attitude_success,
-            self.processing_time_error,
-            self.tracking_module_enabled,
-            self.prediction_enabled,
-            self.comms_error,
-        ) = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[
-                self.image_capture_success,
-                self.detection_success,
-                self.identification_success,
-                self.attitude_success,
-                self.processing_time_error,
-                self.tracking_module_enabled,
-                self.prediction_enabled,
-                self.comms_error,
-            ]
-            return _pack(
-                v0,
-                self.sample_period,
-                self.star_1_confidence,
-                self.star_2_confidence,
-                self.star_3_confidence,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

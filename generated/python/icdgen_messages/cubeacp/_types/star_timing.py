@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3H")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class StarTiming(_base.Message):
     """Star Timing: telemetry 189, 6 bytes. Table 148.
 
@@ -23,12 +16,6 @@ class StarTiming(_base.Message):
     Bit 57 of the log mask.
     """
 
-    __slots__ = (
-        "capture",
-        "detection",
-        "identification",
-    )
-
     NODE = "cubeacp"
     NAME = "Star Timing"
     KIND = "telemetry"
@@ -36,43 +23,12 @@ class StarTiming(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 148
-    FIELDS = (
-        _base.FieldInfo("capture", "Capture", 0, 16, "uint", unit="ms"),
-        _base.FieldInfo("detection", "Detection", 16, 16, "uint", unit="ms"),
-        _base.FieldInfo("identification", "Identification", 32, 16, "uint", unit="ms"),
-    )
 
-    capture: int
+    capture: int = _base.field("Capture", 0, 16, "uint", default=0, unit="ms")
     """Capture: bits 0 to 15, raw 0 to 65535, in ms."""
-    detection: int
+
+    detection: int = _base.field("Detection", 16, 16, "uint", default=0, unit="ms")
     """Detection: bits 16 to 31, raw 0 to 65535, in ms."""
-    identification: int
+
+    identification: int = _base.field("Identification", 32, 16, "uint", default=0, unit="ms")
     """Identification: bits 32 to 47, raw 0 to 65535, in ms."""
-
-    def __init__(
-        self,
-        *,
-        capture: int = 0,
-        detection: int = 0,
-        identification: int = 0,
-    ) -> None:
-        self.capture = capture
-        self.detection = detection
-        self.identification = identification
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> StarTiming:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.capture, self.detection, self.identification = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.capture, self.detection, self.identification)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

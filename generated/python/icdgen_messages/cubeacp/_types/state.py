@@ -5,41 +5,17 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table(
-    (0, 1, bool),
-    (1, 1, bool),
-    (2, 1, bool),
-    (3, 1, bool),
-    (4, 1, bool),
-    (5, 1, bool),
-)
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class State(_base.Message):
     """CubeACP State: telemetry 135, 1 byte. Table 101.
 
     Errors in loading settings from flash and in using the SD card.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
     """
-
-    __slots__ = (
-        "adcs_config_load_error",
-        "orbit_parameter_load_error",
-        "system_configuration_load_error",
-        "sd_card_initialisation_error",
-        "sd_card_read_error",
-        "sd_card_write_error",
-    )
 
     NODE = "cubeacp"
     NAME = "CubeACP State"
@@ -48,113 +24,39 @@ class State(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 101
-    FIELDS = (
-        _base.FieldInfo(
-            "adcs_config_load_error",
-            "ADCS Config Load Error",
-            0,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "orbit_parameter_load_error",
-            "Orbit Parameter Load Error",
-            1,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "system_configuration_load_error",
-            "System Configuration Load Error",
-            2,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo(
-            "sd_card_initialisation_error",
-            "SD card initialisation error",
-            3,
-            1,
-            "bool",
-        ),
-        _base.FieldInfo("sd_card_read_error", "SD card read error", 4, 1, "bool"),
-        _base.FieldInfo("sd_card_write_error", "SD card write error", 5, 1, "bool"),
-    )
 
-    adcs_config_load_error: bool
+    adcs_config_load_error: bool = _base.field("ADCS Config Load Error", 0, 1, "bool", default=False)
     """ADCS Config Load Error: bit 0.
 
     Reading it from flash failed.
 
-    Note ACP-054 (open): Two saves for three stored sets.
+    Note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS
+    configuration, the orbit parameters and the system configuration. Telecommands save
+    the current configuration and the orbit parameters; which the first covers is not
+    said.
     """
-    orbit_parameter_load_error: bool
+
+    orbit_parameter_load_error: bool = _base.field("Orbit Parameter Load Error", 1, 1, "bool", default=False)
     """Orbit Parameter Load Error: bit 1.
 
     Reading them from flash failed.
 
-    Note ACP-054 (open): Two saves for three stored sets.
+    Note ACP-054 (open): see ADCS Config Load Error.
     """
-    system_configuration_load_error: bool
+
+    system_configuration_load_error: bool = _base.field("System Configuration Load Error", 2, 1, "bool", default=False)
     """System Configuration Load Error: bit 2.
 
     Reading it from flash failed.
 
-    Note ACP-054 (open): Two saves for three stored sets.
+    Note ACP-054 (open): see ADCS Config Load Error.
     """
-    sd_card_initialisation_error: bool
+
+    sd_card_initialisation_error: bool = _base.field("SD card initialisation error", 3, 1, "bool", default=False)
     """SD card initialisation error: bit 3."""
-    sd_card_read_error: bool
+
+    sd_card_read_error: bool = _base.field("SD card read error", 4, 1, "bool", default=False)
     """SD card read error: bit 4."""
-    sd_card_write_error: bool
+
+    sd_card_write_error: bool = _base.field("SD card write error", 5, 1, "bool", default=False)
     """SD card write error: bit 5."""
-
-    def __init__(
-        self,
-        *,
-        adcs_config_load_error: bool = False,
-        orbit_parameter_load_error: bool = False,
-        system_configuration_load_error: bool = False,
-        sd_card_initialisation_error: bool = False,
-        sd_card_read_error: bool = False,
-        sd_card_write_error: bool = False,
-    ) -> None:
-        self.adcs_config_load_error = adcs_config_load_error
-        self.orbit_parameter_load_error = orbit_parameter_load_error
-        self.system_configuration_load_error = system_configuration_load_error
-        self.sd_card_initialisation_error = sd_card_initialisation_error
-        self.sd_card_read_error = sd_card_read_error
-        self.sd_card_write_error = sd_card_write_error
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> State:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        (
-            self.adcs_config_load_error,
-            self.orbit_parameter_load_error,
-            self.system_configuration_load_error,
-            self.sd_card_initialisation_error,
-            self.sd_card_read_error,
-            self.sd_card_write_error,
-        ) = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[
-                self.adcs_config_load_error,
-                self.orbit_parameter_load_error,
-                self.system_configuration_load_error,
-                self.sd_card_initialisation_error,
-                self.sd_card_read_error,
-                self.sd_card_write_error,
-            ]
-            return _pack(v0)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

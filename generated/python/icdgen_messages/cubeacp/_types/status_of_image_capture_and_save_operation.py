@@ -5,29 +5,17 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .im_save_status import ImSaveStatus
 
-_STRUCT = struct.Struct("<2B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, ImSaveStatus))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class StatusOfImageCaptureAndSaveOperation(_base.Message):
     """Status of Image Capture and Save Operation: telemetry 233, 2 bytes. Table 176.
 
     Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the
-    bootloader.
+    bootloader. A telecommand or request sent to the wrong program is taken for another
+    one.
     """
-
-    __slots__ = (
-        "percentage_complete",
-        "status",
-    )
 
     NODE = "cubeacp"
     NAME = "Status of Image Capture and Save Operation"
@@ -36,49 +24,14 @@ class StatusOfImageCaptureAndSaveOperation(_base.Message):
     IDS = (ID,)
     LENGTH = 2
     TABLE = 176
-    FIELDS = (
-        _base.FieldInfo(
-            "percentage_complete",
-            "Percentage Complete",
-            0,
-            8,
-            "uint",
-            unit="%",
-        ),
-        _base.FieldInfo("status", "Status", 8, 8, "enum", enum=ImSaveStatus),
-    )
 
-    percentage_complete: int
+    percentage_complete: int = _base.field("Percentage Complete", 0, 8, "uint", default=0, unit="%")
     """Percentage Complete: bits 0 to 7, raw 0 to 255, in %."""
-    status: ImSaveStatus
+
+    status: ImSaveStatus = _base.field("Status", 8, 8, "enum", default=ImSaveStatus.NO_ERROR)
     """Status: bits 8 to 15.
 
-    Note ACP-124 (open): Image status: no value for busy or done.
+    Note ACP-124 (open): Image status: no value for busy or done. The status of the
+    operation lists errors only, so No Error stands for not started, running and
+    finished.
     """
-
-    def __init__(
-        self,
-        *,
-        percentage_complete: int = 0,
-        status: ImSaveStatus = ImSaveStatus.NO_ERROR,
-    ) -> None:
-        self.percentage_complete = percentage_complete
-        self.status = status
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> StatusOfImageCaptureAndSaveOperation:
-        """The message in a frame of exactly 2 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.percentage_complete, v1 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.status = _BITS_0[v1]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.percentage_complete, self.status)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,28 +5,15 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
-
-_STRUCT = struct.Struct("<3f")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class TrackingControllerTargetReference(_base.Message):
     """Tracking Controller Target Reference: configuration, set by telecommand 55, got
     by telemetry 200, 12 bytes. Table 187.
 
     Target of the tracking control mode.
     """
-
-    __slots__ = (
-        "geocentric_longitude_of_target",
-        "geocentric_latitude_of_target",
-        "geocentric_altitude_of_target",
-    )
 
     NODE = "cubeacp"
     NAME = "Tracking Controller Target Reference"
@@ -36,96 +23,32 @@ class TrackingControllerTargetReference(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 12
     TABLE = 187
-    FIELDS = (
-        _base.FieldInfo(
-            "geocentric_longitude_of_target",
-            "Geocentric longitude of target",
-            0,
-            32,
-            "float",
-            unit="deg",
-        ),
-        _base.FieldInfo(
-            "geocentric_latitude_of_target",
-            "Geocentric latitude of target",
-            32,
-            32,
-            "float",
-            unit="deg",
-        ),
-        _base.FieldInfo(
-            "geocentric_altitude_of_target",
-            "Geocentric altitude of target",
-            64,
-            32,
-            "float",
-            unit="m",
-        ),
-    )
 
-    geocentric_longitude_of_target: float
+    geocentric_longitude_of_target: float = _base.field(
+        "Geocentric longitude of target", 0, 32, "float", default=0.0, unit="deg"
+    )
     """Geocentric longitude of target: bits 0 to 31, 32-bit float, in deg.
 
-    Note ACP-138 (open): Target is geocentric, position is geodetic.
+    Note ACP-138 (open): Target is geocentric, position is geodetic. The target is given
+    by geocentric latitude and altitude, the satellite by WGS-84 ones; and longitude
+    comes first here, latitude there. What a geocentric altitude is measured from is not
+    said.
     """
-    geocentric_latitude_of_target: float
+
+    geocentric_latitude_of_target: float = _base.field(
+        "Geocentric latitude of target", 32, 32, "float", default=0.0, unit="deg"
+    )
     """Geocentric latitude of target: bits 32 to 63, 32-bit float, in deg.
 
-    Note ACP-138 (open): Target is geocentric, position is geodetic.
+    Note ACP-138 (open): see Geocentric longitude of target.
     """
-    geocentric_altitude_of_target: float
+
+    geocentric_altitude_of_target: float = _base.field(
+        "Geocentric altitude of target", 64, 32, "float", default=0.0, unit="m"
+    )
     """Geocentric altitude of target: bits 64 to 95, 32-bit float, in m.
 
-    Erratum ACP-139 (certain): meter is m.
+    Erratum ACP-139 (certain): meter is m. The unit is spelt out in one field.
 
-    Note ACP-138 (open): Target is geocentric, position is geodetic.
+    Note ACP-138 (open): see Geocentric longitude of target.
     """
-
-    def __init__(
-        self,
-        *,
-        geocentric_longitude_of_target: float = 0.0,
-        geocentric_latitude_of_target: float = 0.0,
-        geocentric_altitude_of_target: float = 0.0,
-    ) -> None:
-        self.geocentric_longitude_of_target = geocentric_longitude_of_target
-        self.geocentric_latitude_of_target = geocentric_latitude_of_target
-        self.geocentric_altitude_of_target = geocentric_altitude_of_target
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> TrackingControllerTargetReference:
-        """The message in a frame of exactly 12 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.geocentric_longitude_of_target,
-                self.geocentric_latitude_of_target,
-                self.geocentric_altitude_of_target,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        total = (
-            self.geocentric_longitude_of_target
-            + self.geocentric_latitude_of_target
-            + self.geocentric_altitude_of_target
-        )
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            frame = _pack(
-                self.geocentric_longitude_of_target,
-                self.geocentric_latitude_of_target,
-                self.geocentric_altitude_of_target,
-            )
-            total = (
-                self.geocentric_longitude_of_target
-                + self.geocentric_latitude_of_target
-                + self.geocentric_altitude_of_target
-            )
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

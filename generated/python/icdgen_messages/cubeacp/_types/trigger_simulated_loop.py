@@ -5,18 +5,10 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .gps_solution_status import GpsSolutionStatus
 
-_STRUCT = struct.Struct("<I10H2h2B2h2B3h3i21hBHIihihih6B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, GpsSolutionStatus))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class TriggerSimulatedLoop(_base.Message):
     """Trigger ADCS Loop with Simulated Sensor Data: telecommand 19, 127 bytes. Table
     84.
@@ -25,72 +17,10 @@ class TriggerSimulatedLoop(_base.Message):
     is Triggered.
 
     Note ACP-032 (open): Simulated data are accepted while triggered, not while
-    simulating.
+    simulating. The telecommand with simulated measurements is valid only in mode
+    Triggered, and there is a mode Simulation that no other text mentions. The sentence
+    was probably taken over from the telecommand before it.
     """
-
-    __slots__ = (
-        "unix_time",
-        "css_raw_1",
-        "css_raw_2",
-        "css_raw_3",
-        "css_raw_4",
-        "css_raw_5",
-        "css_raw_6",
-        "css_raw_7",
-        "css_raw_8",
-        "css_raw_9",
-        "css_raw_10",
-        "cam1_raw_x",
-        "cam1_raw_y",
-        "cam1_busy",
-        "cam1_result",
-        "cam2_raw_x",
-        "cam2_raw_y",
-        "cam2_busy",
-        "cam2_result",
-        "mag_raw_x",
-        "mag_raw_y",
-        "mag_raw_z",
-        "rate_raw_x",
-        "rate_raw_y",
-        "rate_raw_z",
-        "wheel_raw_x",
-        "wheel_raw_y",
-        "wheel_raw_z",
-        "star1_camera_x",
-        "star1_camera_y",
-        "star1_camera_z",
-        "star1_inertial_x",
-        "star1_inertial_y",
-        "star1_inertial_z",
-        "star2_camera_x",
-        "star2_camera_y",
-        "star2_camera_z",
-        "star2_inertial_x",
-        "star2_inertial_y",
-        "star2_inertial_z",
-        "star3_camera_x",
-        "star3_camera_y",
-        "star3_camera_z",
-        "star3_inertial_x",
-        "star3_inertial_y",
-        "star3_inertial_z",
-        "gps_solution_status",
-        "gps_reference_week",
-        "gps_time_milliseconds",
-        "ecef_position_x",
-        "ecef_velocity_x",
-        "ecef_position_y",
-        "ecef_velocity_y",
-        "ecef_position_z",
-        "ecef_velocity_z",
-        "x_pos_standard_deviation",
-        "y_pos_standard_deviation",
-        "z_pos_standard_deviation",
-        "x_vel_standard_deviation",
-        "y_vel_standard_deviation",
-        "z_vel_standard_deviation",
-    )
 
     NODE = "cubeacp"
     NAME = "Trigger ADCS Loop with Simulated Sensor Data"
@@ -99,974 +29,467 @@ class TriggerSimulatedLoop(_base.Message):
     IDS = (ID,)
     LENGTH = 127
     TABLE = 84
-    FIELDS = (
-        _base.FieldInfo("unix_time", "Unix Time", 0, 32, "uint", unit="s"),
-        _base.FieldInfo("css_raw_1", "Css Raw 1", 32, 16, "uint"),
-        _base.FieldInfo("css_raw_2", "Css Raw 2", 48, 16, "uint"),
-        _base.FieldInfo("css_raw_3", "Css Raw 3", 64, 16, "uint"),
-        _base.FieldInfo("css_raw_4", "Css Raw 4", 80, 16, "uint"),
-        _base.FieldInfo("css_raw_5", "Css Raw 5", 96, 16, "uint"),
-        _base.FieldInfo("css_raw_6", "Css Raw 6", 112, 16, "uint"),
-        _base.FieldInfo("css_raw_7", "Css Raw 7", 128, 16, "uint"),
-        _base.FieldInfo("css_raw_8", "Css Raw 8", 144, 16, "uint"),
-        _base.FieldInfo("css_raw_9", "Css Raw 9", 160, 16, "uint"),
-        _base.FieldInfo("css_raw_10", "Css Raw 10", 176, 16, "uint"),
-        _base.FieldInfo("cam1_raw_x", "Cam1 Raw X", 192, 16, "int"),
-        _base.FieldInfo("cam1_raw_y", "Cam1 Raw Y", 208, 16, "int"),
-        _base.FieldInfo("cam1_busy", "Cam1 Busy", 224, 8, "uint"),
-        _base.FieldInfo("cam1_result", "Cam1 Result", 232, 8, "uint"),
-        _base.FieldInfo("cam2_raw_x", "Cam2 Raw X", 240, 16, "int"),
-        _base.FieldInfo("cam2_raw_y", "Cam2 Raw Y", 256, 16, "int"),
-        _base.FieldInfo("cam2_busy", "Cam2 Busy", 272, 8, "uint"),
-        _base.FieldInfo("cam2_result", "Cam2 Result", 280, 8, "uint"),
-        _base.FieldInfo("mag_raw_x", "Mag Raw X", 288, 16, "int"),
-        _base.FieldInfo("mag_raw_y", "Mag Raw Y", 304, 16, "int"),
-        _base.FieldInfo("mag_raw_z", "Mag Raw Z", 320, 16, "int"),
-        _base.FieldInfo("rate_raw_x", "Rate Raw X", 336, 32, "int"),
-        _base.FieldInfo("rate_raw_y", "Rate Raw Y", 368, 32, "int"),
-        _base.FieldInfo("rate_raw_z", "Rate Raw Z", 400, 32, "int"),
-        _base.FieldInfo("wheel_raw_x", "Wheel Raw X", 432, 16, "int", unit="rpm"),
-        _base.FieldInfo("wheel_raw_y", "Wheel Raw Y", 448, 16, "int", unit="rpm"),
-        _base.FieldInfo("wheel_raw_z", "Wheel Raw Z", 464, 16, "int", unit="rpm"),
-        _base.FieldInfo("star1_camera_x", "Star1CameraX", 480, 16, "int"),
-        _base.FieldInfo("star1_camera_y", "Star1CameraY", 496, 16, "int"),
-        _base.FieldInfo("star1_camera_z", "Star1CameraZ", 512, 16, "int"),
-        _base.FieldInfo("star1_inertial_x", "Star1InertialX", 528, 16, "int"),
-        _base.FieldInfo("star1_inertial_y", "Star1InertialY", 544, 16, "int"),
-        _base.FieldInfo("star1_inertial_z", "Star1InertialZ", 560, 16, "int"),
-        _base.FieldInfo("star2_camera_x", "Star2CameraX", 576, 16, "int"),
-        _base.FieldInfo("star2_camera_y", "Star2CameraY", 592, 16, "int"),
-        _base.FieldInfo("star2_camera_z", "Star2CameraZ", 608, 16, "int"),
-        _base.FieldInfo("star2_inertial_x", "Star2InertialX", 624, 16, "int"),
-        _base.FieldInfo("star2_inertial_y", "Star2InertialY", 640, 16, "int"),
-        _base.FieldInfo("star2_inertial_z", "Star2InertialZ", 656, 16, "int"),
-        _base.FieldInfo("star3_camera_x", "Star3CameraX", 672, 16, "int"),
-        _base.FieldInfo("star3_camera_y", "Star3CameraY", 688, 16, "int"),
-        _base.FieldInfo("star3_camera_z", "Star3CameraZ", 704, 16, "int"),
-        _base.FieldInfo("star3_inertial_x", "Star3InertialX", 720, 16, "int"),
-        _base.FieldInfo("star3_inertial_y", "Star3InertialY", 736, 16, "int"),
-        _base.FieldInfo("star3_inertial_z", "Star3InertialZ", 752, 16, "int"),
-        _base.FieldInfo(
-            "gps_solution_status",
-            "Gps Solution Status",
-            768,
-            8,
-            "enum",
-            enum=GpsSolutionStatus,
-        ),
-        _base.FieldInfo("gps_reference_week", "GPS Reference Week", 776, 16, "uint"),
-        _base.FieldInfo(
-            "gps_time_milliseconds",
-            "GPS Time Milliseconds",
-            792,
-            32,
-            "uint",
-            unit="ms",
-        ),
-        _base.FieldInfo("ecef_position_x", "ECEF Position X", 824, 32, "int", unit="m"),
-        _base.FieldInfo(
-            "ecef_velocity_x",
-            "ECEF Velocity X",
-            856,
-            16,
-            "int",
-            unit="m/s",
-        ),
-        _base.FieldInfo("ecef_position_y", "ECEF Position Y", 872, 32, "int", unit="m"),
-        _base.FieldInfo(
-            "ecef_velocity_y",
-            "ECEF Velocity Y",
-            904,
-            16,
-            "int",
-            unit="m/s",
-        ),
-        _base.FieldInfo("ecef_position_z", "ECEF Position Z", 920, 32, "int", unit="m"),
-        _base.FieldInfo(
-            "ecef_velocity_z",
-            "ECEF Velocity Z",
-            952,
-            16,
-            "int",
-            unit="m/s",
-        ),
-        _base.FieldInfo(
-            "x_pos_standard_deviation",
-            "X-pos Standard Deviation",
-            968,
-            8,
-            "uint",
-            unit="m",
-            physical="x_pos_standard_deviation_m",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "y_pos_standard_deviation",
-            "Y-pos Standard Deviation",
-            976,
-            8,
-            "uint",
-            unit="m",
-            physical="y_pos_standard_deviation_m",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "z_pos_standard_deviation",
-            "Z-pos Standard Deviation",
-            984,
-            8,
-            "uint",
-            unit="m",
-            physical="z_pos_standard_deviation_m",
-            scale=(1, 0, 10),
-        ),
-        _base.FieldInfo(
-            "x_vel_standard_deviation",
-            "X-vel Standard Deviation",
-            992,
-            8,
-            "uint",
-            unit="m/s",
-        ),
-        _base.FieldInfo(
-            "y_vel_standard_deviation",
-            "Y-vel Standard Deviation",
-            1000,
-            8,
-            "uint",
-            unit="m/s",
-        ),
-        _base.FieldInfo(
-            "z_vel_standard_deviation",
-            "Z-vel Standard Deviation",
-            1008,
-            8,
-            "uint",
-            unit="m/s",
-        ),
-    )
 
-    unix_time: int
+    unix_time: int = _base.field("Unix Time", 0, 32, "uint", default=0, unit="s")
     """Unix Time: bits 0 to 31, raw 0 to 4294967295, in s.
 
     For this iteration.
     """
-    css_raw_1: int
+
+    css_raw_1: int = _base.field("Css Raw 1", 32, 16, "uint", default=0)
     """Css Raw 1: bits 32 to 47, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8. The
+    raw values of the coarse sun sensors are twice as wide as in the frames that report
+    them. Whether more than 255 may be sent is not said.
     """
-    css_raw_2: int
+
+    css_raw_2: int = _base.field("Css Raw 2", 48, 16, "uint", default=0)
     """Css Raw 2: bits 48 to 63, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
-    css_raw_3: int
+
+    css_raw_3: int = _base.field("Css Raw 3", 64, 16, "uint", default=0)
     """Css Raw 3: bits 64 to 79, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
-    css_raw_4: int
+
+    css_raw_4: int = _base.field("Css Raw 4", 80, 16, "uint", default=0)
     """Css Raw 4: bits 80 to 95, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
-    css_raw_5: int
+
+    css_raw_5: int = _base.field("Css Raw 5", 96, 16, "uint", default=0)
     """Css Raw 5: bits 96 to 111, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
-    css_raw_6: int
+
+    css_raw_6: int = _base.field("Css Raw 6", 112, 16, "uint", default=0)
     """Css Raw 6: bits 112 to 127, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
-    css_raw_7: int
+
+    css_raw_7: int = _base.field("Css Raw 7", 128, 16, "uint", default=0)
     """Css Raw 7: bits 128 to 143, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
-    css_raw_8: int
+
+    css_raw_8: int = _base.field("Css Raw 8", 144, 16, "uint", default=0)
     """Css Raw 8: bits 144 to 159, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
-    css_raw_9: int
+
+    css_raw_9: int = _base.field("Css Raw 9", 160, 16, "uint", default=0)
     """Css Raw 9: bits 160 to 175, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
-    css_raw_10: int
+
+    css_raw_10: int = _base.field("Css Raw 10", 176, 16, "uint", default=0)
     """Css Raw 10: bits 176 to 191, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
-    cam1_raw_x: int
+
+    cam1_raw_x: int = _base.field("Cam1 Raw X", 192, 16, "int", default=0)
     """Cam1 Raw X: bits 192 to 207, raw -32768 to 32767.
 
     Raw angle.
 
-    Note ACP-036 (open): Simulated data: raw camera angles.
+    Note ACP-036 (open): Simulated data: raw camera angles. They are called raw angles
+    here, centroids by name and azimuth and elevation by description in the frames. No
+    scale is given in any.
 
-    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The
+    telecommand begins with Cam1. Frame 194 and the ids 166 and 167 have Cam2 before
+    Cam1.
     """
-    cam1_raw_y: int
+
+    cam1_raw_y: int = _base.field("Cam1 Raw Y", 208, 16, "int", default=0)
     """Cam1 Raw Y: bits 208 to 223, raw -32768 to 32767.
 
     Raw angle.
 
-    Note ACP-036 (open): Simulated data: raw camera angles.
+    Note ACP-036 (open): see Cam1 Raw X.
     """
-    cam1_busy: int
+
+    cam1_busy: int = _base.field("Cam1 Busy", 224, 8, "uint", default=0)
     """Cam1 Busy: bits 224 to 231, raw 0 to 255.
 
     Capture status.
 
-    Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    Note ACP-035 (likely): Simulated data: camera results are plain numbers. Capture
+    status and detection result are unsigned integers here and enumerations in the
+    frames. The first is called Busy although it is a status of six values.
     """
-    cam1_result: int
+
+    cam1_result: int = _base.field("Cam1 Result", 232, 8, "uint", default=0)
     """Cam1 Result: bits 232 to 239, raw 0 to 255.
 
     Detection result.
 
-    Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    Note ACP-035 (likely): see Cam1 Busy.
     """
-    cam2_raw_x: int
+
+    cam2_raw_x: int = _base.field("Cam2 Raw X", 240, 16, "int", default=0)
     """Cam2 Raw X: bits 240 to 255, raw -32768 to 32767.
 
     Raw angle.
 
-    Note ACP-036 (open): Simulated data: raw camera angles.
+    Note ACP-036 (open): see Cam1 Raw X.
 
-    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+    Note ACP-038 (certain): see Cam1 Raw X.
     """
-    cam2_raw_y: int
+
+    cam2_raw_y: int = _base.field("Cam2 Raw Y", 256, 16, "int", default=0)
     """Cam2 Raw Y: bits 256 to 271, raw -32768 to 32767.
 
     Raw angle.
 
-    Note ACP-036 (open): Simulated data: raw camera angles.
+    Note ACP-036 (open): see Cam1 Raw X.
     """
-    cam2_busy: int
+
+    cam2_busy: int = _base.field("Cam2 Busy", 272, 8, "uint", default=0)
     """Cam2 Busy: bits 272 to 279, raw 0 to 255.
 
     Capture status.
 
-    Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    Note ACP-035 (likely): see Cam1 Busy.
     """
-    cam2_result: int
+
+    cam2_result: int = _base.field("Cam2 Result", 280, 8, "uint", default=0)
     """Cam2 Result: bits 280 to 287, raw 0 to 255.
 
     Detection result.
 
-    Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    Note ACP-035 (likely): see Cam1 Busy.
     """
-    mag_raw_x: int
+
+    mag_raw_x: int = _base.field("Mag Raw X", 288, 16, "int", default=0)
     """Mag Raw X: bits 288 to 303, raw -32768 to 32767.
 
-    Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+    Note ACP-041 (open): Simulated data: the second magnetometer is missing. One
+    magnetometer can be simulated, and nothing says which one it stands for when the
+    modes select another.
     """
-    mag_raw_y: int
+
+    mag_raw_y: int = _base.field("Mag Raw Y", 304, 16, "int", default=0)
     """Mag Raw Y: bits 304 to 319, raw -32768 to 32767.
 
-    Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+    Note ACP-041 (open): see Mag Raw X.
     """
-    mag_raw_z: int
+
+    mag_raw_z: int = _base.field("Mag Raw Z", 320, 16, "int", default=0)
     """Mag Raw Z: bits 320 to 335, raw -32768 to 32767.
 
-    Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+    Note ACP-041 (open): see Mag Raw X.
     """
-    rate_raw_x: int
+
+    rate_raw_x: int = _base.field("Rate Raw X", 336, 32, "int", default=0)
     """Rate Raw X: bits 336 to 367, raw -2147483648 to 2147483647.
 
-    Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+    Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16. The raw
+    rates are twice as wide as in the frames that report them, without a scale in
+    either.
     """
-    rate_raw_y: int
+
+    rate_raw_y: int = _base.field("Rate Raw Y", 368, 32, "int", default=0)
     """Rate Raw Y: bits 368 to 399, raw -2147483648 to 2147483647.
 
-    Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+    Note ACP-034 (open): see Rate Raw X.
     """
-    rate_raw_z: int
+
+    rate_raw_z: int = _base.field("Rate Raw Z", 400, 32, "int", default=0)
     """Rate Raw Z: bits 400 to 431, raw -2147483648 to 2147483647.
 
-    Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+    Note ACP-034 (open): see Rate Raw X.
     """
-    wheel_raw_x: int
+
+    wheel_raw_x: int = _base.field("Wheel Raw X", 432, 16, "int", default=0, unit="rpm")
     """Wheel Raw X: bits 432 to 447, raw -32768 to 32767, in rpm.
 
-    Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+    Note ACP-040 (open): Simulated data: raw wheel speeds in rpm. The wheel speed is
+    called raw and has a unit; the frame with the same unit is among the calibrated
+    measurements.
     """
-    wheel_raw_y: int
+
+    wheel_raw_y: int = _base.field("Wheel Raw Y", 448, 16, "int", default=0, unit="rpm")
     """Wheel Raw Y: bits 448 to 463, raw -32768 to 32767, in rpm.
 
-    Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+    Note ACP-040 (open): see Wheel Raw X.
     """
-    wheel_raw_z: int
+
+    wheel_raw_z: int = _base.field("Wheel Raw Z", 464, 16, "int", default=0, unit="rpm")
     """Wheel Raw Z: bits 464 to 479, raw -32768 to 32767, in rpm.
 
-    Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+    Note ACP-040 (open): see Wheel Raw X.
     """
-    star1_camera_x: int
+
+    star1_camera_x: int = _base.field("Star1CameraX", 480, 16, "int", default=0)
     """Star1CameraX: bits 480 to 495, raw -32768 to 32767.
 
     Vector in the camera frame.
 
     Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    frames. Star vectors have a factor in telemetry and none here, and are in camera and
+    inertial instead of body and orbit axes.
     """
-    star1_camera_y: int
+
+    star1_camera_y: int = _base.field("Star1CameraY", 496, 16, "int", default=0)
     """Star1CameraY: bits 496 to 511, raw -32768 to 32767.
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star1_camera_z: int
+
+    star1_camera_z: int = _base.field("Star1CameraZ", 512, 16, "int", default=0)
     """Star1CameraZ: bits 512 to 527, raw -32768 to 32767.
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star1_inertial_x: int
+
+    star1_inertial_x: int = _base.field("Star1InertialX", 528, 16, "int", default=0)
     """Star1InertialX: bits 528 to 543, raw -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star1_inertial_y: int
+
+    star1_inertial_y: int = _base.field("Star1InertialY", 544, 16, "int", default=0)
     """Star1InertialY: bits 544 to 559, raw -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star1_inertial_z: int
+
+    star1_inertial_z: int = _base.field("Star1InertialZ", 560, 16, "int", default=0)
     """Star1InertialZ: bits 560 to 575, raw -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star2_camera_x: int
+
+    star2_camera_x: int = _base.field("Star2CameraX", 576, 16, "int", default=0)
     """Star2CameraX: bits 576 to 591, raw -32768 to 32767.
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star2_camera_y: int
+
+    star2_camera_y: int = _base.field("Star2CameraY", 592, 16, "int", default=0)
     """Star2CameraY: bits 592 to 607, raw -32768 to 32767.
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star2_camera_z: int
+
+    star2_camera_z: int = _base.field("Star2CameraZ", 608, 16, "int", default=0)
     """Star2CameraZ: bits 608 to 623, raw -32768 to 32767.
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star2_inertial_x: int
+
+    star2_inertial_x: int = _base.field("Star2InertialX", 624, 16, "int", default=0)
     """Star2InertialX: bits 624 to 639, raw -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star2_inertial_y: int
+
+    star2_inertial_y: int = _base.field("Star2InertialY", 640, 16, "int", default=0)
     """Star2InertialY: bits 640 to 655, raw -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star2_inertial_z: int
+
+    star2_inertial_z: int = _base.field("Star2InertialZ", 656, 16, "int", default=0)
     """Star2InertialZ: bits 656 to 671, raw -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star3_camera_x: int
+
+    star3_camera_x: int = _base.field("Star3CameraX", 672, 16, "int", default=0)
     """Star3CameraX: bits 672 to 687, raw -32768 to 32767.
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star3_camera_y: int
+
+    star3_camera_y: int = _base.field("Star3CameraY", 688, 16, "int", default=0)
     """Star3CameraY: bits 688 to 703, raw -32768 to 32767.
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star3_camera_z: int
+
+    star3_camera_z: int = _base.field("Star3CameraZ", 704, 16, "int", default=0)
     """Star3CameraZ: bits 704 to 719, raw -32768 to 32767.
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star3_inertial_x: int
+
+    star3_inertial_x: int = _base.field("Star3InertialX", 720, 16, "int", default=0)
     """Star3InertialX: bits 720 to 735, raw -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star3_inertial_y: int
+
+    star3_inertial_y: int = _base.field("Star3InertialY", 736, 16, "int", default=0)
     """Star3InertialY: bits 736 to 751, raw -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    star3_inertial_z: int
+
+    star3_inertial_z: int = _base.field("Star3InertialZ", 752, 16, "int", default=0)
     """Star3InertialZ: bits 752 to 767, raw -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
-    gps_solution_status: GpsSolutionStatus
+
+    gps_solution_status: GpsSolutionStatus = _base.field(
+        "Gps Solution Status", 768, 8, "enum", default=GpsSolutionStatus.SOLUTION_COMPUTED
+    )
     """Gps Solution Status: bits 768 to 775.
 
-    Note ACP-042 (certain): GPS is spelt Gps in one field.
+    Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands
+    among fields with GPS, and the sun sensors are Css in the same telecommand.
     """
-    gps_reference_week: int
+
+    gps_reference_week: int = _base.field("GPS Reference Week", 776, 16, "uint", default=0)
     """GPS Reference Week: bits 776 to 791, raw 0 to 65535.
 
-    Note ACP-089 (open): GPS week: with or without roll-overs.
+    Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the
+    full week, ten of which a receiver sends. A number of roll-overs is a setting, so it
+    is open which of the two this is.
     """
-    gps_time_milliseconds: int
+
+    gps_time_milliseconds: int = _base.field("GPS Time Milliseconds", 792, 32, "uint", default=0, unit="ms")
     """GPS Time Milliseconds: bits 792 to 823, raw 0 to 4294967295, in ms."""
-    ecef_position_x: int
+
+    ecef_position_x: int = _base.field("ECEF Position X", 824, 32, "int", default=0, unit="m")
     """ECEF Position X: bits 824 to 855, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z
+    have 16 bits in the state frames and 32 bits in the GPS frames and the simulated
+    data, with the same name, description and unit.
     """
-    ecef_velocity_x: int
+
+    ecef_velocity_x: int = _base.field("ECEF Velocity X", 856, 16, "int", default=0, unit="m/s")
     """ECEF Velocity X: bits 856 to 871, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity
+    from the receiver has a step of 1 m/s, that of the propagator 0.25 m/s. A factor may
+    have been lost; none is made up.
     """
-    ecef_position_y: int
+
+    ecef_position_y: int = _base.field("ECEF Position Y", 872, 32, "int", default=0, unit="m")
     """ECEF Position Y: bits 872 to 903, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
-    ecef_velocity_y: int
+
+    ecef_velocity_y: int = _base.field("ECEF Velocity Y", 904, 16, "int", default=0, unit="m/s")
     """ECEF Velocity Y: bits 904 to 919, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): see ECEF Velocity X.
     """
-    ecef_position_z: int
+
+    ecef_position_z: int = _base.field("ECEF Position Z", 920, 32, "int", default=0, unit="m")
     """ECEF Position Z: bits 920 to 951, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
-    ecef_velocity_z: int
+
+    ecef_velocity_z: int = _base.field("ECEF Velocity Z", 952, 16, "int", default=0, unit="m/s")
     """ECEF Velocity Z: bits 952 to 967, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): see ECEF Velocity X.
     """
-    x_pos_standard_deviation: int
+
+    x_pos_standard_deviation: int = _base.field("X-pos Standard Deviation", 968, 8, "uint", default=0, unit="m")
     """X-pos Standard Deviation: bits 968 to 975, raw 0 to 255; physical `raw =
     value*10.0`, 0 to 25.5 m.
 
-    Note ACP-030 (certain): Formulas are written in two directions.
+    Note ACP-030 (certain): Formulas are written in two directions. Two telecommands
+    give the raw value as a multiple of the physical one, everything else the physical
+    value from the raw one. Both are held as printed.
     """
-    y_pos_standard_deviation: int
+    x_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
+    """X-pos Standard Deviation in m: 0 to 25.5."""
+    x_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """X-pos Standard Deviation in mm, exact: 0 to 25500."""
+
+    y_pos_standard_deviation: int = _base.field("Y-pos Standard Deviation", 976, 8, "uint", default=0, unit="m")
     """Y-pos Standard Deviation: bits 976 to 983, raw 0 to 255; physical `raw =
     value*10.0`, 0 to 25.5 m.
 
-    Note ACP-030 (certain): Formulas are written in two directions.
+    Note ACP-030 (certain): see X-pos Standard Deviation.
     """
-    z_pos_standard_deviation: int
+    y_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
+    """Y-pos Standard Deviation in m: 0 to 25.5."""
+    y_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """Y-pos Standard Deviation in mm, exact: 0 to 25500."""
+
+    z_pos_standard_deviation: int = _base.field("Z-pos Standard Deviation", 984, 8, "uint", default=0, unit="m")
     """Z-pos Standard Deviation: bits 984 to 991, raw 0 to 255; physical `raw =
     value*10.0`, 0 to 25.5 m.
 
-    Note ACP-030 (certain): Formulas are written in two directions.
+    Note ACP-030 (certain): see X-pos Standard Deviation.
     """
-    x_vel_standard_deviation: int
+    z_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
+    """Z-pos Standard Deviation in m: 0 to 25.5."""
+    z_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """Z-pos Standard Deviation in mm, exact: 0 to 25500."""
+
+    x_vel_standard_deviation: int = _base.field("X-vel Standard Deviation", 992, 8, "uint", default=0, unit="m/s")
     """X-vel Standard Deviation: bits 992 to 999, raw 0 to 255, in m/s.
 
     Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    Deviations of the position have a factor of 0.1, those of the velocity none. A whole
+    1 m/s is coarse for a GPS velocity, and the limit that is compared with it is set in
+    hundredths.
     """
-    y_vel_standard_deviation: int
+
+    y_vel_standard_deviation: int = _base.field("Y-vel Standard Deviation", 1000, 8, "uint", default=0, unit="m/s")
     """Y-vel Standard Deviation: bits 1000 to 1007, raw 0 to 255, in m/s.
 
-    Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043 (open): see X-vel Standard Deviation.
     """
-    z_vel_standard_deviation: int
+
+    z_vel_standard_deviation: int = _base.field("Z-vel Standard Deviation", 1008, 8, "uint", default=0, unit="m/s")
     """Z-vel Standard Deviation: bits 1008 to 1015, raw 0 to 255, in m/s.
 
-    Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043 (open): see X-vel Standard Deviation.
     """
-
-    def __init__(
-        self,
-        *,
-        unix_time: int = 0,
-        css_raw_1: int = 0,
-        css_raw_2: int = 0,
-        css_raw_3: int = 0,
-        css_raw_4: int = 0,
-        css_raw_5: int = 0,
-        css_raw_6: int = 0,
-        css_raw_7: int = 0,
-        css_raw_8: int = 0,
-        css_raw_9: int = 0,
-        css_raw_10: int = 0,
-        cam1_raw_x: int = 0,
-        cam1_raw_y: int = 0,
-        cam1_busy: int = 0,
-        cam1_result: int = 0,
-        cam2_raw_x: int = 0,
-        cam2_raw_y: int = 0,
-        cam2_busy: int = 0,
-        cam2_result: int = 0,
-        mag_raw_x: int = 0,
-        mag_raw_y: int = 0,
-        mag_raw_z: int = 0,
-        rate_raw_x: int = 0,
-        rate_raw_y: int = 0,
-        rate_raw_z: int = 0,
-        wheel_raw_x: int = 0,
-        wheel_raw_y: int = 0,
-        wheel_raw_z: int = 0,
-        star1_camera_x: int = 0,
-        star1_camera_y: int = 0,
-        star1_camera_z: int = 0,
-        star1_inertial_x: int = 0,
-        star1_inertial_y: int = 0,
-        star1_inertial_z: int = 0,
-        star2_camera_x: int = 0,
-        star2_camera_y: int = 0,
-        star2_camera_z: int = 0,
-        star2_inertial_x: int = 0,
-        star2_inertial_y: int = 0,
-        star2_inertial_z: int = 0,
-        star3_camera_x: int = 0,
-        star3_camera_y: int = 0,
-        star3_camera_z: int = 0,
-        star3_inertial_x: int = 0,
-        star3_inertial_y: int = 0,
-        star3_inertial_z: int = 0,
-        gps_solution_status: GpsSolutionStatus = GpsSolutionStatus.SOLUTION_COMPUTED,
-        gps_reference_week: int = 0,
-        gps_time_milliseconds: int = 0,
-        ecef_position_x: int = 0,
-        ecef_velocity_x: int = 0,
-        ecef_position_y: int = 0,
-        ecef_velocity_y: int = 0,
-        ecef_position_z: int = 0,
-        ecef_velocity_z: int = 0,
-        x_pos_standard_deviation: int = 0,
-        y_pos_standard_deviation: int = 0,
-        z_pos_standard_deviation: int = 0,
-        x_vel_standard_deviation: int = 0,
-        y_vel_standard_deviation: int = 0,
-        z_vel_standard_deviation: int = 0,
-    ) -> None:
-        self.unix_time = unix_time
-        self.css_raw_1 = css_raw_1
-        self.css_raw_2 = css_raw_2
-        self.css_raw_3 = css_raw_3
-        self.css_raw_4 = css_raw_4
-        self.css_raw_5 = css_raw_5
-        self.css_raw_6 = css_raw_6
-        self.css_raw_7 = css_raw_7
-        self.css_raw_8 = css_raw_8
-        self.css_raw_9 = css_raw_9
-        self.css_raw_10 = css_raw_10
-        self.cam1_raw_x = cam1_raw_x
-        self.cam1_raw_y = cam1_raw_y
-        self.cam1_busy = cam1_busy
-        self.cam1_result = cam1_result
-        self.cam2_raw_x = cam2_raw_x
-        self.cam2_raw_y = cam2_raw_y
-        self.cam2_busy = cam2_busy
-        self.cam2_result = cam2_result
-        self.mag_raw_x = mag_raw_x
-        self.mag_raw_y = mag_raw_y
-        self.mag_raw_z = mag_raw_z
-        self.rate_raw_x = rate_raw_x
-        self.rate_raw_y = rate_raw_y
-        self.rate_raw_z = rate_raw_z
-        self.wheel_raw_x = wheel_raw_x
-        self.wheel_raw_y = wheel_raw_y
-        self.wheel_raw_z = wheel_raw_z
-        self.star1_camera_x = star1_camera_x
-        self.star1_camera_y = star1_camera_y
-        self.star1_camera_z = star1_camera_z
-        self.star1_inertial_x = star1_inertial_x
-        self.star1_inertial_y = star1_inertial_y
-        self.star1_inertial_z = star1_inertial_z
-        self.star2_camera_x = star2_camera_x
-        self.star2_camera_y = star2_camera_y
-        self.star2_camera_z = star2_camera_z
-        self.star2_inertial_x = star2_inertial_x
-        self.star2_inertial_y = star2_inertial_y
-        self.star2_inertial_z = star2_inertial_z
-        self.star3_camera_x = star3_camera_x
-        self.star3_camera_y = star3_camera_y
-        self.star3_camera_z = star3_camera_z
-        self.star3_inertial_x = star3_inertial_x
-        self.star3_inertial_y = star3_inertial_y
-        self.star3_inertial_z = star3_inertial_z
-        self.gps_solution_status = gps_solution_status
-        self.gps_reference_week = gps_reference_week
-        self.gps_time_milliseconds = gps_time_milliseconds
-        self.ecef_position_x = ecef_position_x
-        self.ecef_velocity_x = ecef_velocity_x
-        self.ecef_position_y = ecef_position_y
-        self.ecef_velocity_y = ecef_velocity_y
-        self.ecef_position_z = ecef_position_z
-        self.ecef_velocity_z = ecef_velocity_z
-        self.x_pos_standard_deviation = x_pos_standard_deviation
-        self.y_pos_standard_deviation = y_pos_standard_deviation
-        self.z_pos_standard_deviation = z_pos_standard_deviation
-        self.x_vel_standard_deviation = x_vel_standard_deviation
-        self.y_vel_standard_deviation = y_vel_standard_deviation
-        self.z_vel_standard_deviation = z_vel_standard_deviation
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        unix_time: int = 0,
-        css_raw_1: int = 0,
-        css_raw_2: int = 0,
-        css_raw_3: int = 0,
-        css_raw_4: int = 0,
-        css_raw_5: int = 0,
-        css_raw_6: int = 0,
-        css_raw_7: int = 0,
-        css_raw_8: int = 0,
-        css_raw_9: int = 0,
-        css_raw_10: int = 0,
-        cam1_raw_x: int = 0,
-        cam1_raw_y: int = 0,
-        cam1_busy: int = 0,
-        cam1_result: int = 0,
-        cam2_raw_x: int = 0,
-        cam2_raw_y: int = 0,
-        cam2_busy: int = 0,
-        cam2_result: int = 0,
-        mag_raw_x: int = 0,
-        mag_raw_y: int = 0,
-        mag_raw_z: int = 0,
-        rate_raw_x: int = 0,
-        rate_raw_y: int = 0,
-        rate_raw_z: int = 0,
-        wheel_raw_x: int = 0,
-        wheel_raw_y: int = 0,
-        wheel_raw_z: int = 0,
-        star1_camera_x: int = 0,
-        star1_camera_y: int = 0,
-        star1_camera_z: int = 0,
-        star1_inertial_x: int = 0,
-        star1_inertial_y: int = 0,
-        star1_inertial_z: int = 0,
-        star2_camera_x: int = 0,
-        star2_camera_y: int = 0,
-        star2_camera_z: int = 0,
-        star2_inertial_x: int = 0,
-        star2_inertial_y: int = 0,
-        star2_inertial_z: int = 0,
-        star3_camera_x: int = 0,
-        star3_camera_y: int = 0,
-        star3_camera_z: int = 0,
-        star3_inertial_x: int = 0,
-        star3_inertial_y: int = 0,
-        star3_inertial_z: int = 0,
-        gps_solution_status: GpsSolutionStatus = GpsSolutionStatus.SOLUTION_COMPUTED,
-        gps_reference_week: int = 0,
-        gps_time_milliseconds: int = 0,
-        ecef_position_x: int = 0,
-        ecef_velocity_x: int = 0,
-        ecef_position_y: int = 0,
-        ecef_velocity_y: int = 0,
-        ecef_position_z: int = 0,
-        ecef_velocity_z: int = 0,
-        x_pos_standard_deviation_m: float = 0.0,
-        y_pos_standard_deviation_m: float = 0.0,
-        z_pos_standard_deviation_m: float = 0.0,
-        x_vel_standard_deviation: int = 0,
-        y_vel_standard_deviation: int = 0,
-        z_vel_standard_deviation: int = 0,
-    ) -> TriggerSimulatedLoop:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.unix_time = unix_time
-        self.css_raw_1 = css_raw_1
-        self.css_raw_2 = css_raw_2
-        self.css_raw_3 = css_raw_3
-        self.css_raw_4 = css_raw_4
-        self.css_raw_5 = css_raw_5
-        self.css_raw_6 = css_raw_6
-        self.css_raw_7 = css_raw_7
-        self.css_raw_8 = css_raw_8
-        self.css_raw_9 = css_raw_9
-        self.css_raw_10 = css_raw_10
-        self.cam1_raw_x = cam1_raw_x
-        self.cam1_raw_y = cam1_raw_y
-        self.cam1_busy = cam1_busy
-        self.cam1_result = cam1_result
-        self.cam2_raw_x = cam2_raw_x
-        self.cam2_raw_y = cam2_raw_y
-        self.cam2_busy = cam2_busy
-        self.cam2_result = cam2_result
-        self.mag_raw_x = mag_raw_x
-        self.mag_raw_y = mag_raw_y
-        self.mag_raw_z = mag_raw_z
-        self.rate_raw_x = rate_raw_x
-        self.rate_raw_y = rate_raw_y
-        self.rate_raw_z = rate_raw_z
-        self.wheel_raw_x = wheel_raw_x
-        self.wheel_raw_y = wheel_raw_y
-        self.wheel_raw_z = wheel_raw_z
-        self.star1_camera_x = star1_camera_x
-        self.star1_camera_y = star1_camera_y
-        self.star1_camera_z = star1_camera_z
-        self.star1_inertial_x = star1_inertial_x
-        self.star1_inertial_y = star1_inertial_y
-        self.star1_inertial_z = star1_inertial_z
-        self.star2_camera_x = star2_camera_x
-        self.star2_camera_y = star2_camera_y
-        self.star2_camera_z = star2_camera_z
-        self.star2_inertial_x = star2_inertial_x
-        self.star2_inertial_y = star2_inertial_y
-        self.star2_inertial_z = star2_inertial_z
-        self.star3_camera_x = star3_camera_x
-        self.star3_camera_y = star3_camera_y
-        self.star3_camera_z = star3_camera_z
-        self.star3_inertial_x = star3_inertial_x
-        self.star3_inertial_y = star3_inertial_y
-        self.star3_inertial_z = star3_inertial_z
-        self.gps_solution_status = gps_solution_status
-        self.gps_reference_week = gps_reference_week
-        self.gps_time_milliseconds = gps_time_milliseconds
-        self.ecef_position_x = ecef_position_x
-        self.ecef_velocity_x = ecef_velocity_x
-        self.ecef_position_y = ecef_position_y
-        self.ecef_velocity_y = ecef_velocity_y
-        self.ecef_position_z = ecef_position_z
-        self.ecef_velocity_z = ecef_velocity_z
-        self.x_pos_standard_deviation_m = x_pos_standard_deviation_m
-        self.y_pos_standard_deviation_m = y_pos_standard_deviation_m
-        self.z_pos_standard_deviation_m = z_pos_standard_deviation_m
-        self.x_vel_standard_deviation = x_vel_standard_deviation
-        self.y_vel_standard_deviation = y_vel_standard_deviation
-        self.z_vel_standard_deviation = z_vel_standard_deviation
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> TriggerSimulatedLoop:
-        """The message in a frame of exactly 127 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.unix_time,
-                self.css_raw_1,
-                self.css_raw_2,
-                self.css_raw_3,
-                self.css_raw_4,
-                self.css_raw_5,
-                self.css_raw_6,
-                self.css_raw_7,
-                self.css_raw_8,
-                self.css_raw_9,
-                self.css_raw_10,
-                self.cam1_raw_x,
-                self.cam1_raw_y,
-                self.cam1_busy,
-                self.cam1_result,
-                self.cam2_raw_x,
-                self.cam2_raw_y,
-                self.cam2_busy,
-                self.cam2_result,
-                self.mag_raw_x,
-                self.mag_raw_y,
-                self.mag_raw_z,
-                self.rate_raw_x,
-                self.rate_raw_y,
-                self.rate_raw_z,
-                self.wheel_raw_x,
-                self.wheel_raw_y,
-                self.wheel_raw_z,
-                self.star1_camera_x,
-                self.star1_camera_y,
-                self.star1_camera_z,
-                self.star1_inertial_x,
-                self.star1_inertial_y,
-                self.star1_inertial_z,
-                self.star2_camera_x,
-                self.star2_camera_y,
-                self.star2_camera_z,
-                self.star2_inertial_x,
-                self.star2_inertial_y,
-                self.star2_inertial_z,
-                self.star3_camera_x,
-                self.star3_camera_y,
-                self.star3_camera_z,
-                self.star3_inertial_x,
-                self.star3_inertial_y,
-                self.star3_inertial_z,
-                v96,
-                self.gps_reference_week,
-                self.gps_time_milliseconds,
-                self.ecef_position_x,
-                self.ecef_velocity_x,
-                self.ecef_position_y,
-                self.ecef_velocity_y,
-                self.ecef_position_z,
-                self.ecef_velocity_z,
-                self.x_pos_standard_deviation,
-                self.y_pos_standard_deviation,
-                self.z_pos_standard_deviation,
-                self.x_vel_standard_deviation,
-                self.y_vel_standard_deviation,
-                self.z_vel_standard_deviation,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.gps_solution_status = _BITS_0[v96]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.unix_time,
-                self.css_raw_1,
-                self.css_raw_2,
-                self.css_raw_3,
-                self.css_raw_4,
-                self.css_raw_5,
-                self.css_raw_6,
-                self.css_raw_7,
-                self.css_raw_8,
-                self.css_raw_9,
-                self.css_raw_10,
-                self.cam1_raw_x,
-                self.cam1_raw_y,
-                self.cam1_busy,
-                self.cam1_result,
-                self.cam2_raw_x,
-                self.cam2_raw_y,
-                self.cam2_busy,
-                self.cam2_result,
-                self.mag_raw_x,
-                self.mag_raw_y,
-                self.mag_raw_z,
-                self.rate_raw_x,
-                self.rate_raw_y,
-                self.rate_raw_z,
-                self.wheel_raw_x,
-                self.wheel_raw_y,
-                self.wheel_raw_z,
-                self.star1_camera_x,
-                self.star1_camera_y,
-                self.star1_camera_z,
-                self.star1_inertial_x,
-                self.star1_inertial_y,
-                self.star1_inertial_z,
-                self.star2_camera_x,
-                self.star2_camera_y,
-                self.star2_camera_z,
-                self.star2_inertial_x,
-                self.star2_inertial_y,
-                self.star2_inertial_z,
-                self.star3_camera_x,
-                self.star3_camera_y,
-                self.star3_camera_z,
-                self.star3_inertial_x,
-                self.star3_inertial_y,
-                self.star3_inertial_z,
-                self.gps_solution_status,
-                self.gps_reference_week,
-                self.gps_time_milliseconds,
-                self.ecef_position_x,
-                self.ecef_velocity_x,
-                self.ecef_position_y,
-                self.ecef_velocity_y,
-                self.ecef_position_z,
-                self.ecef_velocity_z,
-                self.x_pos_standard_deviation,
-                self.y_pos_standard_deviation,
-                self.z_pos_standard_deviation,
-                self.x_vel_standard_deviation,
-                self.y_vel_standard_deviation,
-                self.z_vel_standard_deviation,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def x_pos_standard_deviation_m(self) -> float:
-        """X-pos Standard Deviation in m: 0 to 25.5."""
-        return self.x_pos_standard_deviation / 10
-
-    @x_pos_standard_deviation_m.setter
-    def x_pos_standard_deviation_m(self, value: float) -> None:
-        self.x_pos_standard_deviation = _codec.raw_value(
-            value,
-            "x_pos_standard_deviation",
-            (1, 0, 10),
-            0,
-            255,
-        )
-
-    @property
-    def y_pos_standard_deviation_m(self) -> float:
-        """Y-pos Standard Deviation in m: 0 to 25.5."""
-        return self.y_pos_standard_deviation / 10
-
-    @y_pos_standard_deviation_m.setter
-    def y_pos_standard_deviation_m(self, value: float) -> None:
-        self.y_pos_standard_deviation = _codec.raw_value(
-            value,
-            "y_pos_standard_deviation",
-            (1, 0, 10),
-            0,
-            255,
-        )
-
-    @property
-    def z_pos_standard_deviation_m(self) -> float:
-        """Z-pos Standard Deviation in m: 0 to 25.5."""
-        return self.z_pos_standard_deviation / 10
-
-    @z_pos_standard_deviation_m.setter
-    def z_pos_standard_deviation_m(self, value: float) -> None:
-        self.z_pos_standard_deviation = _codec.raw_value(
-            value,
-            "z_pos_standard_deviation",
-            (1, 0, 10),
-            0,
-            255,
-        )

@@ -5,28 +5,15 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<10sH")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_DEFAULT_0 = bytes(10)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class UartLogConfiguration(_base.Message):
     """UART Log Configuration: configuration, set by telecommand 106, got by telemetry
     237, 12 bytes. Table 213.
 
     Which frames are sent unasked on the UART, and how often.
     """
-
-    __slots__ = (
-        "log_selection",
-        "log_period",
-    )
 
     NODE = "cubeacp"
     NAME = "UART Log Configuration"
@@ -36,58 +23,32 @@ class UartLogConfiguration(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 12
     TABLE = 213
-    FIELDS = (
-        _base.FieldInfo("log_selection", "Log Selection", 0, 80, "bytes"),
-        _base.FieldInfo(
-            "log_period",
-            "Log Period",
-            80,
-            16,
-            "uint",
-            special=(
-                (0, "logging disabled"),
-            ),
-        ),
-    )
 
-    log_selection: bytes
+    log_selection: bytes = _base.field("Log Selection", 0, 80, "bytes", default=bytes(10))
     """Log Selection: bytes 0 to 9.
 
     Mask of up to 80 telemetry frames.
 
     Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
+    Seventeen bits of the mask have no frame: 2, 5, 6 and 66 to 79. What a log with one
+    of them set holds is not said.
     """
-    log_period: int
+
+    log_period: int = _base.field(
+        "Log Period",
+        80,
+        16,
+        "uint",
+        default=0,
+        special=(
+            (0, "logging disabled"),
+        ),
+    )
     """Log Period: bits 80 to 95, raw 0 to 65535.
 
     0: logging disabled.
 
-    Note ACP-183 (open): Log period has no unit.
+    Note ACP-183 (open): Log period has no unit. Zero switches logging off; seconds or
+    iterations of the loop are both possible, and equal only while the loop runs at 1
+    Hz.
     """
-
-    def __init__(
-        self,
-        *,
-        log_selection: bytes = _DEFAULT_0,
-        log_period: int = 0,
-    ) -> None:
-        self.log_selection = log_selection
-        self.log_period = log_period
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> UartLogConfiguration:
-        """The message in a frame of exactly 12 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.log_selection, self.log_period = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _codec.sized(self.log_selection, 10)
-            return _pack(v0, self.log_period)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

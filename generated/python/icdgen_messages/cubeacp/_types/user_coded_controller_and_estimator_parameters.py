@@ -6,26 +6,13 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<48s48s")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_DEFAULT_0 = bytes(48)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class UserCodedControllerAndEstimatorParameters(_base.Message):
     """User-coded Controller and Estimator Parameters: configuration, set by telecommand
     29, got by telemetry 226, 96 bytes. Table 208.
     """
-
-    __slots__ = (
-        "user_coded_controller_settings",
-        "user_coded_estimator_settings",
-    )
 
     NODE = "cubeacp"
     NAME = "User-coded Controller and Estimator Parameters"
@@ -35,64 +22,20 @@ class UserCodedControllerAndEstimatorParameters(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 96
     TABLE = 208
-    FIELDS = (
-        _base.FieldInfo(
-            "user_coded_controller_settings",
-            "User Coded Controller Settings",
-            0,
-            384,
-            "bytes",
-        ),
-        _base.FieldInfo(
-            "user_coded_estimator_settings",
-            "User Coded Estimator Settings",
-            384,
-            384,
-            "bytes",
-        ),
-    )
 
-    user_coded_controller_settings: bytes
+    user_coded_controller_settings: bytes = _base.field(
+        "User Coded Controller Settings", 0, 384, "bytes", default=bytes(48)
+    )
     """User Coded Controller Settings: bytes 0 to 47.
 
-    Note ACP-178 (open): User coded settings: content of the arrays.
+    Note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes
+    without types; what they hold depends on code that the user supplies.
     """
-    user_coded_estimator_settings: bytes
+
+    user_coded_estimator_settings: bytes = _base.field(
+        "User Coded Estimator Settings", 384, 384, "bytes", default=bytes(48)
+    )
     """User Coded Estimator Settings: bytes 48 to 95.
 
-    Note ACP-178 (open): User coded settings: content of the arrays.
+    Note ACP-178 (open): see User Coded Controller Settings.
     """
-
-    def __init__(
-        self,
-        *,
-        user_coded_controller_settings: bytes = _DEFAULT_0,
-        user_coded_estimator_settings: bytes = _DEFAULT_0,
-    ) -> None:
-        self.user_coded_controller_settings = user_coded_controller_settings
-        self.user_coded_estimator_settings = user_coded_estimator_settings
-
-    @classmethod
-    def from_bytes(
-        cls,
-        data: _base.Buffer,
-    ) -> UserCodedControllerAndEstimatorParameters:
-        """The message in a frame of exactly 96 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.user_coded_controller_settings,
-                self.user_coded_estimator_settings,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _codec.sized(self.user_coded_controller_settings, 48)
-            v48 = _codec.sized(self.user_coded_estimator_settings, 48)
-            return _pack(v0, v48)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3H")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class WheelCurrents(_base.Message):
     """Wheel Currents: telemetry 173, 6 bytes. Table 131.
 
@@ -23,12 +16,6 @@ class WheelCurrents(_base.Message):
     Bit 23 of the log mask.
     """
 
-    __slots__ = (
-        "wheel1_current",
-        "wheel2_current",
-        "wheel3_current",
-    )
-
     NODE = "cubeacp"
     NAME = "Wheel Currents"
     KIND = "telemetry"
@@ -36,151 +23,45 @@ class WheelCurrents(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 131
-    FIELDS = (
-        _base.FieldInfo(
-            "wheel1_current",
-            "Wheel1Current",
-            0,
-            16,
-            "uint",
-            unit="mA",
-            physical="wheel1_current_ma",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "wheel2_current",
-            "Wheel2Current",
-            16,
-            16,
-            "uint",
-            unit="mA",
-            physical="wheel2_current_ma",
-            scale=(1, 0, 100),
-        ),
-        _base.FieldInfo(
-            "wheel3_current",
-            "Wheel3Current",
-            32,
-            16,
-            "uint",
-            unit="mA",
-            physical="wheel3_current_ma",
-            scale=(1, 0, 100),
-        ),
-    )
 
-    wheel1_current: int
+    wheel1_current: int = _base.field("Wheel1Current", 0, 16, "uint", default=0, unit="mA")
     """Wheel1Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): Wheel currents: by number, described by axis. The frame is
+    described as XYZ wheel currents, its fields are numbered, and names run together
+    although their descriptions do not.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of
+    0.01 mA sixteen bits reach 655.35 mA, which a wheel motor may well exceed. All other
+    currents have steps of 0.1 mA and more. The factor is held as printed.
     """
-    wheel2_current: int
+    wheel1_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
+    """Wheel1Current in mA: 0 to 655.35."""
+    wheel1_current_ua: int = _base.whole(10, 0)
+    """Wheel1Current in uA, exact: 0 to 655350."""
+
+    wheel2_current: int = _base.field("Wheel2Current", 16, 16, "uint", default=0, unit="mA")
     """Wheel2Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): see Wheel1Current.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): see Wheel1Current.
     """
-    wheel3_current: int
+    wheel2_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
+    """Wheel2Current in mA: 0 to 655.35."""
+    wheel2_current_ua: int = _base.whole(10, 0)
+    """Wheel2Current in uA, exact: 0 to 655350."""
+
+    wheel3_current: int = _base.field("Wheel3Current", 32, 16, "uint", default=0, unit="mA")
     """Wheel3Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): see Wheel1Current.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): see Wheel1Current.
     """
-
-    def __init__(
-        self,
-        *,
-        wheel1_current: int = 0,
-        wheel2_current: int = 0,
-        wheel3_current: int = 0,
-    ) -> None:
-        self.wheel1_current = wheel1_current
-        self.wheel2_current = wheel2_current
-        self.wheel3_current = wheel3_current
-
-    @classmethod
-    def from_physical(
-        cls,
-        *,
-        wheel1_current_ma: float = 0.0,
-        wheel2_current_ma: float = 0.0,
-        wheel3_current_ma: float = 0.0,
-    ) -> WheelCurrents:
-        """From physical values, raw ones where there is no scale. Raises `RangeError`."""
-        self = _new(cls)
-        self.wheel1_current_ma = wheel1_current_ma
-        self.wheel2_current_ma = wheel2_current_ma
-        self.wheel3_current_ma = wheel3_current_ma
-        return self
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> WheelCurrents:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.wheel1_current,
-                self.wheel2_current,
-                self.wheel3_current,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.wheel1_current, self.wheel2_current, self.wheel3_current)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None
-
-    @property
-    def wheel1_current_ma(self) -> float:
-        """Wheel1Current in mA: 0 to 655.35."""
-        return self.wheel1_current / 100
-
-    @wheel1_current_ma.setter
-    def wheel1_current_ma(self, value: float) -> None:
-        self.wheel1_current = _codec.raw_value(
-            value,
-            "wheel1_current",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def wheel2_current_ma(self) -> float:
-        """Wheel2Current in mA: 0 to 655.35."""
-        return self.wheel2_current / 100
-
-    @wheel2_current_ma.setter
-    def wheel2_current_ma(self, value: float) -> None:
-        self.wheel2_current = _codec.raw_value(
-            value,
-            "wheel2_current",
-            (1, 0, 100),
-            0,
-            65535,
-        )
-
-    @property
-    def wheel3_current_ma(self) -> float:
-        """Wheel3Current in mA: 0 to 655.35."""
-        return self.wheel3_current / 100
-
-    @wheel3_current_ma.setter
-    def wheel3_current_ma(self, value: float) -> None:
-        self.wheel3_current = _codec.raw_value(
-            value,
-            "wheel3_current",
-            (1, 0, 100),
-            0,
-            65535,
-        )
+    wheel3_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
+    """Wheel3Current in mA: 0 to 655.35."""
+    wheel3_current_ua: int = _base.whole(10, 0)
+    """Wheel3Current in uA, exact: 0 to 655350."""

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class WheelSpeed(_base.Message):
     """Wheel Speed: telemetry 156, 6 bytes. Table 112.
 
@@ -23,12 +16,6 @@ class WheelSpeed(_base.Message):
     Bit 14 of the log mask.
     """
 
-    __slots__ = (
-        "x_wheel_speed",
-        "y_wheel_speed",
-        "z_wheel_speed",
-    )
-
     NODE = "cubeacp"
     NAME = "Wheel Speed"
     KIND = "telemetry"
@@ -36,43 +23,12 @@ class WheelSpeed(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 112
-    FIELDS = (
-        _base.FieldInfo("x_wheel_speed", "X Wheel Speed", 0, 16, "int", unit="rpm"),
-        _base.FieldInfo("y_wheel_speed", "Y Wheel Speed", 16, 16, "int", unit="rpm"),
-        _base.FieldInfo("z_wheel_speed", "Z Wheel Speed", 32, 16, "int", unit="rpm"),
-    )
 
-    x_wheel_speed: int
+    x_wheel_speed: int = _base.field("X Wheel Speed", 0, 16, "int", default=0, unit="rpm")
     """X Wheel Speed: bits 0 to 15, raw -32768 to 32767, in rpm."""
-    y_wheel_speed: int
+
+    y_wheel_speed: int = _base.field("Y Wheel Speed", 16, 16, "int", default=0, unit="rpm")
     """Y Wheel Speed: bits 16 to 31, raw -32768 to 32767, in rpm."""
-    z_wheel_speed: int
+
+    z_wheel_speed: int = _base.field("Z Wheel Speed", 32, 16, "int", default=0, unit="rpm")
     """Z Wheel Speed: bits 32 to 47, raw -32768 to 32767, in rpm."""
-
-    def __init__(
-        self,
-        *,
-        x_wheel_speed: int = 0,
-        y_wheel_speed: int = 0,
-        z_wheel_speed: int = 0,
-    ) -> None:
-        self.x_wheel_speed = x_wheel_speed
-        self.y_wheel_speed = y_wheel_speed
-        self.z_wheel_speed = z_wheel_speed
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> WheelSpeed:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.x_wheel_speed, self.y_wheel_speed, self.z_wheel_speed = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.x_wheel_speed, self.y_wheel_speed, self.z_wheel_speed)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,27 +5,14 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<3h")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class WheelSpeedCommands(_base.Message):
     """Wheel Speed Commands: telemetry 158, 6 bytes. Table 114.
 
     Bit 8 of the log mask.
     """
-
-    __slots__ = (
-        "commanded_x_wheel_speed",
-        "commanded_y_wheel_speed",
-        "commanded_z_wheel_speed",
-    )
 
     NODE = "cubeacp"
     NAME = "Wheel Speed Commands"
@@ -34,81 +21,23 @@ class WheelSpeedCommands(_base.Message):
     IDS = (ID,)
     LENGTH = 6
     TABLE = 114
-    FIELDS = (
-        _base.FieldInfo(
-            "commanded_x_wheel_speed",
-            "Commanded X Wheel Speed",
-            0,
-            16,
-            "int",
-            unit="rpm",
-        ),
-        _base.FieldInfo(
-            "commanded_y_wheel_speed",
-            "Commanded Y Wheel Speed",
-            16,
-            16,
-            "int",
-            unit="rpm",
-        ),
-        _base.FieldInfo(
-            "commanded_z_wheel_speed",
-            "Commanded Z Wheel Speed",
-            32,
-            16,
-            "int",
-            unit="rpm",
-        ),
-    )
 
-    commanded_x_wheel_speed: int
+    commanded_x_wheel_speed: int = _base.field("Commanded X Wheel Speed", 0, 16, "int", default=0, unit="rpm")
     """Commanded X Wheel Speed: bits 0 to 15, raw -32768 to 32767, in rpm.
 
-    Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds. The
+    descriptions are those of the measured speeds; the names tell the difference. The
+    telecommand names them again in another way.
     """
-    commanded_y_wheel_speed: int
+
+    commanded_y_wheel_speed: int = _base.field("Commanded Y Wheel Speed", 16, 16, "int", default=0, unit="rpm")
     """Commanded Y Wheel Speed: bits 16 to 31, raw -32768 to 32767, in rpm.
 
-    Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072 (certain): see Commanded X Wheel Speed.
     """
-    commanded_z_wheel_speed: int
+
+    commanded_z_wheel_speed: int = _base.field("Commanded Z Wheel Speed", 32, 16, "int", default=0, unit="rpm")
     """Commanded Z Wheel Speed: bits 32 to 47, raw -32768 to 32767, in rpm.
 
-    Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072 (certain): see Commanded X Wheel Speed.
     """
-
-    def __init__(
-        self,
-        *,
-        commanded_x_wheel_speed: int = 0,
-        commanded_y_wheel_speed: int = 0,
-        commanded_z_wheel_speed: int = 0,
-    ) -> None:
-        self.commanded_x_wheel_speed = commanded_x_wheel_speed
-        self.commanded_y_wheel_speed = commanded_y_wheel_speed
-        self.commanded_z_wheel_speed = commanded_z_wheel_speed
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> WheelSpeedCommands:
-        """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (
-                self.commanded_x_wheel_speed,
-                self.commanded_y_wheel_speed,
-                self.commanded_z_wheel_speed,
-            ) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(
-                self.commanded_x_wheel_speed,
-                self.commanded_y_wheel_speed,
-                self.commanded_z_wheel_speed,
-            )
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,43 +5,22 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<IB")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table(
-    (0, 1, bool),
-    (1, 1, bool),
-    (2, 1, bool),
-    (3, 1, bool),
-    (4, 1, bool),
-)
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class DeploymentStatus(_base.Message):
     """Deployment Status: telemetry 190, 5 bytes. Table 61.
 
     Only for the CubeMag of type Deploy.
 
     Note MAG-011 (open): Deployment Status: how to tell the type, and what other types
-    answer.
+    answer. The frame applies to the deployable CubeMag only. Nothing in the excerpt
+    tells the types apart, or says whether the others refuse the request.
 
     Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
+    Three bits of the status and seven of each measurement are not described. They are
+    held as reserved.
     """
-
-    __slots__ = (
-        "burn_current",
-        "deployment_pin_state",
-        "burn_pin_state",
-        "burn_under_current",
-        "burn_over_current",
-        "deployment_timeout",
-    )
 
     NODE = "cubemag"
     NAME = "Deployment Status"
@@ -50,102 +29,57 @@ class DeploymentStatus(_base.Message):
     IDS = (ID,)
     LENGTH = 5
     TABLE = 61
-    FIELDS = (
-        _base.FieldInfo("burn_current", "Burn Current", 0, 32, "uint", unit="mA"),
-        _base.FieldInfo("deployment_pin_state", "Deployment Pin State", 32, 1, "bool"),
-        _base.FieldInfo("burn_pin_state", "Burn Pin State", 33, 1, "bool"),
-        _base.FieldInfo("burn_under_current", "Burn UnderCurrent", 34, 1, "bool"),
-        _base.FieldInfo("burn_over_current", "Burn OverCurrent", 35, 1, "bool"),
-        _base.FieldInfo("deployment_timeout", "Deployment Timeout", 36, 1, "bool"),
-    )
 
-    burn_current: int
+    burn_current: int = _base.field("Burn Current", 0, 32, "uint", default=0, unit="mA")
     """Burn Current: bits 0 to 31, raw 0 to 4294967295, in mA.
 
     Through the burn wire.
 
-    Note MAG-012 (open): Burn Current: 32 bits of whole milliamperes.
+    Note MAG-012 (open): Burn Current: 32 bits of whole milliamperes. An unsigned
+    integer of 32 bits in mA reaches 4.3 million amperes. A float, as in the other
+    measurements of the node, or a scale that was lost would be more plausible; nothing
+    is converted.
     """
-    deployment_pin_state: bool
+
+    deployment_pin_state: bool = _base.field("Deployment Pin State", 32, 1, "bool", default=False)
     """Deployment Pin State: bit 32.
 
     Pin that detects the deployment.
 
-    Note MAG-013 (open): Polarity of the deployment pins is not given.
+    Note MAG-013 (open): Polarity of the deployment pins is not given. Whether a set bit
+    means deployed, a high level or an active burn wire is not said.
     """
-    burn_pin_state: bool
+
+    burn_pin_state: bool = _base.field("Burn Pin State", 33, 1, "bool", default=False)
     """Burn Pin State: bit 33.
 
     Pin that enables the burn wire.
 
-    Note MAG-013 (open): Polarity of the deployment pins is not given.
+    Note MAG-013 (open): see Deployment Pin State.
     """
-    burn_under_current: bool
+
+    burn_under_current: bool = _base.field("Burn UnderCurrent", 34, 1, "bool", default=False)
     """Burn UnderCurrent: bit 34.
 
     Too little current through the burn wire.
 
-    Note MAG-014 (open): Limits of the burn current and the configured time-out.
+    Note MAG-014 (open): Limits of the burn current and the configured time-out. Under-
+    and overcurrent have no limits, and the time-out is called configured without a
+    message that configures it.
     """
-    burn_over_current: bool
+
+    burn_over_current: bool = _base.field("Burn OverCurrent", 35, 1, "bool", default=False)
     """Burn OverCurrent: bit 35.
 
     Too much current through the burn wire.
 
-    Note MAG-014 (open): Limits of the burn current and the configured time-out.
+    Note MAG-014 (open): see Burn UnderCurrent.
     """
-    deployment_timeout: bool
+
+    deployment_timeout: bool = _base.field("Deployment Timeout", 36, 1, "bool", default=False)
     """Deployment Timeout: bit 36.
 
     No deployment was detected within the configured time.
 
-    Note MAG-014 (open): Limits of the burn current and the configured time-out.
+    Note MAG-014 (open): see Burn UnderCurrent.
     """
-
-    def __init__(
-        self,
-        *,
-        burn_current: int = 0,
-        deployment_pin_state: bool = False,
-        burn_pin_state: bool = False,
-        burn_under_current: bool = False,
-        burn_over_current: bool = False,
-        deployment_timeout: bool = False,
-    ) -> None:
-        self.burn_current = burn_current
-        self.deployment_pin_state = deployment_pin_state
-        self.burn_pin_state = burn_pin_state
-        self.burn_under_current = burn_under_current
-        self.burn_over_current = burn_over_current
-        self.deployment_timeout = deployment_timeout
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> DeploymentStatus:
-        """The message in a frame of exactly 5 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.burn_current, v4 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        (
-            self.deployment_pin_state,
-            self.burn_pin_state,
-            self.burn_under_current,
-            self.burn_over_current,
-            self.deployment_timeout,
-        ) = _BITS_0[v4]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v4 = _BYTES_0[
-                self.deployment_pin_state,
-                self.burn_pin_state,
-                self.burn_under_current,
-                self.burn_over_current,
-                self.deployment_timeout,
-            ]
-            return _pack(self.burn_current, v4)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

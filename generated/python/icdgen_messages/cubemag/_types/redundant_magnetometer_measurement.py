@@ -5,30 +5,16 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
-
-_STRUCT = struct.Struct("<3fB")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class RedundantMagnetometerMeasurement(_base.Message):
     """Redundant Magnetometer Measurement: telemetry 193, 13 bytes. Table 64.
 
     Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
+    Three bits of the status and seven of each measurement are not described. They are
+    held as reserved.
     """
-
-    __slots__ = (
-        "x_axis",
-        "y_axis",
-        "z_axis",
-        "data_valid",
-    )
 
     NODE = "cubemag"
     NAME = "Redundant Magnetometer Measurement"
@@ -37,76 +23,41 @@ class RedundantMagnetometerMeasurement(_base.Message):
     IDS = (ID,)
     LENGTH = 13
     TABLE = 64
-    FIELDS = (
-        _base.FieldInfo("x_axis", "X_axis", 0, 32, "float", unit="nT"),
-        _base.FieldInfo("y_axis", "Y_axis", 32, 32, "float", unit="nT"),
-        _base.FieldInfo("z_axis", "Z_axis", 64, 32, "float", unit="nT"),
-        _base.FieldInfo("data_valid", "Data Valid", 96, 1, "bool"),
-    )
 
-    x_axis: float
+    x_axis: float = _base.field("X_axis", 0, 32, "float", default=0.0, unit="nT")
     """X_axis: bits 0 to 31, 32-bit float, in nT.
 
-    Note MAG-016 (likely): FLOAT is not defined.
+    Note MAG-016 (likely): FLOAT is not defined. IEEE 754 of 32 bits, least significant
+    byte first, is held.
 
-    Note MAG-017 (open): Axes of the measurements are not defined.
+    Note MAG-017 (open): Axes of the measurements are not defined. Whether they are
+    those of the sensor, of the deployed boom or of the satellite is not said. The names
+    carry an underscore that no other name has.
 
-    Note MAG-018 (certain): nT here, uT there.
+    Note MAG-018 (certain): nT here, uT there. The node measures in nT as a float, the
+    control program reports the same field in uT with a step of 0.01. A reader who mixes
+    them is wrong by a factor of 1000.
     """
-    y_axis: float
+
+    y_axis: float = _base.field("Y_axis", 32, 32, "float", default=0.0, unit="nT")
     """Y_axis: bits 32 to 63, 32-bit float, in nT.
 
-    Note MAG-016 (likely): FLOAT is not defined.
+    Note MAG-016 (likely): see X_axis.
 
-    Note MAG-017 (open): Axes of the measurements are not defined.
+    Note MAG-017 (open): see X_axis.
 
-    Note MAG-018 (certain): nT here, uT there.
+    Note MAG-018 (certain): see X_axis.
     """
-    z_axis: float
+
+    z_axis: float = _base.field("Z_axis", 64, 32, "float", default=0.0, unit="nT")
     """Z_axis: bits 64 to 95, 32-bit float, in nT.
 
-    Note MAG-016 (likely): FLOAT is not defined.
+    Note MAG-016 (likely): see X_axis.
 
-    Note MAG-017 (open): Axes of the measurements are not defined.
+    Note MAG-017 (open): see X_axis.
 
-    Note MAG-018 (certain): nT here, uT there.
+    Note MAG-018 (certain): see X_axis.
     """
-    data_valid: bool
+
+    data_valid: bool = _base.field("Data Valid", 96, 1, "bool", default=False)
     """Data Valid: bit 96."""
-
-    def __init__(
-        self,
-        *,
-        x_axis: float = 0.0,
-        y_axis: float = 0.0,
-        z_axis: float = 0.0,
-        data_valid: bool = False,
-    ) -> None:
-        self.x_axis = x_axis
-        self.y_axis = y_axis
-        self.z_axis = z_axis
-        self.data_valid = data_valid
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RedundantMagnetometerMeasurement:
-        """The message in a frame of exactly 13 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.x_axis, self.y_axis, self.z_axis, v12 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.data_valid = _BITS_0[v12]
-        total = self.x_axis + self.y_axis + self.z_axis
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v12 = _BYTES_0[self.data_valid]
-            frame = _pack(self.x_axis, self.y_axis, self.z_axis, v12)
-            total = self.x_axis + self.y_axis + self.z_axis
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,33 +5,20 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .mag_state import MagState
 from .mnt_state import MntState
 
-_STRUCT = struct.Struct("<3B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, MagState))
-_BITS_1 = _codec.bit_table((0, 8, MntState))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class State(_base.Message):
     """State: telemetry 188, 3 bytes. Table 57.
 
     States of all services.
 
-    Note MAG-004 (certain): Number 57 is used twice in the addendum.
+    Note MAG-004 (certain): Number 57 is used twice in the addendum. Both parts have a
+    Table 57, State here and Motor Power there. They come from two documents, and the
+    source does not say where one ends.
     """
-
-    __slots__ = (
-        "mag_svc_state",
-        "primary_mag_state",
-        "red_mag_state",
-    )
 
     NODE = "cubemag"
     NAME = "State"
@@ -40,68 +27,29 @@ class State(_base.Message):
     IDS = (ID,)
     LENGTH = 3
     TABLE = 57
-    FIELDS = (
-        _base.FieldInfo("mag_svc_state", "MagSvc State", 0, 8, "enum", enum=MagState),
-        _base.FieldInfo(
-            "primary_mag_state",
-            "Primary Mag State",
-            8,
-            8,
-            "enum",
-            enum=MntState,
-        ),
-        _base.FieldInfo("red_mag_state", "Red Mag State", 16, 8, "enum", enum=MntState),
-    )
 
-    mag_svc_state: MagState
+    mag_svc_state: MagState = _base.field("MagSvc State", 0, 8, "enum", default=MagState.DEPLOY_ARM)
     """MagSvc State: bits 0 to 7.
 
     Of the CubeMag service.
 
-    Note MAG-007 (certain): State: names are cut short in three ways.
+    Note MAG-007 (certain): State: names are cut short in three ways. MagSvc, Primary
+    Mag and Red Mag stand for service, primary and redundant magnetometer; the
+    measurement frames spell redundant out.
     """
-    primary_mag_state: MntState
+
+    primary_mag_state: MntState = _base.field("Primary Mag State", 8, 8, "enum", default=MntState.OFF)
     """Primary Mag State: bits 8 to 15.
 
     Of the primary magnetometer.
 
-    Note MAG-007 (certain): State: names are cut short in three ways.
+    Note MAG-007 (certain): see MagSvc State.
     """
-    red_mag_state: MntState
+
+    red_mag_state: MntState = _base.field("Red Mag State", 16, 8, "enum", default=MntState.OFF)
     """Red Mag State: bits 16 to 23.
 
     Of the redundant magnetometer.
 
-    Note MAG-007 (certain): State: names are cut short in three ways.
+    Note MAG-007 (certain): see MagSvc State.
     """
-
-    def __init__(
-        self,
-        *,
-        mag_svc_state: MagState = MagState.DEPLOY_ARM,
-        primary_mag_state: MntState = MntState.OFF,
-        red_mag_state: MntState = MntState.OFF,
-    ) -> None:
-        self.mag_svc_state = mag_svc_state
-        self.primary_mag_state = primary_mag_state
-        self.red_mag_state = red_mag_state
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> State:
-        """The message in a frame of exactly 3 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, v1, v2 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.mag_svc_state = _BITS_0[v0]
-        self.primary_mag_state = _BITS_1[v1]
-        self.red_mag_state = _BITS_1[v2]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.mag_svc_state, self.primary_mag_state, self.red_mag_state)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

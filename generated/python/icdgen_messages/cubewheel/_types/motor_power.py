@@ -5,35 +5,25 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class MotorPower(_base.Message):
     """Motor Power: telemetry 197, 1 byte. Table 57.
 
     Whether the motor is switched on.
 
     Note WHL-005 (certain): Table numbers collide with those of the manual and of
-    CubeMag.
+    CubeMag. Tables 47, 48, 56 and 57 exist in the manual with other contents, 57 also
+    in the first part of the addendum.
 
     Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled
-    word.
+    word. The frame tells whether the motor is on; its text switches it, and its field
+    is a power switch that is switched.
 
-    Note WHL-016 (open): Motor Power: seven bits are not described.
+    Note WHL-016 (open): Motor Power: seven bits are not described. One bit of the byte
+    is explained; the others are held as reserved.
     """
-
-    __slots__ = (
-        "motor_power_switch",
-    )
 
     NODE = "cubewheel"
     NAME = "Motor Power"
@@ -42,39 +32,9 @@ class MotorPower(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 57
-    FIELDS = (
-        _base.FieldInfo("motor_power_switch", "Motor Power Switch", 0, 1, "bool"),
-    )
 
-    motor_power_switch: bool
+    motor_power_switch: bool = _base.field("Motor Power Switch", 0, 1, "bool", default=False)
     """Motor Power Switch: bit 0.
 
-    Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled
-    word.
+    Note WHL-015 (likely): see Motor Power.
     """
-
-    def __init__(
-        self,
-        *,
-        motor_power_switch: bool = False,
-    ) -> None:
-        self.motor_power_switch = motor_power_switch
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> MotorPower:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.motor_power_switch = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.motor_power_switch]
-            return _pack(v0)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

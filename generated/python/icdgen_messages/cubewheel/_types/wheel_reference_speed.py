@@ -5,32 +5,26 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
-
-_STRUCT = struct.Struct("<f")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class WheelReferenceSpeed(_base.Message):
     """Wheel Reference Speed: telemetry 196, 4 bytes. Table 56.
 
     Speed that the momentum wheel is set to.
 
     Note WHL-005 (certain): Table numbers collide with those of the manual and of
-    CubeMag.
+    CubeMag. Tables 47, 48, 56 and 57 exist in the manual with other contents, 57 also
+    in the first part of the addendum.
 
-    Note WHL-012 (likely): Wheel Reference Speed is described as a telecommand.
+    Note WHL-012 (likely): Wheel Reference Speed is described as a telecommand. The
+    frame returns the reference, its description sets it. The text was taken over from
+    the telecommand of the same data.
 
-    Note WHL-013 (open): Momentum wheel in one place, wheel in the others.
+    Note WHL-013 (open): Momentum wheel in one place, wheel in the others. The
+    description of the reference speed has a momentum wheel, all other texts a wheel.
+    CubeACP has three wheels and a fourth or momentum wheel.
     """
-
-    __slots__ = (
-        "reference_speed",
-    )
 
     NODE = "cubewheel"
     NAME = "Wheel Reference Speed"
@@ -39,52 +33,18 @@ class WheelReferenceSpeed(_base.Message):
     IDS = (ID,)
     LENGTH = 4
     TABLE = 56
-    FIELDS = (
-        _base.FieldInfo(
-            "reference_speed",
-            "Reference Speed",
-            0,
-            32,
-            "float",
-            unit="rpm",
-        ),
-    )
 
-    reference_speed: float
+    reference_speed: float = _base.field("Reference Speed", 0, 32, "float", default=0.0, unit="rpm")
     """Reference Speed: bits 0 to 31, 32-bit float, in rpm.
 
-    Erratum WHL-007 (certain): RPM is rpm.
+    Erratum WHL-007 (certain): RPM is rpm. The unit is printed in capitals here and in
+    small letters in the manual; once it stands in the description as well. Held in
+    small letters.
 
-    Note WHL-009 (likely): FLOAT is not defined.
+    Note WHL-009 (likely): FLOAT is not defined. IEEE 754 of 32 bits, least significant
+    byte first, is held.
 
-    Note WHL-014 (open): Reference speed and reference torque: which one is in force.
+    Note WHL-014 (open): Reference speed and reference torque: which one is in force. A
+    wheel follows a speed or a torque. How to tell which of the two references is active
+    is not in the excerpt.
     """
-
-    def __init__(
-        self,
-        *,
-        reference_speed: float = 0.0,
-    ) -> None:
-        self.reference_speed = reference_speed
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> WheelReferenceSpeed:
-        """The message in a frame of exactly 4 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (self.reference_speed,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        total = self.reference_speed
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            frame = _pack(self.reference_speed)
-            total = self.reference_speed
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,29 +5,17 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
+from ... import _base
 from .wheel_error_state import WheelErrorState
 
-_STRUCT = struct.Struct("<fB")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, WheelErrorState))
 
-
-@dataclass(init=False, repr=False, eq=False)
 class WheelSpeed(_base.Message):
     """Wheel Speed: telemetry 188, 5 bytes. Table 47.
 
     Note WHL-005 (certain): Table numbers collide with those of the manual and of
-    CubeMag.
+    CubeMag. Tables 47, 48, 56 and 57 exist in the manual with other contents, 57 also
+    in the first part of the addendum.
     """
-
-    __slots__ = (
-        "wheel_speed",
-        "wheel_error_state",
-    )
 
     NODE = "cubewheel"
     NAME = "Wheel Speed"
@@ -36,61 +24,28 @@ class WheelSpeed(_base.Message):
     IDS = (ID,)
     LENGTH = 5
     TABLE = 47
-    FIELDS = (
-        _base.FieldInfo("wheel_speed", "Wheel Speed", 0, 32, "float", unit="rpm"),
-        _base.FieldInfo(
-            "wheel_error_state",
-            "Wheel Error State",
-            32,
-            8,
-            "enum",
-            enum=WheelErrorState,
-        ),
-    )
 
-    wheel_speed: float
+    wheel_speed: float = _base.field("Wheel Speed", 0, 32, "float", default=0.0, unit="rpm")
     """Wheel Speed: bits 0 to 31, 32-bit float, in rpm.
 
-    Erratum WHL-007 (certain): RPM is rpm.
+    Erratum WHL-007 (certain): RPM is rpm. The unit is printed in capitals here and in
+    small letters in the manual; once it stands in the description as well. Held in
+    small letters.
 
-    Note WHL-008 (open): Wheel speed: the positive direction is not given.
+    Note WHL-008 (open): Wheel speed: the positive direction is not given. Neither the
+    node nor CubeACP, which has the speed as a whole number of 16 bits, says which
+    direction counts as positive.
 
-    Note WHL-009 (likely): FLOAT is not defined.
+    Note WHL-009 (likely): FLOAT is not defined. IEEE 754 of 32 bits, least significant
+    byte first, is held.
     """
-    wheel_error_state: WheelErrorState
+
+    wheel_error_state: WheelErrorState = _base.field(
+        "Wheel Error State", 32, 8, "enum", default=WheelErrorState.DATA_VALID
+    )
     """Wheel Error State: bits 32 to 39.
 
-    Note WHL-010 (open): Wheel Error State: data that are valid are an error state.
+    Note WHL-010 (open): Wheel Error State: data that are valid are an error state. The
+    value 0 says that all is well under the name of an error. Only one condition can be
+    shown at a time; which wins is not said.
     """
-
-    def __init__(
-        self,
-        *,
-        wheel_speed: float = 0.0,
-        wheel_error_state: WheelErrorState = WheelErrorState.DATA_VALID,
-    ) -> None:
-        self.wheel_speed = wheel_speed
-        self.wheel_error_state = wheel_error_state
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> WheelSpeed:
-        """The message in a frame of exactly 5 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.wheel_speed, v4 = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.wheel_error_state = _BITS_0[v4]
-        total = self.wheel_speed
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            frame = _pack(self.wheel_speed, self.wheel_error_state)
-            total = self.wheel_speed
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

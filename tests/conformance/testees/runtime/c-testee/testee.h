@@ -14,11 +14,12 @@ typedef struct {
 
 typedef struct {
     testee_type_t type;
-    size_t offset;                                    /* of the member in the struct */
+    size_t offset;                                    /* of the member in the struct; not of a view */
+    void (*view)(const void *message, void *value);   /* reads a view, else NULL */
     size_t size;                                      /* of the member, in bytes */
     const char *(*name_of)(uint64_t value, bool is_negative); /* of an enum field, else NULL */
     double (*get)(const void *message);               /* of a scaled field, else NULL */
-    icd_status_t (*set)(void *message, double value); /* of a scaled field, else NULL */
+    icd_status_t (*set)(void *message, double value); /* of a scaled field that is no view, else NULL */
     icd_status_t (*get_text)(const void *message, char *text, size_t capacity); /* of a text field, else NULL */
     icd_status_t (*set_text)(void *message, const char *text);
     const int64_t *special;                           /* raw values with a meaning of their own, as bits */

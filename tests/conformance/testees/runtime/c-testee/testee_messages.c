@@ -12,11 +12,16 @@
 static uint64_t member_bits(const testee_field_t *field, const void *value)
 {
     const char *at = (const char *)value + field->offset;
+    uint8_t seen[8];
     uint8_t one;
     uint16_t two;
     uint32_t four;
     uint64_t eight;
     bool flag;
+    if (field->view != NULL) {
+        field->view(value, seen);
+        at = (const char *)seen;
+    }
     if (field->type == TESTEE_BOOL) {
         memcpy(&flag, at, sizeof flag);
         return flag ? 1u : 0u;
@@ -259,8 +264,9 @@ static void encode(void)
     subject.message->init(subject.value);
     for (i = 0; i < subject.message->field_count; i++) {
         const testee_field_t *field = &subject.message->fields[i];
-        const char *word = next_word();
-        const bool fits = *word == 'p'
+        const char *word = field->view == NULL ? next_word() : "";
+        const bool fits = field->view != NULL ? true
+            : *word == 'p'
             ? take_physical(field, subject.value, word + 1)
             : take_raw(field, subject.value, word + 1);
         if (!fits) {

@@ -101,6 +101,20 @@ static void put_output(icd_client_t *client)
     }
 }
 
+static icd_status_t begin_client(
+    icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t address, uint8_t *buffer, size_t size)
+{
+    switch (bus) {
+    case ICD_BUS_UART:
+        return icd_client_uart(client, link, buffer, size);
+    case ICD_BUS_I2C:
+        return icd_client_i2c(client, link, buffer, size);
+    case ICD_BUS_CAN:
+    default:
+        return icd_client_can(client, link, address, buffer, size);
+    }
+}
+
 static void client_script(void)
 {
     const icd_link_t *link = next_link();
@@ -111,14 +125,13 @@ static void client_script(void)
     icd_client_t *client = (icd_client_t *)memory(sizeof *client);
     icd_client_settings_t *settings = &client->settings;
     uint32_t deadline;
-    if (!answers(icd_client_init(client, link, bus, (uint8_t *)memory(size), size))) {
+    if (!answers(begin_client(client, link, bus, address, (uint8_t *)memory(size), size))) {
         return;
     }
     settings->reply_timeout = next_or(settings->reply_timeout);
     settings->retries = (uint8_t)next_or(settings->retries);
     settings->poll_interval = next_or(settings->poll_interval);
     settings->poll_timeout = next_or(settings->poll_timeout);
-    icd_client_set_address(client, address);
     if (checked) {
         icd_client_use_checksums(client);
     }

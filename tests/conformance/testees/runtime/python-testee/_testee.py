@@ -11,7 +11,7 @@ import sys
 from importlib import import_module
 from typing import Any, Optional
 
-from . import _codec, _floats
+from . import _floats
 from ._base import FieldInfo, Message
 from ._errors import LengthError, RangeError, UnknownIdError
 from ._testee_order import ORDER
@@ -65,7 +65,11 @@ def _decode(node: Any, words: Words) -> str:
 def _encode(node: Any, words: Words) -> str:
     message = _message(node, words)()
     try:
-        for info, word in zip(message.FIELDS, words):
+        for info in message.FIELDS:
+            if info.elements:
+                _set_elements(message, info, words)
+                continue
+            word = next(words)
             if word[0] == "p" and info.type == "text":
                 setattr(message, info.physical, bytes.fromhex(word[1:]).decode())
             elif word[0] == "p":
@@ -75,7 +79,53 @@ def _encode(node: Any, words: Words) -> str:
         return _described(message)
     except RangeError as error:
         named = {info.attribute: info.name for info in message.FIELDS}
-        raise Refusal(f"range field={_hex(named[error.field])}") from None
+        name, bracket, index = error.field.partition("[")
+        raise Refusal(f"range field={_hex(named[name] + bracket + index)}") from None
+
+
+def _set_elements(message: Message, info: FieldInfo, words: Words) -> None:
+    """Sets an array, each element as it is given: by its raw or its physical value."""
+    raw: list[Any] = []
+    for index, word in zip(range(info.elements), words):
+        if word[0] == "p":
+            given = (_floats.float64(int(word[1:])),) * info.elements
+            try:
+                setattr(message, info.physical, given)
+            except RangeError:
+                raise Refusal(f"range field={_hex(f'{info.name}[{index}]')}") from None
+            raw.append(getattr(message, info.attribute)[index])
+        else:
+            raw.append(_raw(info, word[1:]))
+    setattr(message, info.attribute, tuple(raw))
+
+
+class Element:
+    """A field, or an element of an array."""
+
+    def __init__(self, info: FieldInfo, index: int) -> None:
+        self.info, self.index = info, index
+        self.name = f"{info.name}[{index}]" if info.elements else info.name
+
+    def get(self, message: Message, attribute: str) -> Any:
+        """Its value."""
+        value = getattr(message, attribute)
+        return value[self.index] if self.info.elements else value
+
+    def set(self, message: Message, attribute: str, value: Any) -> None:
+        """Sets it, and leaves the other elements as they are."""
+        if self.info.elements:
+            values = list(getattr(message, attribute))
+            values[self.index] = value
+            value = tuple(values)
+        setattr(message, attribute, value)
+
+
+def _elements(message: Message) -> list[Element]:
+    return [
+        Element(info, index)
+        for info in (*message.FIELDS, *message.VIEWS)
+        for index in range(info.elements or 1)
+    ]
 
 
 def _raw(info: FieldInfo, word: str) -> Any:
@@ -98,23 +148,24 @@ def _hex(text: str) -> str:
     return text.encode("utf-8", "surrogatepass").hex()
 
 
-def _field(message: Message, info: FieldInfo) -> str:
-    value = _shown(info, getattr(message, info.attribute))
-    return f" field field={_hex(info.name)} raw={value}"
+def _field(message: Message, one: Element) -> str:
+    value = _shown(one.info, one.get(message, one.info.attribute))
+    return f" field field={_hex(one.name)} raw={value}"
 
 
 def _described(message: Message, names: bool = False) -> str:
     said = [f" bytes={message.to_bytes().hex()}"]
-    for info in message.FIELDS:
-        said.append(_field(message, info))
+    for one in _elements(message):
+        info = one.info
+        said.append(_field(message, one))
         if info.type == "text":
             text = getattr(message, info.physical)
             said.append("" if "\ufffd" in text else f" physical={_hex(text)}")
         elif info.physical:
-            bits = _floats.float64_bits(getattr(message, info.physical))
+            bits = _floats.float64_bits(one.get(message, info.physical))
             said.append(f" physical={bits}")
         if names and info.enum:
-            label = getattr(message, info.attribute).label
+            label = one.get(message, info.attribute).label
             said.append(f" name={_hex(label)}" if label else "")
     return "".join(said)
 
@@ -123,9 +174,10 @@ def _constants(node: Any, words: Words) -> str:
     message = _message(node, words)()
     ids = ",".join(map(str, message.IDS))
     said = [f" name={_hex(message.NAME)} length={message.LENGTH} ids={ids}"]
-    for info in message.FIELDS:
+    for one in _elements(message):
+        info = one.info
         special = ",".join(str(value) for value, _ in info.special)
-        said.append(f"{_field(message, info)} special={special}")
+        said.append(f"{_field(message, one)} special={special}")
         for key, name in _LIMITS.items():
             bound = getattr(info, name)
             if bound is not None:
@@ -150,18 +202,19 @@ def _about_node(node: Any, words: Words) -> str:
 
 def _sweep(node: Any, words: Words) -> str:
     message = _message(node, words)()
-    info = message.FIELDS[int(next(words))]
-    low, high = _codec.raw_range(info)
+    one = _elements(message)[int(next(words))]
+    info = one.info
+    low, high = info.raw_range
     said = []
     for raw in map(int, words):
         if not low <= raw <= high:
-            raise Refusal(f"range field={_hex(info.name)}")
-        setattr(message, info.attribute, raw)
-        physical = getattr(message, info.physical)
+            raise Refusal(f"range field={_hex(one.name)}")
+        one.set(message, info.attribute, raw)
+        physical = one.get(message, info.physical)
         back: Optional[int] = None
         try:
-            setattr(message, info.physical, physical)
-            back = getattr(message, info.attribute)
+            one.set(message, info.physical, physical)
+            back = one.get(message, info.attribute)
         except RangeError:
             pass
         said.append(f"{_floats.float64_bits(physical)},{'' if back is None else back},")

@@ -39,6 +39,7 @@ function described(plan, raw) {
 }
 
 function rawOf(field, word) {
+  if (field.view) return 0n;
   const [way, value] = [word[0], word.slice(1)];
   if (way === "p" && field.text) return codec.rawFromText(field, Buffer.from(value, "hex").toString("utf8"));
   if (way === "p") return codec.rawFromPhysical(field, codec.doubleOf(BigInt(value)));
@@ -65,7 +66,8 @@ const operations = {
 
   encode(node, direction, id, ...words) {
     const plan = messageOf(node, direction, id);
-    return described(plan, plan.fields.map((field, index) => rawOf(field, words[index])));
+    const raw = plan.fields.map((field, index) => rawOf(field, words[index]));
+    return described(plan, codec.decode(plan, codec.encode(plan, raw)));
   },
 
   constants(node, direction, id) {

@@ -90,9 +90,25 @@ where
     }
 }
 
+/// Where a raw value is.
+pub enum Place<M: 'static> {
+    Member(fn(&mut M) -> &mut dyn Value),
+    View(fn(&M) -> Box<dyn Value>),
+}
+
+impl<M> Field<M> {
+    fn show(&self, message: &mut M) -> (String, String) {
+        let told = |value: &dyn Value| (value.show(), named(value.name()));
+        match self.value {
+            Place::Member(member) => told(member(message)),
+            Place::View(view) => told(&*view(message)),
+        }
+    }
+}
+
 /// A field of a message.
 pub struct Field<M: 'static> {
-    pub value: fn(&mut M) -> &mut dyn Value,
+    pub value: Place<M>,
     pub scale: Option<Scale<M>>,
     pub text: Option<Text<M>>,
     pub special: fn() -> Vec<i128>,
@@ -188,6 +204,9 @@ fn decode<M: Subject>(words: &mut Words, id: u32, dispatcher: Dispatcher) -> Ans
 fn encode<M: Subject>(words: &mut Words) -> Answer {
     let mut message = M::default();
     for (place, field) in M::FIELDS.iter().enumerate() {
+        if matches!(field.value, Place::View(_)) {
+            break;
+        }
         let (kind, given) = words.word().split_at(1);
         match (&field.scale, &field.text) {
             (Some(scale), _) if kind == "p" => (scale.set)(&mut message, double(given))?,
@@ -205,7 +224,10 @@ fn double(bits: &str) -> f64 {
 }
 
 fn take<M>(field: &Field<M>, place: usize, message: &mut M, given: &str) -> Result<(), Refusal> {
-    let fits = (field.value)(message).take(given);
+    let fits = match field.value {
+        Place::Member(member) => member(message).take(given),
+        Place::View(_) => true,
+    };
     fits.then_some(())
         .ok_or_else(|| Refusal(format!("range at={place}")))
 }
@@ -219,8 +241,8 @@ fn named(name: Option<&str>) -> String {
 fn described<M: Subject>(message: &mut M) -> Answer {
     let mut answer = format!(" bytes={}", hex(&message.encode()?));
     for field in M::FIELDS {
-        let value = (field.value)(message);
-        let _ = write!(answer, " field raw={}{}", value.show(), named(value.name()));
+        let (raw, name) = field.show(message);
+        let _ = write!(answer, " field raw={raw}{name}");
         if let Some(scale) = &field.scale {
             let _ = write!(answer, " physical={}", (scale.get)(message).to_bits());
         }
@@ -235,7 +257,7 @@ fn constants<M: Subject>() -> String {
     let ids = list(M::ids().iter().map(u32::to_string));
     let mut answer = format!("{} length={} ids={ids}", named(Some(M::TITLE)), M::BYTES);
     for field in M::FIELDS {
-        let fresh = (field.value)(&mut M::default()).show();
+        let (fresh, _) = field.show(&mut M::default());
         let special = list((field.special)().iter().map(i128::to_string));
         let _ = write!(answer, " field raw={fresh} special={special}");
         for (key, bound) in (field.limits)() {
@@ -258,7 +280,7 @@ fn sweep<M: Subject>(words: &mut Words) -> Answer {
         let physical = (scale.get)(&message);
         let mut back = M::default();
         let set = (scale.set)(&mut back, physical);
-        let back = set.map_or_else(|_| String::new(), |()| (field.value)(&mut back).show());
+        let back = set.map_or_else(|_| String::new(), |()| field.show(&mut back).0);
         let _ = write!(answer, "{},{back},", physical.to_bits());
     }
     Ok(answer)

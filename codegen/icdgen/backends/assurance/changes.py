@@ -1,0 +1,176 @@
+"""Every single change of what the lines of an ICD say: numbers one more and one less, types, formulas, references."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any, NamedTuple, TypeVar
+
+from icdgen import layout
+from icdgen.icd import formula
+from icdgen.icd.located import Map
+from icdgen.icd.model import Enum, Field, Limits, Message, Node
+
+OTHER_TYPES = {
+    "uint": ("int", "float", "bytes", "bool"),
+    "int": ("uint", "float", "bytes"),
+    "enum": ("uint", "int"),
+    "bool": ("uint", "int"),
+    "float": ("uint", "int", "bytes"),
+    "bytes": ("uint", "int"),
+    "text": ("uint", "int", "bytes"),
+}
+"""Types that a field of the same width could be instead."""
+
+T = TypeVar("T", Field, Message, Node)
+IDS = ("id", "set_id", "get_id")
+_OTHER_ORDER = {"little": "big", "big": "little", "lsb0": "msb0", "msb0": "lsb0"}
+_WIDER = {**dict.fromkeys(("uint", "int", "enum"), (-1, 1)), **dict.fromkeys(("bytes", "text"), (-8, 8))}
+_LIMITS = ("min", "max", "above", "below")
+_OF_SCALED = ("formula", "const", "special", *_LIMITS)  # what only numbers have
+
+
+class Change(NamedTuple):
+    """The value of ``key`` of ``source`` (what was read of a line) would be ``now`` instead of ``old``."""
+
+    kind: str  # "offset", "width", "type" ...
+    source: Map
+    key: str
+    old: object
+    now: object
+
+
+def of_field(field: Field, message: Message, node: Node) -> Iterator[tuple[Change, Field]]:
+    """The changes of a field, and what it would be; none that no field of such a type or no frame of such a length can have."""
+    size = 8 * message.length
+    source = field.source
+    for step in (-8, 8) if field.is_bytes else (-8, -1, 1, 8):
+        if 0 <= field.at + step <= size - field.bits:
+            yield _step("offset", source, "at", field.at, step), replace(field, at=field.at + step)
+    for step in _WIDER.get(field.type, ()):
+        if 0 < field.bits + step <= size - field.at:
+            yield _step("width", source, "bits", field.bits, step), replace(field, bits=field.bits + step)
+    for kind in OTHER_TYPES[field.type] if _is_plain(field) else ():
+        if _can_be(field, kind):
+            scale = field.scale if kind in ("uint", "int") else None
+            yield Change("type", source, "type", field.type, kind), replace(field, type=kind, scale=scale)
+    for key, order in zip(("byte_order", "bit_order"), field.orders(node), strict=True):
+        other = _with(field, key, _OTHER_ORDER[order])
+        if key in source and not field.is_bytes and layout.pieces(other, node) != layout.pieces(field, node):
+            yield Change(key.replace("_", " "), source, key, order, _OTHER_ORDER[order]), other
+    for text in formulas(field.formula) if field.scale is not None else ():
+        try:
+            yield Change("formula", source, "formula", field.formula, text), replace(field, scale=formula.parse(text))
+        except formula.FormulaError:  # its factor would be 0
+            continue
+    yield from _values(field)
+
+
+def _values(field: Field) -> Iterator[tuple[Change, Field]]:
+    """Changes of the values that have a meaning."""
+    if field.const is not None:
+        for step in (-1, 1):
+            yield _step("const", field.source, "const", field.const, step), replace(field, const=field.const + step)
+    for index, special in enumerate(field.special):
+        for step in (-1, 1):
+            others = list(field.special)
+            others[index] = replace(special, value=special.value + step)
+            change = _step("special", field.source["special"][index], "value", special.value, step)
+            yield change, replace(field, special=tuple(others))
+    held = field.limits or Limits()
+    for key in _LIMITS:
+        value: Fraction | None = getattr(held, key)
+        for step in (-1, 1):
+            if value is None:
+                break
+            limits = replace(held, **{key: value + step})
+            yield _step("limit", field.source, key, field.source[key], step), replace(field, limits=limits)
+
+
+def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]:
+    """The changes of what a message says of itself."""
+    source = message.source
+    for key in (*IDS, "length"):
+        value = getattr(message, key)
+        for step in (-1, 1) if value is not None else ():
+            if value + step >= 0:
+                kind = "length" if key == "length" else "id"
+                yield _step(kind, source, key, value, step), _with(message, key, value + step)
+    for key in ("byte_order", "bit_order"):
+        if key in source:
+            now = _OTHER_ORDER[source[key]]
+            fields = tuple(one if key in one.source else _with(one, key, now) for one in message.fields)
+            if not _same_places(message.fields, node, fields, node):
+                yield Change(key.replace("_", " "), source, key, source[key], now), replace(message, fields=fields)
+
+
+def of_node(node: Node) -> Iterator[tuple[Change, Node]]:
+    """The changes of what a node says of itself."""
+    source = node.source.get("node", node.source)
+    for key in ("node_type", "interface_version"):
+        value = getattr(node, key)
+        for step in (-1, 1) if value is not None else ():
+            yield _step("node", source, key, value, step), _with(node, key, value + step)
+    every = tuple(field for message in node.messages for field in message.fields)
+    for key in ("byte_order", "bit_order"):
+        now = _OTHER_ORDER[getattr(node, key)]
+        other = _with(node, key, now)
+        if not _same_places(every, node, every, other):
+            yield Change(key.replace("_", " "), source, key, getattr(node, key), now), other
+
+
+def of_enum(enum: Enum) -> Iterator[tuple[Change, Enum]]:
+    """The changes of the members of an enumeration."""
+    for index, member in enumerate(enum.members):
+        for step in (-1, 1):
+            members = list(enum.members)
+            members[index] = replace(member, value=member.value + step)
+            change = _step("enum value", member.source, "value", member.value, step)
+            yield change, replace(enum, members=tuple(members))
+
+
+def formulas(text: str) -> Iterator[str]:
+    """Each number of the formula one more and one less in its last digit, ten times and a tenth; the sign turned."""
+    for match in re.finditer(r"[0-9]+(?:\.[0-9]+)?", text):
+        number = Decimal(match.group())
+        last = Decimal(1).scaleb(int(number.as_tuple().exponent))
+        for other in (number - last, number + last, number * 10, number / 10):
+            yield f"{text[: match.start()]}{other:f}{text[match.end() :]}"
+    yield text.replace("raw", "-raw", 1) if "=" not in text else text.replace("value", "-value", 1)
+    yield f"{text} + 1"
+
+
+def _with(thing: T, key: str, value: Any) -> T:
+    return replace(thing, **{key: value})
+
+
+def _step(kind: str, source: Map, key: str, value: float, step: int) -> Change:
+    """``value`` is that of the model; where the line gives another, as a part of a field does its place, that is changed."""
+    printed = source.get(key, value)
+    old = printed if type(printed) in (int, float) else value
+    return Change(kind, source, key, old, old + step)
+
+
+def _is_plain(field: Field) -> bool:
+    """Whether its type can be another without a further change of its line."""
+    return "type" in field.source and "enum" not in field.source
+
+
+def _can_be(field: Field, kind: str) -> bool:
+    """Whether a field of this width and with what else its line says may be of that type."""
+    if kind == "bool":
+        return field.bits == 1 and not any(key in field.source for key in _OF_SCALED)
+    if kind == "float":
+        return field.bits in (32, 64) and not any(key in field.source for key in _OF_SCALED)
+    if kind == "bytes":
+        return field.bits % 8 == field.at % 8 == 0 and not any(key in field.source for key in _OF_SCALED)
+    return field.bits <= 64
+
+
+def _same_places(fields: tuple[Field, ...], node: Node, others: tuple[Field, ...], other: Node) -> bool:
+    """Whether every bit lies where it lay."""
+    pairs = zip(fields, others, strict=True)
+    return all(a.is_bytes or layout.pieces(a, node) == layout.pieces(b, other) for a, b in pairs)

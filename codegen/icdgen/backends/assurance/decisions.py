@@ -1,0 +1,123 @@
+"""The paper of what is not simply the manual's: decisions about its faults, notes, assumptions, and what it leaves out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from icdgen.backends.assurance.paper import Cell, Group, Page, lines_of
+from icdgen.backends.assurance.places import Files
+from icdgen.backends.assurance.trace import Element
+from icdgen.icd.errata import section
+from icdgen.icd.located import Map, Seq
+from icdgen.icd.model import Erratum, Icd, Node
+
+ERRATA = (
+    "id", "kind", "node", "title", "confidence", "tables", "decided in", "touches", "printed", "held", "why", "evidence",
+)  # fmt: skip
+ASSUMPTIONS = ("node", "part of", "key", "value", "line", "why")
+MISSING = ("node", "kind", "id", "name", "why")
+_OF_ERRATA = (
+    "Errata are decisions about faults of the manual: what is printed, what is held instead, why, and how sure that is. Notes "
+    "change nothing. Each names the place where it is decided and the lines of the ICD that it touches.",
+)
+_OF_ASSUMPTIONS = (
+    "What the manual does not say and the code has to know, each with its reason, and the line of the ICD where that stands.",
+)
+_OF_MISSING = ("What the manual mentions and does not describe: there is no code for it.",)
+
+
+def papers(
+    icd: Icd, elements: Sequence[Element], files: Files
+) -> Iterator[tuple[Page, list[list[Cell]], tuple[str, ...]]]:
+    """Each paper that has something to say: its page, and the rows and columns of its table."""
+    found = list(errata(icd, elements, files))
+    if found:
+        groups = [
+            Group([_folded(row) for row in found if row[2] == node.name], node.title)
+            for node in icd.nodes
+            if node.errata
+        ]
+        columns = ("Id", "Kind", "What", "Confidence", "Tables", "Decided in", "Touches", "Printed", "Held", "Evidence")
+        yield Page("errata.html", "Errata", _OF_ERRATA, columns, groups, data=("errata.csv",)), found, ERRATA
+    assumed, absent = list(assumptions(icd, files)), list(missing(icd))
+    if assumed:
+        yield _plain("assumptions", "Assumptions", _OF_ASSUMPTIONS, ASSUMPTIONS, assumed), assumed, ASSUMPTIONS
+    if absent:
+        yield _plain("missing", "Not described", _OF_MISSING, MISSING, absent), absent, MISSING
+
+
+def _plain(name: str, title: str, says: tuple[str, ...], columns: tuple[str, ...], rows: list[list[Cell]]) -> Page:
+    """A paper whose page shows what its table has."""
+    shown = tuple(map(str.capitalize, columns))
+    return Page(f"{name}.html", title, says, shown, [Group(list(rows))], data=(f"{name}.csv",))
+
+
+def _folded(row: list[Cell]) -> list[Cell]:
+    """A row of the page: the reason stands below the title."""
+    id, kind, _, title, confidence, tables, decided, touches, printed, held, why, evidence = row
+    return [id, kind, [*lines_of(title), *lines_of(why)], confidence, tables, decided, touches, printed, held, evidence]
+
+
+def errata(icd: Icd, elements: Sequence[Element], files: Files) -> Iterator[list[Cell]]:
+    """A row each, in the order of the overlays."""
+    touched: dict[int, list[str]] = {}
+    for one in elements:
+        for erratum in one.errata:
+            touched.setdefault(id(erratum), []).append(files.line(one.source.place))
+    for node in icd.nodes:
+        for row in node.loggable:
+            for erratum in row.errata:
+                touched.setdefault(id(erratum), []).append(files.line(row.source.place))
+        for erratum in node.errata:
+            lines = [*touched.get(id(erratum), ()), *(files.line(place.place) for place in _sections(node, erratum))]
+            yield [
+                erratum.id, erratum.label, node.name, erratum.title, erratum.confidence, [f"{table}" for table in erratum.tables],
+                files.line(erratum.source.place), list(dict.fromkeys(lines)), _pairs(erratum.printed), _pairs(erratum.held),
+                erratum.why, erratum.evidence,
+            ]  # fmt: skip
+
+
+def assumptions(icd: Icd, files: Files) -> Iterator[list[Cell]]:
+    """A row for each key of a section or a message that is said to be assumed."""
+    for node in icd.nodes:
+        for path, owner in _owners(node.source):
+            for key, why in owner["assumptions"].items():
+                value = owner.get(key)
+                shown = "" if isinstance(value, dict | list) else _shown(value)
+                yield [node.name, path, key, shown, files.line(owner["assumptions"].key_at(key)), str(why)]
+
+
+def missing(icd: Icd) -> Iterator[list[Cell]]:
+    """A row for each message that the manual mentions and does not describe."""
+    for node in icd.nodes:
+        for one in node.missing:
+            yield [node.name, one.kind, str(one.id), one.name, one.why]
+
+
+def _sections(node: Node, erratum: Erratum) -> Iterator[Map]:
+    """The sections of the ICD that an erratum is about."""
+    where = erratum.source.get("where")
+    for one in where if isinstance(where, Seq) else [where]:
+        if isinstance(one, Map) and "section" in one:
+            yield from section(node.source, str(one["section"]))
+
+
+def _owners(tree: object, path: str = "") -> Iterator[tuple[str, Map]]:
+    """Whatever has assumptions, with its name or its path."""
+    if isinstance(tree, Map):
+        if isinstance(tree.get("assumptions"), Map):
+            yield str(tree.get("name", path)), tree
+        for key, value in tree.items():
+            if key != "assumptions":
+                yield from _owners(value, f"{path}.{key}".lstrip("."))
+    elif isinstance(tree, Seq):
+        for index, value in enumerate(tree):
+            yield from _owners(value, f"{path}.{index}")
+
+
+def _pairs(pairs: tuple[tuple[str, object], ...]) -> list[str]:
+    return [f"{key}: {_shown(value)}" for key, value in pairs]
+
+
+def _shown(value: object) -> str:
+    return "(absent)" if value is None else str(value).lower() if isinstance(value, bool) else str(value)

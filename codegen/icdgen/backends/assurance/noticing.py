@@ -1,0 +1,151 @@
+"""Which golden vectors notice a change of the ICD: what the reference codec would then answer is not what they demand.
+
+A vector is named by its line. A row demands what its frame is decoded to and what that is encoded to, raw and physical; the
+line of a field its fresh, special and least values, the numbers that it refuses and what setting its physical value gives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import cached_property
+from itertools import accumulate
+from operator import or_
+from typing import Any
+
+from icdgen import codec
+from icdgen.icd.formula import Scale
+from icdgen.icd.model import Field, Message, Node
+from icdgen.vectors.lines import MessageLines
+from icdgen.vectors.make import MessageVectors, Raw, Row, known_text
+from icdgen.vectors.settings import NEVER, bits_of, float_of
+from icdgen.vectors.write import raw_json
+
+_REFUSED = object()
+
+
+class MessageWatch:
+    """The vectors of a message that ``node`` declares."""
+
+    def __init__(self, node: Node, vectors: MessageVectors, lines: MessageLines) -> None:
+        self.node, self.message, self.vectors, self.lines = node, vectors.message, vectors, lines
+
+    def field(self, index: int, now: Field, node: Node | None = None) -> list[int]:
+        """Lines that notice that a field is another, or ``node`` is that of the message."""
+        old, node = self.message.fields[index], node or self.node
+        found = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
+        alone = replace(self.message, fields=(now,))
+        rows = zip(self.lines.rows, self.vectors.rows, self._of_others[index], strict=True)
+        return found + [number for number, row, others in rows if _notices(row, old, now, node, alone, others)]
+
+    def places(self, fields: Iterable[Field], node: Node) -> list[int]:
+        """Lines that notice that fields lie elsewhere, or that those of another node do."""
+        changed = replace(self.message, fields=tuple(fields))
+        pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
+        return [number for number, row in pairs if _answer(node, changed, row.frame) != (row.raw, row.encoded)]
+
+    def id(self, key: str) -> list[int]:
+        """Lines that notice another id: frames are asked for by the id, by the set id where there are two."""
+        rows = self.lines.rows[:1] if key == "get_id" else self.lines.rows
+        return [self.lines.head, *rows]
+
+    def length(self) -> list[int]:
+        """Lines that notice another length."""
+        return [self.lines.head, self.lines.lengths, *self.lines.rows]
+
+    def _line_notices(self, old: Field, now: Field) -> bool:
+        if _shown(old, old.fresh) != _shown(now, now.fresh):
+            return True
+        if [one.value for one in old.special] != [one.value for one in now.special] or old.limits != now.limits:
+            return True
+        unfit = self.vectors.unfit.get(old.name, ())
+        if any(_attempt(codec.check_raw, now, value) is not _REFUSED for value in unfit):
+            return True
+        given = self.vectors.settings.get(old.name, [])
+        if not given or old.type == "text":
+            return any(_attempt(codec.raw_from_text, now, said) != _given(raw) for said, raw in given)
+        asked = [*given, *((bits, None) for bits in NEVER)]
+        return now.scale is None or any(
+            _attempt(codec.raw_from_physical, now, float_of(bits)) != _given(raw) for bits, raw in asked
+        )
+
+    @cached_property
+    def _of_others(self) -> list[list[int]]:
+        """Of each field, the bits that all other fields set in each row's frame."""
+        columns = []
+        for field in self.message.fields:
+            alone = replace(self.message, fields=(field,))
+            frames = (codec.encode(self.node, alone, {field.name: row.raw[field.name]}) for row in self.vectors.rows)
+            columns.append([_number(frame) for frame in frames])
+        by_row = []
+        for row in zip(*columns, strict=True):
+            before = accumulate(row[:-1], or_, initial=0)
+            after = list(accumulate(row[:0:-1], or_, initial=0))[::-1]
+            by_row.append([a | b for a, b in zip(before, after, strict=True)])
+        return [list(column) for column in zip(*by_row, strict=True)]
+
+
+def _notices(row: Row, old: Field, now: Field, node: Node, alone: Message, others: int) -> bool:
+    """Whether a row demands what is not so of a field. ``alone``: the message with ``now`` only; ``others``: bits of the rest."""
+    answer = _answer(node, alone, row.frame)
+    if answer is None:
+        return True
+    raw, read, frame = row.raw[old.name], answer[0][now.name], answer[1]
+    if _shown(now, read) != _shown(old, raw) or _name(now, read) != _name(old, raw):
+        return True
+    if now.type == "text" or now.type != old.type or now.scale is not old.scale or now.bits != old.bits:
+        if _physical(now, read) != _physical(old, raw) or _set_back(now, read) != _set_back(old, raw):
+            return True
+    return _number(frame) | others != _number(row.encoded)
+
+
+def _answer(node: Node, message: Message, frame: bytes) -> tuple[Raw, bytes] | None:
+    """What a frame is decoded to, and that encoded; None if it is refused."""
+    try:
+        raw = codec.decode(node, message, frame)
+        return raw, codec.encode(node, message, raw)
+    except (ValueError, OverflowError):
+        return None
+
+
+def _attempt(call: Callable[..., object], *arguments: object) -> object:
+    """What the codec answers, which may be that it refuses."""
+    try:
+        return call(*arguments)
+    except (ValueError, OverflowError):
+        return _REFUSED
+
+
+def _given(raw: object) -> object:
+    return _REFUSED if raw is None else raw
+
+
+def _number(frame: bytes) -> int:
+    return int.from_bytes(frame, "little")
+
+
+def _shown(field: Field, raw: Any) -> object:
+    """A raw value in the form in which a language answers: a truth value is no number."""
+    return (field.type == "bool", raw_json(field, raw))
+
+
+def _name(field: Field, raw: Any) -> object:
+    """Name of the member; whether there are names at all."""
+    if field.enum is None:
+        return None
+    return {member.value: member.name for member in field.enum.members}.get(raw, "")
+
+
+def _physical(field: Field, raw: Any) -> object:
+    if field.type == "text":
+        return known_text(raw)
+    return None if field.scale is None else bits_of(_double(field.scale, raw))
+
+
+def _set_back(field: Field, raw: Any) -> object:
+    """What setting the physical value of the raw value gives."""
+    return None if field.scale is None else _attempt(codec.raw_from_physical, field, _double(field.scale, raw))
+
+
+def _double(scale: Scale, raw: int) -> float:
+    return codec.to_double(scale.physical(raw))

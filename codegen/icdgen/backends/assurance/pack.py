@@ -1,0 +1,94 @@
+"""All files of the pack."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+from icdgen import __version__, backends
+from icdgen.backends.assurance import decisions, measured
+from icdgen.backends.assurance.measured import Measurement
+from icdgen.backends.assurance.paper import Cell, Group, Page, csv_text, lines_of
+from icdgen.backends.assurance.places import Files
+from icdgen.backends.assurance.symbols import Symbols
+from icdgen.backends.assurance.trace import Element, Trace
+from icdgen.backends.assurance.tracing import CHANGES, Tracing, title
+from icdgen.icd.model import Icd
+from icdgen.render import Renderer
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+_HOME = (
+    "What a review of the generated code asks for: where each line of the ICD comes from, what it became, and what would notice "
+    "that it is wrong; what was decided and assumed; and what was measured. Each paper is a page to print and a table in CSV.",
+    "The papers are made of the ICDs and of the golden vectors with the reference codec. They show that the vectors hold what the "
+    "ICD says. That the ICD says what the manual says, and that the manual says what the device does, they do not show.",
+)
+
+
+def files(icd: Icd, render: Renderer, folder: Path | None) -> Iterator[tuple[PurePosixPath, str]]:
+    """Path and text of each; ``folder`` is that of measurements. Raises `UserError` for one that is of something else."""
+    known = measured.read(folder, icd, lambda language: code_now(icd, language)) if folder is not None else []
+    digests = tuple((f"{node.title} ({node.name})", node.digest) for node in icd.nodes)
+    traced, tracing = Trace(icd), Tracing(_files(icd), Symbols(icd))
+    elements = {node.name: list(traced.elements(node)) for node in icd.nodes}
+    every = [one for found in elements.values() for one in found]
+    foot = {"version": __version__, "digest": measured.icd_digest(icd), "lines_of": lines_of}
+
+    pages = [tracing.page(node, elements[node.name], (("Digest of the ICD", node.digest),)) for node in icd.nodes]
+    tables = {
+        "trace.csv": csv_text(tracing.columns, tracing.rows(every)),
+        "changes.csv": csv_text(CHANGES, tracing.changes(every)),
+    }
+    for page, rows, columns in decisions.papers(icd, every, tracing.files):
+        pages.append(page)
+        tables[page.data[0]] = csv_text(columns, rows)
+    for one in known:
+        pages.append(_measured(one))
+        tables[f"{one.name}.csv"] = csv_text(one.columns, one.rows)
+
+    home = Page("index.html", "Assurance pack", _HOME, _COLUMNS, [Group(_counts(icd, elements))], digests, ())
+    yield PurePosixPath(home.file), render("index.html.j2", page=home, papers=pages, tables=list(tables), **foot)
+    for page in pages:
+        yield PurePosixPath(page.file), render("paper.html.j2", page=page, **foot)
+    for name, text in tables.items():
+        yield PurePosixPath(name), text
+    yield PurePosixPath("style.css"), render("style.css")
+
+
+_COLUMNS = ("Node", "Messages", "Fields", "Enumerations", "Members", "Changes tried", "Unnoticed by the vectors")
+
+
+def _counts(icd: Icd, elements: dict[str, list[Element]]) -> list[Sequence[Cell]]:
+    """A row a node, and one for all."""
+    rows: list[tuple[str, list[int]]] = []
+    for node in icd.nodes:
+        kinds = [one.kind for one in elements[node.name]]
+        tried = [traced for one in elements[node.name] for traced in one.changes]
+        numbers = [kinds.count(kind) for kind in ("message", "field", "enumeration", "member")]
+        rows.append((node.title, [*numbers, len(tried), sum(not one.noticed for one in tried)]))
+    total = [sum(column) for column in zip(*(numbers for _, numbers in rows), strict=True)]
+    return [[name, *(f"{number:,}" for number in numbers)] for name, numbers in (*rows, ("All", total))]
+
+
+def _measured(one: Measurement) -> Page:
+    facts = (
+        *one.facts,
+        *(("Measured with", tool) for tool in one.made_by),
+        *((f"Digest of the generated {title(language)}", digest) for language, digest in one.code.items()),
+    )
+    rows: list[Sequence[Cell]] = list(one.rows)
+    return Page(f"{one.name}.html", one.title, one.says, one.columns, [Group(rows)], facts, (f"{one.name}.csv",))
+
+
+def code_now(icd: Icd, language: str) -> str:
+    """The digest of what is generated now. Raises `UserError` for a language that there is not."""
+    backend = backends.get(language)
+    return measured.code_digest(backend.files(icd, Renderer.of(backend)))
+
+
+def _files(icd: Icd) -> Files:
+    of_errata = (erratum.source.place.file for node in icd.nodes for erratum in node.errata)
+    return Files(file for file in (*(node.file for node in icd.nodes), *of_errata) if file)

@@ -1,0 +1,168 @@
+"""From a line of the ICD to the golden vectors that notice that it is changed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from icdgen.backends.assurance import changes
+from icdgen.backends.assurance.changes import Change
+from icdgen.backends.assurance.noticing import MessageWatch
+from icdgen.icd.located import Map
+from icdgen.icd.model import Enum, Erratum, Field, Icd, Member, Message, Node
+from icdgen.vectors.lines import NodeLines, lines
+from icdgen.vectors.make import NodeVectors, make
+from icdgen.vectors.write import text
+
+Noticed = dict[str, list[int]]
+"""Node -> lines of its file of vectors."""
+
+
+@dataclass(frozen=True, slots=True)
+class Traced:
+    """A change, and the vectors that notice it."""
+
+    change: Change
+    noticed: Noticed
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """Something that a line of the ICD describes. ``row`` counts the fields or members of its message or enumeration from 1."""
+
+    kind: str  # "node" | "message" | "field" | "enumeration" | "member"
+    node: Node
+    owner: Message | Enum | None  # of a field, its message; of a member, its enumeration
+    model: Node | Message | Field | Enum | Member
+    row: int | None
+    changes: tuple[Traced, ...]
+
+    @property
+    def name(self) -> str:
+        return self.model.name
+
+    @property
+    def source(self) -> Map:
+        """What was read of it."""
+        source = self.model.source
+        return source.get("node", source) if self.kind == "node" else source
+
+    @property
+    def errata(self) -> tuple[Erratum, ...]:
+        """The decisions and the notes that concern it."""
+        return () if self.kind == "node" else self.model.errata
+
+    @property
+    def table(self) -> int | None:
+        """The manual's table that has it."""
+        thing = self.owner or self.model
+        return thing.table if isinstance(thing, Message | Enum) else None
+
+    @property
+    def page(self) -> int | None:
+        """The manual's page, of a message and its fields, where the ICD says it."""
+        thing = self.owner or self.model
+        return thing.page if isinstance(thing, Message) else None
+
+    @property
+    def noticed(self) -> Noticed:
+        """The vectors that notice any of the changes."""
+        return together(one.noticed for one in self.changes)
+
+
+class Trace:
+    """That of a set of ICDs, node by node, in the order of the ICDs."""
+
+    def __init__(self, icd: Icd) -> None:
+        self.icd = icd
+        self._vectors: dict[str, NodeVectors] = {}
+        self._lines: dict[str, NodeLines] = {}
+        self._watches: dict[tuple[str, str], MessageWatch] = {}
+        for node in icd.nodes:
+            vectors = self._vectors[node.name] = make(icd, node)
+            found = self._lines[node.name] = lines(vectors, text(vectors))
+            for one in vectors.messages:
+                name = one.message.name
+                self._watches[node.name, name] = MessageWatch(node, one, found.messages[name])
+
+    def elements(self, node: Node) -> Iterator[Element]:
+        """Those of a node that the ICD has lines for: itself, its enumerations with members, its messages with fields."""
+        yield Element("node", node, None, node, None, tuple(self._of_node(node)))
+        for enum in node.enums:
+            traced = list(self._of_enum(enum))
+            yield Element("enumeration", node, None, enum, None, ())
+            for row, member in enumerate(enum.members, 1):
+                own = tuple(one for one in traced if one.change.source is member.source)
+                yield Element("member", node, enum, member, row, own)
+        for message in node.messages:
+            yield Element("message", node, None, message, None, tuple(self._of_message(message, node)))
+            watch = self._watches[node.name, message.name]
+            for index, field in enumerate(message.fields):
+                found = changes.of_field(field, message, node)
+                own = tuple(Traced(change, _noticed(node, watch.field(index, now))) for change, now in found)
+                yield Element("field", node, message, field, index + 1, own)
+
+    def _of_node(self, node: Node) -> Iterator[Traced]:
+        for change, now in changes.of_node(node):
+            if change.kind == "node":
+                yield Traced(change, _noticed(node, [self._lines[node.name].head[change.key]]))
+            else:
+                watches = (self._watches[node.name, message.name] for message in node.messages)
+                rows = [line for watch in watches for line in watch.places(watch.message.fields, now)]
+                yield Traced(change, _noticed(node, rows))
+
+    def _of_enum(self, enum: Enum) -> Iterator[Traced]:
+        for change, now in changes.of_enum(enum):
+            found = [{enum.node: [self._lines[enum.node].enums[enum.name]]}]
+            for watch, index in self._users.get((enum.node, enum.name), ()):
+                field = replace(watch.message.fields[index], enum=now)
+                found.append(_noticed(watch.node, watch.field(index, field)))
+            yield Traced(change, together(found))
+
+    @cached_property
+    def _users(self) -> dict[tuple[str, str], list[tuple[MessageWatch, int]]]:
+        """By enumeration, each field of it: what watches its message, and which of the fields it is."""
+        users: dict[tuple[str, str], list[tuple[MessageWatch, int]]] = {}
+        for watch in self._watches.values():
+            for index, field in enumerate(watch.message.fields):
+                if field.enum is not None:
+                    users.setdefault((field.enum.node, field.enum.name), []).append((watch, index))
+        return users
+
+    def _of_message(self, message: Message, node: Node) -> Iterator[Traced]:
+        watch = self._watches[node.name, message.name]
+        for change, now in changes.of_message(message, node):
+            if change.kind == "id":
+                yield Traced(change, together([self._ids(message, now), _noticed(node, watch.id(change.key))]))
+            elif change.kind == "length":
+                yield Traced(change, _noticed(node, watch.length()))
+            else:
+                yield Traced(change, _noticed(node, watch.places(now.fields, node)))
+
+    def _ids(self, message: Message, now: Message) -> Noticed:
+        """The lists of ids, of each node that speaks the message, in which one is no longer its own."""
+        found: Noticed = {}
+        for node in self.icd.nodes:
+            for direction, known in self._vectors[node.name].ids.items() if _speaks(self.icd, node, message) else ():
+                mine = {id for id, name in known.items() if name == message.name}
+                if mine & (set(message.ids) - set(now.ids)):
+                    found.setdefault(node.name, []).append(self._lines[node.name].ids[direction])
+        return found
+
+
+def _speaks(icd: Icd, node: Node, message: Message) -> bool:
+    return message.node in (node.name, *(one.name for one in icd.included(node)))
+
+
+def together(several: Iterator[Noticed] | list[Noticed]) -> Noticed:
+    """The lines of all, in order, each once."""
+    found: dict[str, set[int]] = {}
+    for one in several:
+        for node, numbers in one.items():
+            found.setdefault(node, set()).update(numbers)
+    return {node: sorted(numbers) for node, numbers in found.items() if numbers}
+
+
+def _noticed(node: Node, numbers: list[int]) -> Noticed:
+    return {node.name: sorted(set(numbers))} if numbers else {}

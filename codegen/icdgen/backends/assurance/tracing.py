@@ -1,0 +1,124 @@
+"""The papers of the trace: a page a node, a table of all that is traced, and a table of each single change."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from icdgen.backends.assurance.paper import Cell, Group, Page
+from icdgen.backends.assurance.places import Files, vectors
+from icdgen.backends.assurance.symbols import Symbols
+from icdgen.backends.assurance.trace import Element
+from icdgen.icd.model import Enum, Message, Node
+
+TITLES = {"c": "C", "python": "Python", "rust": "Rust"}
+_SHOWN = (
+    "id", "set_id", "get_id", "length", "node_type", "interface_version", "at", "bits", "type", "enum", "value", "unit", "formula",
+    "const", "min", "max", "above", "below", "byte_order", "bit_order",
+)  # fmt: skip
+"""Keys of what is printed in a row of the manual, in the order of a sentence."""
+_SAYS = (
+    "Each row is a line of the ICD: the row of the manual's table that it comes from, what it says, the names that the generated "
+    "code of each language has for it, and the golden vectors that notice a change of it, by their lines in the files of vectors.",
+    "Each number, type and formula of the line was changed, one at a time: an offset by one bit and by eight, a width, an id, a "
+    "length or a value by one, each number of a formula in its last digit and by a factor of ten, a type to each other that fits. "
+    "Changes counts them, Unnoticed those that no vector notices. Vectors are those that notice any of them; which notice a "
+    "single one, changes.csv says.",
+    "Names, units, summaries and remarks are not held by vectors: another unit or another name gives other symbols. The protocol "
+    "section of a node is not traced here; vectors of its own hold it.",
+)
+TRACE = (
+    "kind", "node", "part of", "name", "row", "table", "page", "file", "line", "says", "errata", "changes", "unnoticed", "vectors",
+)  # fmt: skip
+CHANGES = ("kind", "node", "part of", "name", "key", "file", "line", "column", "says", "changed to", "vectors")
+
+
+@dataclass(frozen=True, slots=True)
+class Tracing:
+    """What the tables are made from."""
+
+    files: Files
+    symbols: Symbols
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Those of the table of all that is traced, with one for each language."""
+        return (*TRACE, *(title(language) for language in self.symbols.languages))
+
+    def rows(self, elements: Sequence[Element]) -> Iterator[list[Cell]]:
+        """The rows of that table."""
+        for one in elements:
+            place = one.source.place
+            yield [
+                one.kind, one.node.name, one.owner.name if one.owner else "", one.name, _text(one.row), _text(one.table),
+                _text(one.page), self.files.name(place.file), str(place.line), said(one), [erratum.id for erratum in one.errata],
+                str(len(one.changes)), str(_unnoticed(one)), vectors(one.noticed),
+                *([str(name) for name in self.symbols.of(language, one.model.source)] for language in self.symbols.languages),
+            ]  # fmt: skip
+
+    def changes(self, elements: Sequence[Element]) -> Iterator[list[Cell]]:
+        """A row for each single change: in this file, line and column the value would be another."""
+        for one in elements:
+            for traced in one.changes:
+                change = traced.change
+                place = change.source.at(change.key)
+                owner = one.owner.name if one.owner else ""
+                yield [
+                    change.kind, one.node.name, owner, one.name, change.key, self.files.name(place.file), str(place.line),
+                    str(place.column), str(change.old), str(change.now), vectors(traced.noticed),
+                ]  # fmt: skip
+
+    def page(self, node: Node, elements: Sequence[Element], facts: tuple[tuple[str, str], ...]) -> Page:
+        """The trace of a node, message by message."""
+        groups: list[Group] = []
+        for one in elements:
+            if one.owner is None:
+                rows: list[Sequence[Cell]] = []
+                groups.append(Group(rows, _heading(one), _notes(one)))
+            groups[-1].rows.append(self._shown(one))
+        languages = (title(language) for language in self.symbols.languages)
+        columns = ("Row", "Name", "Says", "Line", *languages, "Changes", "Unnoticed", "Vectors")
+        file = f"trace-{node.name}.html"
+        return Page(file, f"Trace: {node.title}", _SAYS, columns, groups, facts, ("trace.csv", "changes.csv"))
+
+    def _shown(self, one: Element) -> list[Cell]:
+        errata = [f"{erratum.label} {erratum.id}" for erratum in one.errata]
+        return [
+            _text(one.row), [one.name, *errata], said(one), self.files.line(one.source.place),
+            *(self._names(language, one) for language in self.symbols.languages),
+            str(len(one.changes)) if one.changes else "", str(_unnoticed(one)) if one.changes else "", vectors(one.noticed),
+        ]  # fmt: skip
+
+    def _names(self, language: str, one: Element) -> list[str]:
+        return list(dict.fromkeys(symbol.name for symbol in self.symbols.of(language, one.model.source)))
+
+
+def title(language: str) -> str:
+    """What a language is called; a plug-in's by its word for ``--lang``."""
+    return TITLES.get(language, language)
+
+
+def said(one: Element) -> str:
+    """The numbers of the line, as they stand there."""
+    return ", ".join(f"{key} {one.source[key]}" for key in _SHOWN if key in one.source)
+
+
+def _heading(one: Element) -> str:
+    return one.model.title if isinstance(one.model, Node) else one.name
+
+
+def _notes(one: Element) -> tuple[str, ...]:
+    words = [one.model.kind if isinstance(one.model, Message) else one.kind]
+    if one.table is not None:
+        words.append(f"Table {one.table} of the manual")
+    if one.page is not None:
+        words.append(f"page {one.page}")
+    return (", ".join(words),) if isinstance(one.model, Message | Enum) else ()
+
+
+def _unnoticed(one: Element) -> int:
+    return sum(not traced.noticed for traced in one.changes)
+
+
+def _text(value: int | None) -> str:
+    return "" if value is None else str(value)

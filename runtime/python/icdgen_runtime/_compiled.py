@@ -1,0 +1,326 @@
+"""`Message.from_bytes` and `Message.to_bytes` of a class: compiled from its fields when they are first used.
+
+Fields that begin and end with a byte are items of one struct format. All other bits come in bytes of their own: fields within
+one byte are looked up in a table of 256 rows, fields that cross bytes are put together from their pieces.
+"""
+
+from __future__ import annotations
+
+import struct
+
+from . import _codec, _floats, _lazy
+from ._layout import byte_order, pieces
+
+_INTEGERS = {8: "B", 16: "H", 32: "I", 64: "Q"}
+_FLOATS = {32: "f", 64: "d"}
+_DECODER = """\
+def from_bytes(cls, data):
+    self = new(cls)
+    try:
+        {unpack}
+    except error:
+        raise length_error(cls, data) from None
+    {assign}
+    return self
+"""
+_ENCODER = """\
+def to_bytes(self):
+    try:
+        {prepare}
+        {pack}
+    except REFUSED:
+        raise range_error(self) from None
+"""
+
+_functions: dict[tuple[type, str], _lazy.Any] = {}
+
+
+def compiled(message: type[_lazy.Message], name: str) -> _lazy.Any:
+    """The function ``name`` of the class that declares the fields, which from now on has it as its method."""
+    owner = next(one for one in message.__mro__ if "FIELDS" in vars(one))
+    if (owner, name) not in _functions:
+        codec = Codec(owner)
+        source = {"from_bytes": codec.decoder, "to_bytes": codec.encoder}[name]()
+        # All that stands in it are numbers and the names of attributes.
+        code = compile(source, f"<{owner.__qualname__}.{name}>", "exec")
+        exec(code, codec.names)  # noqa: S102
+        _functions[owner, name] = function = codec.names[name]
+        told = getattr(_lazy.Message, name)
+        function.__doc__, function.__module__ = told.__doc__, owner.__module__
+        function.__qualname__ = f"{owner.__qualname__}.{name}"
+        if name not in vars(owner):
+            setattr(
+                owner, name, classmethod(function) if name == "from_bytes" else function
+            )
+    return _functions[owner, name]
+
+
+class _Item:
+    """One item of the struct format."""
+
+    __slots__ = ("byte", "code", "size", "target", "value")
+
+    def __init__(
+        self, byte: int, size: int, code: str, target: str, value: str
+    ) -> None:
+        self.byte, self.size, self.code = byte, size, code
+        self.target = target
+        """What unpacking assigns it to."""
+        self.value = value
+        """What is packed."""
+
+
+class Codec:
+    """The sources of a message's decoder and encoder, and what they name."""
+
+    def __init__(self, message: type[_lazy.Message]) -> None:
+        self.message, self.order = message, message.BYTE_ORDER
+        self.names: dict[str, _lazy.Any] = {
+            "new": object.__new__,
+            "error": struct.error,
+            "length_error": _codec.length_error,
+            "range_error": _codec.range_error,
+            "REFUSED": _codec.REFUSED,
+        }
+        self._items: list[_Item] = []
+        self._assign: list[str] = []
+        self._prepare: list[str] = []
+        self._parts: dict[int, list[tuple[int, _lazy.FieldInfo]]] = (
+            {}
+        )  # byte -> fields within it, from bit `shift` up
+        self._terms: dict[int, list[str]] = {}  # byte -> what crossing fields add to it
+        self._floats: list[str] = []  # 32-bit floats that the struct converts
+        self._plan()
+
+    def decoder(self) -> str:
+        """The source of ``from_bytes``."""
+        targets = "".join(f"{item.target}, " for item in self._items)
+        unpack = f"({targets}) = unpack(data)" if targets else "unpack(data)"
+        return _DECODER.format(unpack=unpack, assign=_lines(self._assign, 4))
+
+    def encoder(self) -> str:
+        """The source of ``to_bytes``."""
+        values = ", ".join(item.value for item in self._items)
+        pack = [f"return pack({values})"]
+        if self._floats:
+            pack = [
+                f"frame = pack({values})",
+                f"if isnan({' + '.join(self._floats)}):",
+                "    return with_nans(self, frame)",
+            ]
+            pack.append("return frame")
+        return _ENCODER.format(prepare=_lines(self._prepare, 8), pack=_lines(pack, 8))
+
+    def _plan(self) -> None:
+        crossing, shared = [], self._shared_bytes()
+        for info in self._units():
+            span = _bytes_of(info)
+            if info.elements:
+                self._run(info, span.start)
+                continue
+            is_whole = info.at % 8 == info.bits % 8 == 0 and not shared.intersection(
+                span
+            )
+            if is_whole and (info.type != "float" or self._is_in_order(info)):
+                self._whole(info, span.start, len(span))
+            elif len(span) == 1:
+                (piece,) = pieces(info, self.message)
+                self._parts.setdefault(piece.byte, []).append((piece.shift, info))
+            else:
+                crossing.append(info)
+        for info in crossing:
+            self._take_apart(info)
+        for byte in sorted(self._parts.keys() | self._terms.keys()):
+            self._bit_byte(byte)
+        for info in crossing:
+            self._put_together(info)
+        self._join_elements()
+        self._items.sort(key=lambda item: item.byte)
+        if self._floats:
+            self.names |= {
+                "isnan": _floats.isnan,
+                "keep_nans": _floats.keep_nans,
+                "with_nans": _floats.with_nans,
+            }
+            self._assign += [
+                f"if isnan({' + '.join(self._floats)}):",
+                "    keep_nans(self, data)",
+            ]
+        self.form = struct.Struct(self._format())
+        self.names |= {"unpack": self.form.unpack, "pack": self.form.pack}
+
+    def _units(self) -> _lazy.Iterator[_lazy.FieldInfo]:
+        """What is packed by itself: fields, arrays of words, and each element of other arrays."""
+        for info in self.message.FIELDS:
+            if not info.attribute.isidentifier():
+                raise ValueError(f"{info.attribute!r} is no name of an attribute")
+            if info.elements and not _is_run(info):
+                self.names["counted"] = _codec.counted
+                self._prepare.append(f"counted(self.{info.attribute}, {info.elements})")
+                yield from info.parts
+            else:
+                yield info
+
+    def _run(self, info: _lazy.FieldInfo, byte: int) -> None:
+        """An array of words: one item of the struct, which a struct of its own takes apart."""
+        own, local = f"self.{info.attribute}", f"v{byte}"
+        is_single = info.type == "float" and info.bits == 32  # a struct changes NaNs
+        code = (_INTEGERS if info.type != "float" or is_single else _FLOATS)[info.bits]
+        code = code.lower() if info.signed else code
+        order = "<" if byte_order(info, self.message) == "little" else ">"
+        words = struct.Struct(f"{order}{info.elements}{code}")
+        unpack, pack = self._named("unpack", words.unpack), self._named(
+            "pack", words.pack
+        )
+        self._items.append(_Item(byte, words.size, f"{words.size}s", local, local))
+        values, given = f"{unpack}({local})", own
+        if is_single:
+            value_of = self._named("value_of", _floats.float32)
+            bits_of = self._named("bits_of", _floats.float32_bits)
+            values, given = (
+                f"tuple(map({value_of}, {values}))",
+                f"map({bits_of}, {own})",
+            )
+        elif info.enum is not None:
+            members = self._named("members", _codec.Members(info.enum).__getitem__)
+            values = f"tuple(map({members}, {values}))"
+        self._assign.append(f"{own} = {values}")
+        self._prepare.append(f"{local} = {pack}(*{given})")
+
+    def _join_elements(self) -> None:
+        for info in self.message.FIELDS:
+            if info.elements and not _is_run(info):
+                values = "".join(f"{_target(part)}, " for part in info.parts)
+                self._assign.append(f"self.{info.attribute} = ({values})")
+
+    def _shared_bytes(self) -> set[int]:
+        """Bytes that more than one field touches."""
+        once: set[int] = set()
+        more: set[int] = set()
+        for info in (part for one in self.message.FIELDS for part in one.parts):
+            span = _bytes_of(info)
+            more |= once.intersection(span)
+            once.update(span)
+        return more
+
+    def _is_in_order(self, info: _lazy.FieldInfo) -> bool:
+        return byte_order(info, self.message) == self.order
+
+    def _named(self, stem: str, value: _lazy.Any) -> str:
+        """A name for something that the sources refer to."""
+        name = f"{stem}{len(self.names)}"
+        self.names[name] = value
+        return name
+
+    def _whole(self, info: _lazy.FieldInfo, byte: int, size: int) -> None:
+        """A field of whole bytes: one item of the struct."""
+        own, local, target = f"self.{info.attribute}", f"v{byte}", _target(info)
+        code = _INTEGERS.get(info.bits, "")
+        if info.type in ("bytes", "text"):
+            self._items.append(_Item(byte, size, f"{size}s", own, local))
+            self.names["sized"] = _codec.sized
+            self._prepare.append(f"{local} = sized({own}, {size})")
+        elif info.type == "float":
+            self._items.append(_Item(byte, size, _FLOATS[info.bits], target, own))
+            if info.bits == 32:
+                self._floats.append(own)
+        elif not code or (size > 1 and not self._is_in_order(info)):
+            how = f'"{byte_order(info, self.message)}"{", signed=True" if info.signed else ""}'
+            self._items.append(_Item(byte, size, f"{size}s", local, local))
+            self._store(info, f"int.from_bytes({local}, {how})")
+            self._prepare.append(f"{local} = {own}.to_bytes({size}, {how})")
+        else:
+            code = code.lower() if info.signed else code
+            self._items.append(
+                _Item(byte, size, code, target if info.enum is None else local, own)
+            )
+            if info.bits == 8 and info.enum is not None and not info.signed:
+                rows = self._named("rows", _codec.bit_table(((0, info),)))
+                self._assign.append(f"{target} = {rows}[{local}]")
+            elif info.enum is not None:
+                self._store(info, local)
+
+    def _store(self, info: _lazy.FieldInfo, value: str) -> None:
+        """Assigns an integer's value as its type needs it."""
+        if info.enum is not None:
+            value = f"{self._named('members', _codec.Members(info.enum))}[{value}]"
+        self._assign.append(f"{_target(info)} = {value}")
+
+    def _bit_byte(self, byte: int) -> None:
+        """A byte of bits: an item, the fields within it, and what crossing fields add to it."""
+        local = f"v{byte}"
+        self._items.append(_Item(byte, 1, "B", local, local))
+        parts = sorted(self._parts.get(byte, ()), key=lambda part: part[0])
+        if parts:
+            table = _codec.bit_table(tuple((shift, info) for shift, info in parts))
+            rows, inverse = self._named("rows", table), self._named(
+                "bytes", _codec.Inverse(table)
+            )
+            names = ", ".join(f"self.{info.attribute}" for _, info in parts)
+            targets = ", ".join(_target(info) for _, info in parts)
+            self._assign.append(f"{targets} = {rows}[{local}]")
+            self._prepare.append(f"{local} = {inverse}[{names}]")
+        for number, term in enumerate(self._terms.get(byte, [])):
+            self._prepare.append(f"{local} {'|=' if number or parts else '='} {term}")
+
+    def _take_apart(self, info: _lazy.FieldInfo) -> None:
+        """Encoding of a field that crosses bytes: its bits as an integer, and its pieces for the bytes."""
+        own, local = f"self.{info.attribute}", f"n{info.at}"
+        if info.type == "float":
+            bits_of = self._named(
+                "bits_of",
+                _floats.float32_bits if info.bits == 32 else _floats.float64_bits,
+            )
+            self._prepare.append(f"{local} = {bits_of}({own})")
+        else:
+            bits_of = self._named(
+                "bits_of", _codec.signed_bits if info.signed else _codec.unsigned_bits
+            )
+            self._prepare.append(f"{local} = {bits_of}({own}, {info.bits})")
+        for piece in pieces(info, self.message):
+            term = f"({local} >> {piece.at} & {(1 << piece.bits) - 1}) << {piece.shift}"
+            self._terms.setdefault(piece.byte, []).append(term)
+
+    def _put_together(self, info: _lazy.FieldInfo) -> None:
+        """Decoding of a field that crosses bytes."""
+        runs = pieces(info, self.message)
+        value = " | ".join(
+            f"(v{one.byte} >> {one.shift} & {(1 << one.bits) - 1}) << {one.at}"
+            for one in runs
+        )
+        if info.type == "float":
+            value_of = self._named(
+                "value_of", _floats.float32 if info.bits == 32 else _floats.float64
+            )
+            value = f"{value_of}({value})"
+        elif info.signed:
+            value = f"{self._named('signed', _codec.signed)}({value}, {info.bits})"
+        self._store(info, value)
+
+    def _format(self) -> str:
+        reached, codes = 0, ">" if self.order == "big" else "<"
+        for item in self._items:
+            codes += f"{item.byte - reached}x{item.code}"
+            reached = item.byte + item.size
+        return f"{codes}{self.message.LENGTH - reached}x"
+
+
+def _is_run(info: _lazy.FieldInfo) -> bool:
+    """Whether it is an array of words, which are taken apart at once."""
+    is_word = info.at % 8 == 0 and info.bits in _INTEGERS and info.type != "bool"
+    return bool(info.elements) and is_word
+
+
+def _target(info: _lazy.FieldInfo) -> str:
+    """What decoding assigns a value to: the attribute; of an element a variable."""
+    is_element = info.attribute.endswith("]")
+    return f"e{info.at}" if is_element else f"self.{info.attribute}"
+
+
+def _bytes_of(info: _lazy.FieldInfo) -> range:
+    """The bytes that a field touches."""
+    return range(info.at // 8, (info.at + info.bits + 7) // 8)
+
+
+def _lines(statements: list[str], indent: int) -> str:
+    return f"\n{' ' * indent}".join(statements)

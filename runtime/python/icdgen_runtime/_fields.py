@@ -1,0 +1,250 @@
+"""How the class of a message declares its fields, and what is told of them."""
+
+from __future__ import annotations
+
+# Itself: what annotations name is loaded when they are evaluated.
+from . import _lazy
+from ._errors import RangeError
+from ._scales import nearest_raw
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class FieldInfo:
+    """What the ICD says of a field. Not to be changed.
+
+    Limits are those of the physical value, or of the raw one if there is no scale.
+    """
+
+    __slots__ = (
+        "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
+        "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
+        "elements",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        attribute: str,
+        name: str,
+        at: int,
+        bits: int,
+        type: str,
+        unit: str = "",
+        physical: str = "",
+        scale: tuple[int, int, int] = (1, 0, 1),
+        enum: _lazy.Optional[type[_lazy.OpenEnum]] = None,
+        const: _lazy.Optional[int] = None,
+        special: tuple[tuple[int, str], ...] = (),
+        minimum: _lazy.Optional[float] = None,
+        maximum: _lazy.Optional[float] = None,
+        above: _lazy.Optional[float] = None,
+        below: _lazy.Optional[float] = None,
+        byte_order: str = "",
+        bit_order: str = "",
+        whole: str = "",
+        default: _lazy.Any = None,
+        elements: int = 0,
+    ) -> None:
+        self.attribute = attribute
+        """The attribute that holds the raw value."""
+        self.name = name
+        """The manual's name, verbatim."""
+        self.at = at
+        """Offset in bits from the start of the frame."""
+        self.bits = bits
+        """Width in bits."""
+        self.type = type
+        """``uint``, ``int``, ``bool``, ``enum``, ``float``, ``bytes`` or ``text``."""
+        self.unit = unit
+        """Unit of the physical value, or of the raw one if there is no scale."""
+        self.physical = physical
+        """The attribute that holds the physical value, of ``text`` a `str`.
+
+        Empty if the field has neither a scale nor a text.
+        """
+        self.whole = whole
+        """The attribute that holds it exactly, as a whole number of parts of the unit."""
+        self.scale = scale
+        """``(p, c, q)``: the physical value is exactly ``(raw * p + c) / q``."""
+        self.enum = enum
+        """The enumeration of the values."""
+        self.const = const
+        """The only valid raw value."""
+        self.special = special
+        """Raw values with a meaning of their own."""
+        self.minimum, self.maximum = minimum, maximum
+        """The smallest and the largest value, or None."""
+        self.above, self.below = above, below
+        """What the value is above and below, or None."""
+        self.byte_order = byte_order
+        """``little`` or ``big``; empty where it is the message's."""
+        self.bit_order = bit_order
+        """``lsb0`` or ``msb0``; empty where it is the message's."""
+        self.default = default
+        """The raw value in a new message."""
+        self.elements = elements
+        """Elements of an array, of so many bits each: its attributes hold tuples.
+
+        0 if it is no array.
+        """
+
+    @property
+    def signed(self) -> bool:
+        """Whether the raw value is in two's complement."""
+        if self.enum is not None:
+            from ._enumeration import is_signed
+
+            return is_signed(self.enum)
+        return self.type == "int"
+
+    @property
+    def raw_range(self) -> tuple[int, int]:
+        """The smallest and the largest raw value of a field that holds integers."""
+        if self.signed:
+            return -(1 << (self.bits - 1)), (1 << (self.bits - 1)) - 1
+        return 0, (1 << self.bits) - 1
+
+    @property
+    def parts(self) -> tuple[FieldInfo, ...]:
+        """The elements of an array as fields, called ``temperatures[3]``; else the field."""
+        return tuple(map(self._part, range(self.elements))) or (self,)
+
+    def _part(self, index: int) -> FieldInfo:
+        told = {name: getattr(self, name) for name in self.__slots__}
+        for key in ("attribute", "name"):
+            told[key] += f"[{index}]"
+        told["at"] += index * self.bits
+        told["default"] = self.default[index]
+        return FieldInfo(**{**told, "elements": 0})
+
+    def _values(self) -> tuple[_lazy.Any, ...]:
+        return tuple(getattr(self, name) for name in self.__slots__)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, FieldInfo):
+            return NotImplemented
+        return self._values() == other._values()
+
+    def __hash__(self) -> int:
+        return hash((self.attribute, self.name, self.at, self.bits, self.type))
+
+    def __repr__(self) -> str:
+        values = (f"{name}={getattr(self, name)!r}" for name in self.__slots__)
+        return f"FieldInfo({', '.join(values)})"
+
+
+class View:
+    """Another attribute of the field that is declared before it: its value in another form."""
+
+    __slots__ = ("kind", "terms")
+
+    def __init__(self, kind: str, terms: tuple[int, int, int] = (1, 0, 1)) -> None:
+        self.kind, self.terms = kind, terms
+
+    def property_of(self, info: FieldInfo, name: str) -> property:
+        """What the class has as ``name``, which the field is told of."""
+        if self.kind == "text":
+            info.physical = name
+            return _text_property(info)
+        if self.kind == "whole":
+            info.whole = name
+        else:
+            info.physical, info.scale = name, self.terms
+        return _number_property(info, self)
+
+
+def _number_property(info: FieldInfo, view: View) -> property:
+    if info.elements:
+        return _array_property(info, view)
+    attribute, terms = info.attribute, view.terms
+    p, c, q = terms
+    is_whole = view.kind == "whole"
+
+    def get_whole(self: Any) -> int:
+        value: int = getattr(self, attribute) * p + c
+        return value
+
+    def get_physical(self: Any) -> float:
+        value: float = (getattr(self, attribute) * p + c) / q
+        return value
+
+    def set_nearest(self: Any, value: float) -> None:
+        setattr(self, attribute, nearest_raw(value, attribute, terms, info.raw_range))
+
+    return property(get_whole if is_whole else get_physical, set_nearest)
+
+
+def _array_property(info: FieldInfo, view: View) -> property:
+    attribute, terms = info.attribute, view.terms
+    p, c, q = terms
+    is_whole = view.kind == "whole"
+
+    def get_whole(self: Any) -> tuple[int, ...]:
+        return tuple(raw * p + c for raw in getattr(self, attribute))
+
+    def get_physical(self: Any) -> tuple[float, ...]:
+        return tuple((raw * p + c) / q for raw in getattr(self, attribute))
+
+    def set_nearest(self: Any, values: Any) -> None:
+        if not hasattr(values, "__len__") or len(values) != info.elements:
+            raise RangeError(attribute, f"{info.elements} values", values)
+        found = (
+            nearest_raw(value, f"{attribute}[{index}]", terms, info.raw_range)
+            for index, value in enumerate(values)
+        )
+        setattr(self, attribute, tuple(found))
+
+    return property(get_whole if is_whole else get_physical, set_nearest)
+
+
+def _text_property(info: FieldInfo) -> property:
+    attribute, size = info.attribute, info.bits // 8
+
+    def get_text(self: Any) -> str:
+        from ._codec import text
+
+        return text(getattr(self, attribute))
+
+    def set_text(self: Any, value: str) -> None:
+        from ._codec import text_bytes
+
+        setattr(self, attribute, text_bytes(value, attribute, size))
+
+    return property(get_text, set_text)
+
+
+def field(
+    name: str, at: int, bits: int, type: str, *, default: _lazy.Any, **told: _lazy.Any
+) -> _lazy.Any:
+    """A field: the manual's name, offset and width in bits, type, and its first value.
+
+    What else is told of it goes by the names of `FieldInfo`; the enumeration is that of
+    the default.
+    """
+    if type == "enum":
+        one = default[0] if told.get("elements") else default
+        told["enum"] = one.__class__
+    return FieldInfo("", name, at, bits, type, default=default, **told)
+
+
+def scaled(p: int, c: int, q: int, *, default: _lazy.Any) -> _lazy.Any:
+    """The physical value ``(raw * p + c) / q`` of the field above, correctly rounded.
+
+    Setting it takes the nearest raw value, of two the even one. Raises `RangeError`.
+    """
+    return View("scaled", (p, c, q))
+
+
+def whole(p: int, c: int, *, init: _lazy.Literal[False] = False) -> _lazy.Any:
+    """The exact ``raw * p + c`` of the field above, in parts of its unit, set likewise."""
+    return View("whole", (p, c, 1))
+
+
+def text(*, default: str) -> _lazy.Any:
+    """The field above as a text: what stands before the first NUL.
+
+    A byte that is not ASCII reads as U+FFFD. Setting it raises `RangeError`.
+    """
+    return View("text")

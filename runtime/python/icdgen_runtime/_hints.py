@@ -1,0 +1,14 @@
+"""Types that annotations name; nothing else needs them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar, Union
+
+if TYPE_CHECKING:
+    from ._base import Message
+
+Buffer = Union[bytes, bytearray, memoryview]
+"""What a frame may be given as."""
+
+M = TypeVar("M", bound="Message")
+T = TypeVar("T")

@@ -1,0 +1,1 @@
+"""The papers for a review: what they say is so."""

@@ -1,0 +1,119 @@
+"""Which lines of the files of vectors fail on ICDs: each question is put to the reference, as the conformance run does it.
+
+Nothing of this is shared with the trace: lines are looked up in the text, and the answers are those of the testee.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from functools import cache
+
+from icdgen.icd.model import Icd
+from tests.conformance.cases import DIRECTIONS, Case, MessageCases, enum_cases, member_names, node_cases, node_itself
+from tests.conformance.compare import difference
+from tests.conformance.reference import Reference
+from tests.conformance.robust import line
+
+
+class Vectors:
+    """The vectors of a set of ICDs: ``texts`` are the files by node."""
+
+    def __init__(self, texts: dict[str, str]) -> None:
+        self.files = {node: json.loads(text) for node, text in texts.items()}
+        self.lines = {node: text.split("\n") for node, text in texts.items()}
+        self.names = member_names(self.files)
+
+    @cache  # noqa: B019 - as many as there are messages, and as long as the test
+    def of_message(self, node: str, name: str) -> list[tuple[int, list[Case]]]:
+        """Each line that is about a message, and what it demands."""
+        return list(self._of_message(node, name))
+
+    def first_message(self, node: str) -> int:
+        """The line in which the messages begin."""
+        return self.lines[node].index('"messages": [') + 1
+
+    def messages_at(self, node: str, numbers: set[int]) -> list[str]:
+        """The messages that lines are about."""
+        found: dict[str, None] = {}
+        name = ""
+        for number, text in enumerate(self.lines[node], 1):
+            if text.startswith('{"name":') and ',"kind":' in text and '"type":' not in text:
+                name = json.loads(text.rstrip(",") + "}")["name"]
+            if number in numbers and name:
+                found[name] = None
+        return list(found)
+
+    def _of_message(self, node: str, name: str) -> Iterator[tuple[int, list[Case]]]:
+        data = self.files[node]
+        message = next(one for one in data["messages"] if one["name"] == name)
+        cases = MessageCases(node, message, self.names, data["never_set"])
+        constants = cases.constants()
+        of_fields = ("default", "special", "limits")
+        at = self._after(node, 0, {"name": name, "kind": message["kind"]}, ",")
+        yield at, [constants._replace(answer={**constants.answer, **dict.fromkeys(of_fields, ...)})]
+        for field in message["fields"]:
+            at = self._after(node, at, field)
+            own = [*cases.unfit(field), *(cases.settings(field) if field in (*cases.scaled, *cases.texts) else ())]
+            yield at, [_only(constants, field["name"]), *own]
+        at = self._after(node, at, {"refused_lengths": message["refused_lengths"]}, "")
+        yield at, list(cases.refused_lengths())
+        for number, vector in enumerate(message["vectors"]):
+            at = self._after(node, at, vector)
+            yield at, [*cases.frame(vector), *(cases.routes() if number == 0 else ())]
+
+    def of_node(self, node: str) -> Iterator[tuple[int, list[Case]]]:
+        """Each line that is about a node itself, its ids and its enumerations."""
+        data = self.files[node]
+        for key in ("node_type", "interface_version"):
+            if key in data:
+                whole = node_itself(data)
+                yield self._after(node, 0, {key: data[key]}, ""), [
+                    whole._replace(answer={"ok": True, key: data[key], ...: ...})
+                ]
+        for direction in DIRECTIONS:
+            at = self._after(node, 0, {direction: data["ids"][direction]}, "")
+            yield at, [case for case in node_cases(data) if case.request.get("kind") == direction]
+        for enum in data["enums"]:
+            yield self._after(node, 0, enum), [
+                case for case in enum_cases(data) if case.request["enum"] == enum["name"]
+            ]
+
+    def _after(self, node: str, line: int, value: dict, end: str = "}") -> int:
+        """The number of the next line that begins with the value, or with its only key, or with the object that it begins."""
+        if end:
+            text = _compact(value).removesuffix("}") + end
+        else:
+            ((key, item),) = value.items()
+            text = f'"{key}": {_compact(item)}'
+        return next(n for n, one in enumerate(self.lines[node][line:], line + 1) if one.startswith(text))
+
+
+def _compact(value: object) -> str:
+    return json.dumps(value, separators=(",", ":"))
+
+
+def _only(constants: Case, name: str) -> Case:
+    """The demands on the constants, as far as they are about a field."""
+    answer = {"ok": True, ...: ...}
+    for key in ("default", "special", "limits"):
+        whole = constants.answer[key]
+        own = {k: v for k, v in getattr(whole, "value", whole).items() if k == name}
+        if own:
+            answer[key] = {**own, ...: ...}
+    return constants._replace(answer=answer)
+
+
+class Judge:
+    """What becomes of the vectors on other ICDs."""
+
+    def __init__(self, vectors: Vectors, icd: Icd) -> None:
+        self.vectors, self.reference = vectors, Reference(icd)
+
+    def failing(self, lines: Iterable[tuple[int, list[Case]]]) -> set[int]:
+        """The lines of which any demand is not met."""
+        return {number for number, cases in lines if any(map(self._fails, cases))}
+
+    def _fails(self, case: Case) -> bool:
+        answer = self.reference.answer(line(case.request))
+        return difference(case.answer, json.dumps(answer).encode()) is not None

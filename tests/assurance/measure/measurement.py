@@ -1,0 +1,60 @@
+"""A measurement as a file that the pack takes."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from icdgen.backends.assurance.measured import FORMAT, icd_digest
+from icdgen.backends.assurance.pack import code_now
+from icdgen.icd.model import Icd
+from tests.conformance.languages import version
+
+
+@dataclass
+class Measured:
+    """What a command found; ``language`` is that of the code, ``tools`` are asked for their versions."""
+
+    name: str
+    title: str
+    says: Sequence[str]
+    language: str
+    command: str
+    tools: Sequence[str]
+    columns: Sequence[str]
+    rows: list[Sequence[object]]
+    facts: list[tuple[str, str]] = field(default_factory=list)
+
+    def write(self, icd: Icd, folder: Path) -> Path:
+        """Writes ``NAME.json``; its path."""
+        data = {
+            "icdgen_measurement": FORMAT, "name": self.name, "title": self.title, "says": list(self.says),
+            "icd": icd_digest(icd), "code": {self.language: code_now(icd, self.language)},
+            "made_by": [self.command, *map(_version, self.tools)], "facts": self.facts,
+            "columns": list(self.columns), "rows": [[str(cell) for cell in row] for row in self.rows],
+        }  # fmt: skip
+        folder.mkdir(parents=True, exist_ok=True)
+        path = folder / f"{self.name}.json"
+        path.write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", "utf-8")
+        return path
+
+
+def _version(tool: str) -> str:
+    """The first line that a tool says of itself, without where it lies."""
+    said, path = version(tool), shutil.which(tool)
+    assert said is not None and path is not None, f"{tool} is not installed"
+    return said.removeprefix(path).strip().split("\n")[0]
+
+
+def share(done: int, of: int) -> str:
+    """``12,345 of 12,345 (100.00 %)``; never rounded up to all."""
+    hundredths = 10_000 if not of else 10_000 * done // of
+    return f"{done:,} of {of:,} ({hundredths // 100}.{hundredths % 100:02} %)"
+
+
+def total(rows: Iterable[Sequence[object]], column: int) -> int:
+    """The sum of a column of numbers."""
+    return sum(int(str(row[column])) for row in rows)

@@ -1,0 +1,107 @@
+"""The program that asks of the golden vectors what only C has: see ``rest.c.j2``. What it expects is the reference's."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import jinja2
+
+from icdgen import codec
+from icdgen.backends.c import physical
+from icdgen.backends.c.accessors import whole_name
+from icdgen.backends.c.names import stem
+from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription, describe
+from icdgen.describe.links import links_of
+from icdgen.icd.model import Icd
+from icdgen.vectors.make import Row, message_vectors
+
+HERE = Path(__file__).parent
+_BITS = {"int32_t": 32, "int64_t": 64}
+
+
+def source(icd: Icd) -> str:
+    """The program."""
+    known = describe(icd)
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True)
+    return environment.get_template("rest.c.j2").render(
+        nodes=[_node(known, node) for node in known.nodes],
+        messages=[_message(message) for node in known.nodes for message in node.messages],
+        longest=max(1, *(message.length for node in icd.nodes for message in node.messages)),
+    )
+
+
+def _message(message: MessageDescription) -> dict[str, Any]:
+    wholes = {
+        field.model.name: (whole_name(field, whole), whole)
+        for field in message.fields
+        if field.steps is not None and (whole := physical.scaled(field).whole)
+    }
+    beyond = []
+    for field in message.fields:
+        if field.model.name in wholes:
+            name, whole = wholes[field.model.name]
+            limit = 1 << (_BITS[whole.type] - 1)
+            steps = (field.model.raw_min - 1, field.model.raw_max + 1)
+            values = (int(field.model.scale.physical(raw) * whole.per) for raw in steps)
+            beyond += [(name, physical.int64(value)) for value in values if -limit <= value < limit]
+    rows = message_vectors(message.node, message.model).rows if message.model.length else ()
+    return {
+        "stem": stem(message),
+        "length": message.model.length,
+        "beyond": beyond,
+        "rows": [_row(message, row, wholes) for row in (rows if wholes else rows[:2])],
+    }
+
+
+def _row(message: MessageDescription, row: Row, wholes: dict[str, Any]) -> dict[str, Any]:
+    values = []
+    for name, (accessor, whole) in wholes.items():
+        exact: Fraction = row.physical[name] * whole.per
+        assert exact.denominator == 1
+        values.append((accessor, physical.int64(int(exact))))
+    encoded = "" if row.encoded == row.frame else _bytes(row.encoded)
+    return {"bytes": _bytes(row.frame), "encoded": encoded, "wholes": values}
+
+
+def _bytes(data: bytes) -> str:
+    return ", ".join(f"{byte}u" for byte in data)
+
+
+def _node(known: Description, node: NodeDescription) -> dict[str, Any]:
+    link = links_of(known).get(node.name)
+    buses = []
+    if link is not None:
+        found = (("uart", link.facts.framing), ("i2c", link.facts.i2c_address), ("can", link.can))
+        buses = [bus for bus, there in found if there is not None]
+    directions = []
+    for direction in node.directions:
+        ids = [(getattr(one.model, name), one.model.length) for one, name in direction.messages]
+        unknown = next(id for id in range(256) if id not in dict(ids))
+        directions.append({"kind": direction.kind, "ids": ids, "unknown": unknown})
+    return {
+        "name": node.name,
+        "buses": buses,
+        "directions": directions,
+        "telecommands": [_sent(one) for one in node.telecommands],
+        "telemetry": [
+            {"stem": stem(one), "name": one.name, "id": one.model.telemetry_id, "length": one.model.length}
+            for one in node.telemetry
+        ],
+    }
+
+
+def _sent(message: MessageDescription) -> dict[str, Any]:
+    narrow = next((field for field in message.fields if field.is_narrow), None)
+    unfit = (narrow.name, _unfit(narrow)) if narrow is not None else None
+    return {"stem": stem(message), "name": message.name, "has_fields": bool(message.fields), "unfit": unfit}
+
+
+def _unfit(field: FieldDescription) -> int:
+    value = field.model.raw_max + 1
+    try:
+        codec.check_raw(field.model, value)
+    except codec.CodecError:
+        return value
+    raise AssertionError("it fits")

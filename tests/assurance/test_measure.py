@@ -1,0 +1,82 @@
+"""What is measured with compilers, on a small ICD: the numbers are there, a gap is told, and the pack takes them."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from icdgen.loading import load
+from tests.assurance.measure import coverage, misra, rest, sizes
+from tests.assurance.measure.measurement import Measured, share
+from tests.assurance.test_pack import make
+
+
+def of(folder, name) -> dict:
+    return json.loads((folder / f"{name}.json").read_text("utf-8"))
+
+
+def test_the_vectors_execute_every_line_and_both_ways_of_every_condition_of_the_c_of_an_icd(demo, tmp_path):
+    assert coverage.main(["--out", str(tmp_path / "measured"), str(demo)]) == 0
+    data = of(tmp_path / "measured", "coverage-c")
+    rows = [row for row in data["rows"] if not row[0].startswith("icdgen")]
+    assert {row[0] for row in rows} >= {"demo.h", "demo/estimated_roll.h", "demo/set_roll.h"}
+    for _, functions, called, lines, executed, branches, taken in rows:
+        assert functions == called and lines == executed and branches == taken and int(lines) > 0
+    out = make(demo, tmp_path / "pack", "--measured", str(tmp_path / "measured"))
+    assert {path.name for path in out.iterdir()} >= {"coverage-c.html", "coverage-c.csv", "coverage-c-gaps.csv"}
+
+
+def test_what_is_not_executed_is_told_and_fails(demo, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(rest, "source", lambda icd: "int main(void) { return 0; }\n")
+    assert coverage.main(["--out", str(tmp_path), str(demo)]) == 1
+    said = capsys.readouterr().err
+    assert "demo/estimated_roll.h" in said and "line not executed, and nobody knows why" in said
+    assert any(row[3] == "branch" and not row[5] for row in of(tmp_path, "coverage-c-gaps")["rows"])
+
+
+def test_a_decision_that_mixes_and_with_or_is_noticed(tmp_path):
+    (tmp_path / "demo.h").write_text(
+        "/* a && b || c; */ int f(int a) { if (a > 1 && a < 3) { return a == 1 || a == 2; } }\n"
+    )
+    assert coverage.mixed(tmp_path) == []
+    (tmp_path / "other.h").write_text("int g(int a) { return (a > 1 && a < 3) || a == 7; }\n")
+    assert coverage.mixed(tmp_path) == ["other.h: return (a > 1 && a < 3) || a == 7"]
+
+
+def test_sizes_of_each_message_are_what_the_compiler_made(demo, tmp_path):
+    assert sizes.main(["--out", str(tmp_path / "measured"), str(demo)]) == 0
+    for name in ("sizes-cortex-m4", "sizes-avr"):
+        rows = of(tmp_path / "measured", name)["rows"]
+        assert [row[:3] for row in rows] == [["demo", "Estimated Roll", "3"], ["demo", "Set Roll", "2"]]
+        assert all(int(row[3]) >= 2 and 10 < int(row[4]) < 200 and 10 < int(row[5]) < 200 for row in rows)
+    make(demo, tmp_path / "pack", "--measured", str(tmp_path / "measured"))
+
+
+def test_the_record_of_misra_is_a_paper():
+    found = misra.measured()
+    assert isinstance(found, Measured) and len(found.rows) > 10
+    assert all(len(row) == len(found.columns) and row[3] for row in found.rows)
+
+
+@pytest.mark.parametrize(
+    ("done", "of", "text"),
+    [
+        (3, 3, "3 of 3 (100.00 %)"),
+        (99_999, 100_000, "99,999 of 100,000 (99.99 %)"),
+        (0, 0, "0 of 0 (100.00 %)"),
+        (1, 3, "1 of 3 (33.33 %)"),
+    ],
+)
+def test_a_share_is_never_rounded_up_to_all(done, of, text):
+    assert share(done, of) == text
+
+
+def test_measurements_of_an_icd_that_changed_are_refused(demo, tmp_path):
+    sizes.main(["--out", str(tmp_path / "measured"), str(demo)])
+    demo.write_text(demo.read_text("utf-8").replace("id: 146", "id: 147"), "utf-8")
+    from icdgen.errors import UserError
+
+    assert load([demo]).ok
+    with pytest.raises(UserError, match="it measures other ICDs"):
+        make(demo, tmp_path / "pack", "--measured", str(tmp_path / "measured"))

@@ -1,0 +1,202 @@
+"""A line of an ICD that is changed leads, through the trace, to the vectors that fail."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import random
+import shutil
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+
+from icdgen import backends
+from icdgen.icd.model import Icd
+from icdgen.loading import load
+from icdgen.render import Renderer
+from icdgen.vectors.make import make
+from icdgen.vectors.write import text
+from tests.assurance.failing import Judge, Vectors
+from tests.conformance.icds import SHIPPED
+from tests.conformance.random_icds import written
+from tests.conformance.strategies import icds
+from tests.conftest import ROOT
+
+EACH = 2  # changes of each kind that are tried on the shipped ICDs
+
+
+class Pack:
+    """The pack of the ICDs of a folder, and their vectors."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.icd: Icd = load([folder]).icd
+        backend = backends.get("assurance")
+        self.files = {str(path): made for path, made in backend.files(self.icd, Renderer.of(backend))}
+        self.vectors = Vectors({node.name: text(make(self.icd, node)) for node in self.icd.nodes})
+        self.trace, self.changes = self.table("trace.csv"), self.table("changes.csv")
+
+    def table(self, name: str) -> list[dict[str, str]]:
+        return list(csv.DictReader(io.StringIO(self.files[name], newline="")))
+
+    def changed(self, change: dict[str, str], folder: Path) -> Icd:
+        """The ICDs, read anew with one value of one line changed."""
+        shutil.copytree(self.folder, folder)
+        needed = {change["node"], *self.listed(change)}
+        needed |= {one.name for name in needed for one in self.icd.included(self.icd.node(name))}
+        for node in self.icd.nodes:  # reading them all takes a second each time
+            if node.name not in needed:
+                Path(node.file.replace(str(self.folder), str(folder), 1)).unlink()
+        path = folder / change["file"]
+        lines = path.read_text("utf-8").split("\n")
+        number, column = int(change["line"]) - 1, int(change["column"]) - 1
+        before, rest = lines[number][:column], lines[number][column:]
+        end = next(end for end in range(1, len(rest) + 1) if _value(rest[:end]) == change["says"])
+        now = change["changed to"]
+        lines[number] = before + (json.dumps(now) if change["kind"] == "formula" else now) + rest[end:]
+        path.write_text("\n".join(lines), "utf-8")
+        return load([folder], check=False).icd
+
+    def listed(self, change: dict[str, str]) -> dict[str, set[int]]:
+        return noticed(change["vectors"])
+
+
+def _value(text: str) -> str:
+    """A scalar of YAML or JSON as a table shows it: numbers as Python does, texts without quotes."""
+    text = text.strip()
+    if text[:1] in ("'", '"'):
+        return text[1:-1] if len(text) > 1 and text[-1] == text[0] else ""
+    try:
+        return str(int(text, 0) if text.lower().startswith("0x") else text)
+    except ValueError:
+        return text
+
+
+def noticed(cell: str) -> dict[str, set[int]]:
+    """``demo.json 3-5 7; other.json 1`` as numbers."""
+    found: dict[str, set[int]] = {}
+    for part in filter(None, cell.split("; ")):
+        file, *runs = part.split(" ")
+        numbers = found.setdefault(file.removesuffix(".json"), set())
+        for run in runs:
+            first, _, last = run.partition("-")
+            numbers |= set(range(int(first), int(last or first) + 1))
+    return found
+
+
+@pytest.fixture(scope="module")
+def shipped() -> Pack:
+    return Pack(SHIPPED)
+
+
+@pytest.fixture(scope="module")
+def demo_pack(tmp_path_factory) -> Pack:
+    from tests.conftest import DEMO
+
+    folder = tmp_path_factory.mktemp("icd")
+    (folder / "demo.yaml").write_text(DEMO, "utf-8")
+    return Pack(folder)
+
+
+def hold(pack: Pack, change: dict[str, str], folder: Path) -> None:
+    """Every vector that the trace names fails, and of the frames of what the line is about no other does."""
+    judge, listed = Judge(pack.vectors, pack.changed(change, folder)), pack.listed(change)
+    assert listed, change
+    for node, numbers in listed.items():
+        about = [*pack.vectors.of_node(node)] if min(numbers) < pack.vectors.first_message(node) else []
+        for name in pack.vectors.messages_at(node, numbers):
+            about += pack.vectors.of_message(node, name)
+        failing = judge.failing((number, cases) for number, cases in about if number in numbers)
+        assert numbers == failing, (change, node, sorted(numbers - failing))
+    if change["kind"] not in ("enum value", "id", "length", "node"):
+        node, message = change["node"], change["part of"]
+        others = pack.vectors.of_message(node, message) if message else ()
+        rest = [(number, cases) for number, cases in others if is_row(cases) and number not in listed[node]]
+        assert judge.failing(rest) == set(), change
+
+
+def is_row(cases: list) -> bool:
+    return bool(cases) and cases[0].request["op"] == "decode" and cases[0].answer["ok"]
+
+
+def test_each_change_of_a_small_icd_fails_the_vectors_that_the_trace_names(demo_pack, tmp_path):
+    assert {change["kind"] for change in demo_pack.changes} >= {
+        "offset",
+        "width",
+        "type",
+        "formula",
+        "id",
+        "length",
+        "enum value",
+    }
+    for number, change in enumerate(demo_pack.changes):
+        hold(demo_pack, change, tmp_path / str(number))
+
+
+def test_changed_lines_of_the_shipped_icds_fail_the_vectors_that_the_trace_names(shipped, tmp_path):
+    decided = {(e["node"], e["touches"]) for e in shipped.table("errata.csv") if e["kind"] == "Erratum"}
+    touched = {(node, line) for node, lines in decided for line in lines.split("; ")}
+    source = random.Random(13)
+    for kind in sorted({change["kind"] for change in shipped.changes}):
+        # where a decision stands on what is printed there, the line cannot be changed without it
+        free = [
+            c for c in shipped.changes if c["kind"] == kind and (c["node"], f"{c['file']}:{c['line']}") not in touched
+        ]
+        for number, change in enumerate(source.sample(free, min(EACH, len(free)))):
+            hold(shipped, change, tmp_path / f"{kind}{number}")
+
+
+@settings(max_examples=4)
+@given(icds())
+def test_changed_lines_of_any_icd_fail_the_vectors_that_the_trace_names(tmp_path_factory, trees):
+    folder = tmp_path_factory.mktemp("random")
+    (folder / "icd").mkdir()
+    written(trees, folder / "icd")
+    pack = Pack(folder / "icd")
+    chosen = random.Random(1).sample(pack.changes, min(25, len(pack.changes)))
+    for number, change in enumerate(chosen):
+        hold(pack, change, folder / str(number))
+
+
+def test_every_change_of_the_shipped_icds_is_noticed(shipped):
+    assert len(shipped.changes) > 10_000
+    assert [row["name"] for row in shipped.trace if row["unnoticed"] != "0"] == []
+
+
+def test_every_message_field_and_member_is_traced_to_its_line_and_its_symbols(shipped):
+    rows = {(row["kind"], row["node"], row["part of"], row["name"]): row for row in shipped.trace}
+    for node in shipped.icd.nodes:
+        for message in node.messages:
+            row = rows["message", node.name, "", message.name]
+            assert row["table"] == str(message.table or "") and row["C"] and row["Python"] and row["Rust"]
+            for field in message.fields:
+                row = rows["field", node.name, message.name, field.name]
+                line = (ROOT / "icd" / row["file"]).read_text("utf-8").split("\n")[int(row["line"]) - 1]
+                assert field.name in line and row["C"] and row["Python"] and row["Rust"]
+
+
+def test_the_symbols_of_a_line_stand_in_the_generated_code(shipped):
+    texts = {
+        language: "\n".join(
+            path.read_text("utf-8") for path in (ROOT / "generated" / language).rglob("*") if path.suffix == suffix
+        )
+        for language, suffix in (("c", ".h"), ("python", ".py"), ("rust", ".rs"))
+    }
+    rows = [row for row in shipped.trace if row["kind"] in ("field", "member", "message")]
+    for row in random.Random(5).sample(rows, 300):
+        for language, column in (("c", "C"), ("python", "Python"), ("rust", "Rust")):
+            for symbol in row[column].split("; "):
+                name, _, scope = symbol.partition(" (")
+                assert ("file" in scope.lower() and "scope" not in scope) or name in texts[language], (
+                    row["name"],
+                    symbol,
+                )
+
+
+def test_the_pack_is_the_same_each_time(demo_pack, tmp_path):
+    again = Pack(demo_pack.folder)
+    elsewhere = tmp_path / "elsewhere"
+    shutil.copytree(demo_pack.folder, elsewhere)
+    assert again.files == demo_pack.files == Pack(elsewhere).files
