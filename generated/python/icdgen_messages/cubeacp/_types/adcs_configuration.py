@@ -92,6 +92,8 @@ class AdcsConfiguration(_base.Message):
     """
     x_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """X-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    x_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """X-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
 
     y_rate_sensor_offset: int = _base.field("Y-Rate Sensor Offset", 96, 16, "int", default=0, unit="deg/s")
     """Y-Rate Sensor Offset: bits 96 to 111, raw -32768 to 32767; physical `raw*0.001`,
@@ -99,6 +101,8 @@ class AdcsConfiguration(_base.Message):
     """
     y_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Y-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    y_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """Y-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
 
     z_rate_sensor_offset: int = _base.field("Z-Rate Sensor Offset", 112, 16, "int", default=0, unit="deg/s")
     """Z-Rate Sensor Offset: bits 112 to 127, raw -32768 to 32767; physical `raw*0.001`,
@@ -106,6 +110,8 @@ class AdcsConfiguration(_base.Message):
     """
     z_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Z-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    z_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """Z-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
 
     rate_sensor_mult: int = _base.field("RateSensorMult", 128, 8, "uint", default=0)
     """RateSensorMult: bits 128 to 135, raw 0 to 255.
@@ -152,6 +158,8 @@ class AdcsConfiguration(_base.Message):
     """
     css1_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS1 Relative Scale, as a physical value: 0 to 2.55."""
+    css1_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS1 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css2_relative_scale: int = _base.field("CSS2 Relative Scale", 224, 8, "uint", default=0)
     """CSS2 Relative Scale: bits 224 to 231, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -159,6 +167,8 @@ class AdcsConfiguration(_base.Message):
     """
     css2_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS2 Relative Scale, as a physical value: 0 to 2.55."""
+    css2_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS2 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css3_relative_scale: int = _base.field("CSS3 Relative Scale", 232, 8, "uint", default=0)
     """CSS3 Relative Scale: bits 232 to 239, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -166,6 +176,8 @@ class AdcsConfiguration(_base.Message):
     """
     css3_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS3 Relative Scale, as a physical value: 0 to 2.55."""
+    css3_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS3 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css4_relative_scale: int = _base.field("CSS4 Relative Scale", 240, 8, "uint", default=0)
     """CSS4 Relative Scale: bits 240 to 247, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -173,6 +185,8 @@ class AdcsConfiguration(_base.Message):
     """
     css4_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS4 Relative Scale, as a physical value: 0 to 2.55."""
+    css4_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS4 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css5_relative_scale: int = _base.field("CSS5 Relative Scale", 248, 8, "uint", default=0)
     """CSS5 Relative Scale: bits 248 to 255, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -180,6 +194,8 @@ class AdcsConfiguration(_base.Message):
     """
     css5_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS5 Relative Scale, as a physical value: 0 to 2.55."""
+    css5_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS5 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css6_relative_scale: int = _base.field("CSS6 Relative Scale", 256, 8, "uint", default=0)
     """CSS6 Relative Scale: bits 256 to 263, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -187,6 +203,8 @@ class AdcsConfiguration(_base.Message):
     """
     css6_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS6 Relative Scale, as a physical value: 0 to 2.55."""
+    css6_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS6 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css7_relative_scale: int = _base.field("CSS7 Relative Scale", 264, 8, "uint", default=0)
     """CSS7 Relative Scale: bits 264 to 271, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -194,6 +212,8 @@ class AdcsConfiguration(_base.Message):
     """
     css7_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS7 Relative Scale, as a physical value: 0 to 2.55."""
+    css7_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS7 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css8_relative_scale: int = _base.field("CSS8 Relative Scale", 272, 8, "uint", default=0)
     """CSS8 Relative Scale: bits 272 to 279, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -201,6 +221,8 @@ class AdcsConfiguration(_base.Message):
     """
     css8_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS8 Relative Scale, as a physical value: 0 to 2.55."""
+    css8_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS8 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css9_relative_scale: int = _base.field("CSS9 Relative Scale", 280, 8, "uint", default=0)
     """CSS9 Relative Scale: bits 280 to 287, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -208,6 +230,8 @@ class AdcsConfiguration(_base.Message):
     """
     css9_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS9 Relative Scale, as a physical value: 0 to 2.55."""
+    css9_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS9 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css10_relative_scale: int = _base.field("CSS10 Relative Scale", 288, 8, "uint", default=0)
     """CSS10 Relative Scale: bits 288 to 295, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -215,6 +239,8 @@ class AdcsConfiguration(_base.Message):
     """
     css10_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS10 Relative Scale, as a physical value: 0 to 2.55."""
+    css10_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS10 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css_threshold: int = _base.field("CSS Threshold", 296, 8, "uint", default=0)
     """CSS Threshold: bits 296 to 303, raw 0 to 255.
@@ -232,6 +258,10 @@ class AdcsConfiguration(_base.Message):
     """
     cam1_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam1_mounting_beta: int = _base.field(
         "Cam1 Sensor Mounting Transform Beta Angle", 320, 16, "int", default=0, unit="deg"
@@ -241,6 +271,10 @@ class AdcsConfiguration(_base.Message):
     """
     cam1_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam1_mounting_gamma: int = _base.field(
         "Cam1 Sensor Mounting Transform Gamma Angle", 336, 16, "int", default=0, unit="deg"
@@ -250,6 +284,10 @@ class AdcsConfiguration(_base.Message):
     """
     cam1_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam1_detection_threshold: int = _base.field("Cam1 detection threshold", 352, 8, "uint", default=0)
     """Cam1 detection threshold: bits 352 to 359, raw 0 to 255."""
@@ -271,6 +309,8 @@ class AdcsConfiguration(_base.Message):
     """
     cam1_boresight_x_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Boresight X in pixels: 0 to 655.35."""
+    cam1_boresight_x_milli_pixels: int = _base.whole(10, 0)
+    """Cam1 Boresight X in thousandths of pixels, exact: 0 to 655350."""
 
     cam1_boresight_y: int = _base.field("Cam1 Boresight Y", 400, 16, "uint", default=0, unit="pixels")
     """Cam1 Boresight Y: bits 400 to 415, raw 0 to 65535; physical `raw*0.01`, 0 to
@@ -280,6 +320,8 @@ class AdcsConfiguration(_base.Message):
     """
     cam1_boresight_y_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Boresight Y in pixels: 0 to 655.35."""
+    cam1_boresight_y_milli_pixels: int = _base.whole(10, 0)
+    """Cam1 Boresight Y in thousandths of pixels, exact: 0 to 655350."""
 
     cam2_mounting_alpha: int = _base.field(
         "Cam2 Sensor Mounting Transform Alpha Angle", 416, 16, "int", default=0, unit="deg"
@@ -289,6 +331,10 @@ class AdcsConfiguration(_base.Message):
     """
     cam2_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam2_mounting_beta: int = _base.field(
         "Cam2 Sensor Mounting Transform Beta Angle", 432, 16, "int", default=0, unit="deg"
@@ -298,6 +344,10 @@ class AdcsConfiguration(_base.Message):
     """
     cam2_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam2_mounting_gamma: int = _base.field(
         "Cam2 Sensor Mounting Transform Gamma Angle", 448, 16, "int", default=0, unit="deg"
@@ -307,6 +357,10 @@ class AdcsConfiguration(_base.Message):
     """
     cam2_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam2_detection_threshold: int = _base.field("Cam2 detection threshold", 464, 8, "uint", default=0)
     """Cam2 detection threshold: bits 464 to 471, raw 0 to 255."""
@@ -328,6 +382,8 @@ class AdcsConfiguration(_base.Message):
     """
     cam2_boresight_x_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Boresight X in pixels: 0 to 655.35."""
+    cam2_boresight_x_milli_pixels: int = _base.whole(10, 0)
+    """Cam2 Boresight X in thousandths of pixels, exact: 0 to 655350."""
 
     cam2_boresight_y: int = _base.field("Cam2 Boresight Y", 512, 16, "uint", default=0, unit="pixels")
     """Cam2 Boresight Y: bits 512 to 527, raw 0 to 65535; physical `raw*0.01`, 0 to
@@ -337,6 +393,8 @@ class AdcsConfiguration(_base.Message):
     """
     cam2_boresight_y_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Boresight Y in pixels: 0 to 655.35."""
+    cam2_boresight_y_milli_pixels: int = _base.whole(10, 0)
+    """Cam2 Boresight Y in thousandths of pixels, exact: 0 to 655350."""
 
     nadir_max_deviation_percentage: int = _base.field(
         "Nadir Max Deviation Percentage", 528, 8, "uint", default=0, unit="%"
@@ -497,6 +555,10 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    magnetometer_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Magnetometer Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     magnetometer_mounting_beta: int = _base.field(
         "Magnetometer Mounting Transform Beta Angle", 1216, 16, "int", default=0, unit="deg"
@@ -506,6 +568,10 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    magnetometer_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Magnetometer Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     magnetometer_mounting_gamma: int = _base.field(
         "Magnetometer Mounting Transform Gamma Angle", 1232, 16, "int", default=0, unit="deg"
@@ -515,6 +581,10 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    magnetometer_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Magnetometer Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     magnetometer_channel_1_offset: int = _base.field("Magnetometer Channel 1 Offset", 1248, 16, "int", default=0)
     """Magnetometer Channel 1 Offset: bits 1248 to 1263, raw -32768 to 32767; physical
@@ -522,6 +592,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_channel_1_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767."""
+    magnetometer_channel_1_offset_milli: int = _base.whole(1, 0)
+    """Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767."""
 
     magnetometer_channel_2_offset: int = _base.field("Magnetometer Channel 2 Offset", 1264, 16, "int", default=0)
     """Magnetometer Channel 2 Offset: bits 1264 to 1279, raw -32768 to 32767; physical
@@ -529,6 +601,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_channel_2_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767."""
+    magnetometer_channel_2_offset_milli: int = _base.whole(1, 0)
+    """Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767."""
 
     magnetometer_channel_3_offset: int = _base.field("Magnetometer Channel 3 Offset", 1280, 16, "int", default=0)
     """Magnetometer Channel 3 Offset: bits 1280 to 1295, raw -32768 to 32767; physical
@@ -536,6 +610,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_channel_3_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767."""
+    magnetometer_channel_3_offset_milli: int = _base.whole(1, 0)
+    """Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s11: int = _base.field("Magnetometer Sensitivity Matrix S11", 1296, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S11: bits 1296 to 1311, raw -32768 to 32767;
@@ -543,6 +619,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s11_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s11_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s22: int = _base.field("Magnetometer Sensitivity Matrix S22", 1312, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S22: bits 1312 to 1327, raw -32768 to 32767;
@@ -550,6 +628,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s22_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s22_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s33: int = _base.field("Magnetometer Sensitivity Matrix S33", 1328, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S33: bits 1328 to 1343, raw -32768 to 32767;
@@ -557,6 +637,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s33_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s33_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s12: int = _base.field("Magnetometer Sensitivity Matrix S12", 1344, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S12: bits 1344 to 1359, raw -32768 to 32767;
@@ -564,6 +646,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s12_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s12_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s13: int = _base.field("Magnetometer Sensitivity Matrix S13", 1360, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S13: bits 1360 to 1375, raw -32768 to 32767;
@@ -571,6 +655,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s13_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s13_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s21: int = _base.field("Magnetometer Sensitivity Matrix S21", 1376, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S21: bits 1376 to 1391, raw -32768 to 32767;
@@ -578,6 +664,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s21_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s21_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s23: int = _base.field("Magnetometer Sensitivity Matrix S23", 1392, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S23: bits 1392 to 1407, raw -32768 to 32767;
@@ -585,6 +673,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s23_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s23_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s31: int = _base.field("Magnetometer Sensitivity Matrix S31", 1408, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S31: bits 1408 to 1423, raw -32768 to 32767;
@@ -592,6 +682,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s31_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s31_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s32: int = _base.field("Magnetometer Sensitivity Matrix S32", 1424, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S32: bits 1424 to 1439, raw -32768 to 32767;
@@ -599,6 +691,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s32_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s32_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to 32767."""
 
     redundant_mag_mounting_alpha: int = _base.field(
         "Redundant Magnetometer Mounting Transform Alpha Angle", 1440, 16, "int", default=0, unit="deg"
@@ -608,6 +702,10 @@ class AdcsConfiguration(_base.Message):
     """
     redundant_mag_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
+    """
+    redundant_mag_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg,
+    exact: -327680 to 327670.
     """
 
     redundant_mag_mounting_beta: int = _base.field(
@@ -619,6 +717,10 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     """
+    redundant_mag_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg,
+    exact: -327680 to 327670.
+    """
 
     redundant_mag_mounting_gamma: int = _base.field(
         "Redundant Magnetometer Mounting Transform Gamma Angle", 1472, 16, "int", default=0, unit="deg"
@@ -628,6 +730,10 @@ class AdcsConfiguration(_base.Message):
     """
     redundant_mag_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
+    """
+    redundant_mag_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg,
+    exact: -327680 to 327670.
     """
 
     redundant_mag_channel_1_offset: int = _base.field(
@@ -639,6 +745,9 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_channel_1_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767.
     """
+    redundant_mag_channel_1_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767.
+    """
 
     redundant_mag_channel_2_offset: int = _base.field(
         "Redundant Magnetometer Channel 2 Offset", 1504, 16, "int", default=0
@@ -649,6 +758,9 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_channel_2_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767.
     """
+    redundant_mag_channel_2_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767.
+    """
 
     redundant_mag_channel_3_offset: int = _base.field(
         "Redundant Magnetometer Channel 3 Offset", 1520, 16, "int", default=0
@@ -658,6 +770,9 @@ class AdcsConfiguration(_base.Message):
     """
     redundant_mag_channel_3_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767.
+    """
+    redundant_mag_channel_3_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767.
     """
 
     redundant_mag_sensitivity_s11: int = _base.field(
@@ -670,6 +785,10 @@ class AdcsConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to
     32.767.
     """
+    redundant_mag_sensitivity_s11_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to
+    32767.
+    """
 
     redundant_mag_sensitivity_s22: int = _base.field(
         "Redundant Magnetometer Sensitivity Matrix S22", 1552, 16, "int", default=0
@@ -680,6 +799,10 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_sensitivity_s22_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to
     32.767.
+    """
+    redundant_mag_sensitivity_s22_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to
+    32767.
     """
 
     redundant_mag_sensitivity_s33: int = _base.field(
@@ -692,6 +815,10 @@ class AdcsConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to
     32.767.
     """
+    redundant_mag_sensitivity_s33_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to
+    32767.
+    """
 
     redundant_mag_sensitivity_s12: int = _base.field(
         "Redundant Magnetometer Sensitivity Matrix S12", 1584, 16, "int", default=0
@@ -702,6 +829,10 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_sensitivity_s12_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to
     32.767.
+    """
+    redundant_mag_sensitivity_s12_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to
+    32767.
     """
 
     redundant_mag_sensitivity_s13: int = _base.field(
@@ -714,6 +845,10 @@ class AdcsConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to
     32.767.
     """
+    redundant_mag_sensitivity_s13_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to
+    32767.
+    """
 
     redundant_mag_sensitivity_s21: int = _base.field(
         "Redundant Magnetometer Sensitivity Matrix S21", 1616, 16, "int", default=0
@@ -724,6 +859,10 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_sensitivity_s21_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to
     32.767.
+    """
+    redundant_mag_sensitivity_s21_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to
+    32767.
     """
 
     redundant_mag_sensitivity_s23: int = _base.field(
@@ -736,6 +875,10 @@ class AdcsConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to
     32.767.
     """
+    redundant_mag_sensitivity_s23_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to
+    32767.
+    """
 
     redundant_mag_sensitivity_s31: int = _base.field(
         "Redundant Magnetometer Sensitivity Matrix S31", 1648, 16, "int", default=0
@@ -746,6 +889,10 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_sensitivity_s31_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to
     32.767.
+    """
+    redundant_mag_sensitivity_s31_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to
+    32767.
     """
 
     redundant_mag_sensitivity_s32: int = _base.field(
@@ -758,6 +905,10 @@ class AdcsConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to
     32.767.
     """
+    redundant_mag_sensitivity_s32_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to
+    32767.
+    """
 
     star_tracker_mounting_alpha: int = _base.field(
         "StarTracker Mounting Transform Alpha Angle", 1680, 16, "int", default=0, unit="deg"
@@ -767,6 +918,10 @@ class AdcsConfiguration(_base.Message):
     """
     star_tracker_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    star_tracker_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     star_tracker_mounting_beta: int = _base.field(
         "StarTracker Mounting Transform Beta Angle", 1696, 16, "int", default=0, unit="deg"
@@ -776,6 +931,10 @@ class AdcsConfiguration(_base.Message):
     """
     star_tracker_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    star_tracker_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     star_tracker_mounting_gamma: int = _base.field(
         "StarTracker Mounting Transform Gamma Angle", 1712, 16, "int", default=0, unit="deg"
@@ -785,6 +944,10 @@ class AdcsConfiguration(_base.Message):
     """
     star_tracker_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    star_tracker_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     star_tracker_exposure_time: int = _base.field("StarTracker exposure time", 1728, 16, "uint", default=0)
     """StarTracker exposure time: bits 1728 to 1743, raw 0 to 65535.
@@ -855,6 +1018,8 @@ class AdcsConfiguration(_base.Message):
     """
     star_tracker_error_margin_percent: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Tracker Error Margin in %: 0 to 2.55."""
+    star_tracker_error_margin_milli_percent: int = _base.whole(10, 0)
+    """Star Tracker Error Margin in thousandths of %, exact: 0 to 2550."""
 
     star_tracker_delay_time: int = _base.field("Star Tracker Delay Time", 1824, 16, "uint", default=0, unit="ms")
     """Star Tracker Delay Time: bits 1824 to 1839, raw 0 to 65535, in ms.
@@ -934,6 +1099,8 @@ class AdcsConfiguration(_base.Message):
     """
     star_tracking_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Tracking Margin, as a physical value: 0 to 2.55."""
+    star_tracking_margin_milli: int = _base.whole(10, 0)
+    """Star Tracking Margin in thousandths, exact: 0 to 2550."""
 
     star_validation_margin: int = _base.field("Star Validation Margin", 2080, 8, "uint", default=0)
     """Star Validation Margin: bits 2080 to 2087, raw 0 to 255; physical `raw/100.0`, 0
@@ -943,6 +1110,8 @@ class AdcsConfiguration(_base.Message):
     """
     star_validation_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Validation Margin, as a physical value: 0 to 2.55."""
+    star_validation_margin_milli: int = _base.whole(10, 0)
+    """Star Validation Margin in thousandths, exact: 0 to 2550."""
 
     star_tracking_module_enable: bool = _base.field("Star Tracking Module Enable", 2088, 1, "bool", default=False)
     """Star Tracking Module Enable: bit 2088."""
@@ -960,6 +1129,8 @@ class AdcsConfiguration(_base.Message):
     """
     star_tracking_search_width_physical: float = _base.scaled(1, 0, 5, default=0.0)
     """Star Tracking Search Width, as a physical value: 0 to 51."""
+    star_tracking_search_width_milli: int = _base.whole(200, 0)
+    """Star Tracking Search Width in thousandths, exact: 0 to 51000."""
 
     detumbling_spin_gain: float = _base.field("Detumbling Spin Gain", 2104, 32, "float", default=0.0)
     """Detumbling Spin Gain: bits 2104 to 2135, 32-bit float.
@@ -987,6 +1158,8 @@ class AdcsConfiguration(_base.Message):
     """
     reference_spin_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s."""
+    reference_spin_rate_mdeg_per_s: int = _base.whole(1, 0)
+    """Reference spin rate in thousandths of deg/s, exact: -32768 to 32767."""
 
     fast_bdot_detumbling_gain: float = _base.field("Fast BDot Detumbling Gain", 2184, 32, "float", default=0.0)
     """Fast BDot Detumbling Gain: bits 2184 to 2215, 32-bit float.
@@ -1264,6 +1437,8 @@ class AdcsConfiguration(_base.Message):
     """
     incl_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Incl. coefficient, as a physical value: 0 to 65.535."""
+    incl_coefficient_milli: int = _base.whole(1, 0)
+    """Incl. coefficient in thousandths, exact: 0 to 65535."""
 
     raan_coefficient: int = _base.field("Raan coefficient", 3040, 16, "uint", default=0)
     """Raan coefficient: bits 3040 to 3055, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -1273,6 +1448,8 @@ class AdcsConfiguration(_base.Message):
     """
     raan_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Raan coefficient, as a physical value: 0 to 65.535."""
+    raan_coefficient_milli: int = _base.whole(1, 0)
+    """Raan coefficient in thousandths, exact: 0 to 65535."""
 
     ecc_coefficient: int = _base.field("Ecc coefficient", 3056, 16, "uint", default=0)
     """Ecc coefficient: bits 3056 to 3071, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -1282,6 +1459,8 @@ class AdcsConfiguration(_base.Message):
     """
     ecc_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Ecc coefficient, as a physical value: 0 to 65.535."""
+    ecc_coefficient_milli: int = _base.whole(1, 0)
+    """Ecc coefficient in thousandths, exact: 0 to 65535."""
 
     aop_coefficient: int = _base.field("Aop coefficient", 3072, 16, "uint", default=0)
     """Aop coefficient: bits 3072 to 3087, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -1291,6 +1470,8 @@ class AdcsConfiguration(_base.Message):
     """
     aop_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Aop coefficient, as a physical value: 0 to 65.535."""
+    aop_coefficient_milli: int = _base.whole(1, 0)
+    """Aop coefficient in thousandths, exact: 0 to 65535."""
 
     time_coefficient: int = _base.field("Time coefficient", 3088, 16, "uint", default=0)
     """Time coefficient: bits 3088 to 3103, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -1300,6 +1481,8 @@ class AdcsConfiguration(_base.Message):
     """
     time_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Time coefficient, as a physical value: 0 to 65.535."""
+    time_coefficient_milli: int = _base.whole(1, 0)
+    """Time coefficient in thousandths, exact: 0 to 65535."""
 
     pos_coefficient: int = _base.field("Pos coefficient", 3104, 16, "uint", default=0)
     """Pos coefficient: bits 3104 to 3119, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -1309,6 +1492,8 @@ class AdcsConfiguration(_base.Message):
     """
     pos_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Pos coefficient, as a physical value: 0 to 65.535."""
+    pos_coefficient_milli: int = _base.whole(1, 0)
+    """Pos coefficient in thousandths, exact: 0 to 65535."""
 
     maximum_position_error: int = _base.field("Maximum position error", 3120, 8, "uint", default=0)
     """Maximum position error: bits 3120 to 3127, raw 0 to 255; physical `raw*0.1`, 0 to
@@ -1318,6 +1503,8 @@ class AdcsConfiguration(_base.Message):
     """
     maximum_position_error_physical: float = _base.scaled(1, 0, 10, default=0.0)
     """Maximum position error, as a physical value: 0 to 25.5."""
+    maximum_position_error_milli: int = _base.whole(100, 0)
+    """Maximum position error in thousandths, exact: 0 to 25500."""
 
     asgp4_filter: AsgpFilter = _base.field("ASGP4 filter", 3128, 8, "enum", default=AsgpFilter.LPF)
     """ASGP4 filter: bits 3128 to 3135."""
@@ -1350,6 +1537,8 @@ class AdcsConfiguration(_base.Message):
     """
     position_sd_physical: float = _base.scaled(1, 0, 10, default=0.0)
     """Position sd, as a physical value: 0 to 25.5."""
+    position_sd_milli: int = _base.whole(100, 0)
+    """Position sd in thousandths, exact: 0 to 25500."""
 
     velocity_sd: int = _base.field("Velocity sd", 3216, 8, "uint", default=0)
     """Velocity sd: bits 3216 to 3223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
@@ -1358,6 +1547,8 @@ class AdcsConfiguration(_base.Message):
     """
     velocity_sd_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Velocity sd, as a physical value: 0 to 2.55."""
+    velocity_sd_milli: int = _base.whole(10, 0)
+    """Velocity sd in thousandths, exact: 0 to 2550."""
 
     min_satellites: int = _base.field("Min. satellites", 3224, 8, "uint", default=0)
     """Min. satellites: bits 3224 to 3231, raw 0 to 255.
@@ -1372,6 +1563,8 @@ class AdcsConfiguration(_base.Message):
     """
     time_gain_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Time gain, as a physical value: 0 to 2.55."""
+    time_gain_milli: int = _base.whole(10, 0)
+    """Time gain in thousandths, exact: 0 to 2550."""
 
     max_lag: int = _base.field("Max. lag", 3240, 8, "uint", default=0)
     """Max. lag: bits 3240 to 3247, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
@@ -1380,6 +1573,8 @@ class AdcsConfiguration(_base.Message):
     """
     max_lag_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Max. lag, as a physical value: 0 to 2.55."""
+    max_lag_milli: int = _base.whole(10, 0)
+    """Max. lag in thousandths, exact: 0 to 2550."""
 
     min_samples: int = _base.field("Min. samples", 3248, 16, "uint", default=0)
     """Min. samples: bits 3248 to 3263, raw 0 to 65535.

@@ -321,6 +321,8 @@ class AdcsState(_base.Message):
     """
     estimated_roll_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Roll Angle in deg: -327.68 to 327.67."""
+    estimated_roll_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Roll Angle in thousandths of deg, exact: -327680 to 327670."""
 
     estimated_pitch_angle: int = _base.field("Estimated Pitch Angle", 112, 16, "int", default=0, unit="deg")
     """Estimated Pitch Angle: bits 112 to 127, raw -32768 to 32767; physical `raw*0.01`,
@@ -328,6 +330,8 @@ class AdcsState(_base.Message):
     """
     estimated_pitch_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Pitch Angle in deg: -327.68 to 327.67."""
+    estimated_pitch_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Pitch Angle in thousandths of deg, exact: -327680 to 327670."""
 
     estimated_yaw_angle: int = _base.field("Estimated Yaw Angle", 128, 16, "int", default=0, unit="deg")
     """Estimated Yaw Angle: bits 128 to 143, raw -32768 to 32767; physical `raw*0.01`,
@@ -335,6 +339,8 @@ class AdcsState(_base.Message):
     """
     estimated_yaw_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Yaw Angle in deg: -327.68 to 327.67."""
+    estimated_yaw_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Yaw Angle in thousandths of deg, exact: -327680 to 327670."""
 
     estimated_q1: int = _base.field("Estimated q1", 144, 16, "int", default=0)
     """Estimated q1: bits 144 to 159, raw -32768 to 32767.
@@ -362,6 +368,8 @@ class AdcsState(_base.Message):
     """
     estimated_x_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated X Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_x_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated X Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
 
     estimated_y_angular_rate: int = _base.field("Estimated Y Angular Rate", 208, 16, "int", default=0, unit="deg/s")
     """Estimated Y Angular Rate: bits 208 to 223, raw -32768 to 32767; physical
@@ -369,6 +377,8 @@ class AdcsState(_base.Message):
     """
     estimated_y_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Y Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_y_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated Y Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
 
     estimated_z_angular_rate: int = _base.field("Estimated Z Angular Rate", 224, 16, "int", default=0, unit="deg/s")
     """Estimated Z Angular Rate: bits 224 to 239, raw -32768 to 32767; physical
@@ -376,6 +386,8 @@ class AdcsState(_base.Message):
     """
     estimated_z_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Z Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_z_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated Z Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
 
     x_position: int = _base.field("X position", 240, 16, "int", default=0, unit="km")
     """X position: bits 240 to 255, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -383,6 +395,8 @@ class AdcsState(_base.Message):
     """
     x_position_km: float = _base.scaled(1, 0, 4, default=0.0)
     """X position in km: -8192 to 8191.75."""
+    x_position_m: int = _base.whole(250, 0)
+    """X position in m, exact: -8192000 to 8191750."""
 
     y_position: int = _base.field("Y position", 256, 16, "int", default=0, unit="km")
     """Y position: bits 256 to 271, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -390,6 +404,8 @@ class AdcsState(_base.Message):
     """
     y_position_km: float = _base.scaled(1, 0, 4, default=0.0)
     """Y position in km: -8192 to 8191.75."""
+    y_position_m: int = _base.whole(250, 0)
+    """Y position in m, exact: -8192000 to 8191750."""
 
     z_position: int = _base.field("Z position", 272, 16, "int", default=0, unit="km")
     """Z position: bits 272 to 287, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -397,6 +413,8 @@ class AdcsState(_base.Message):
     """
     z_position_km: float = _base.scaled(1, 0, 4, default=0.0)
     """Z position in km: -8192 to 8191.75."""
+    z_position_m: int = _base.whole(250, 0)
+    """Z position in m, exact: -8192000 to 8191750."""
 
     x_velocity: int = _base.field("X Velocity", 288, 16, "int", default=0, unit="m/s")
     """X Velocity: bits 288 to 303, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -404,6 +422,8 @@ class AdcsState(_base.Message):
     """
     x_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
     """X Velocity in m/s: -8192 to 8191.75."""
+    x_velocity_mm_per_s: int = _base.whole(250, 0)
+    """X Velocity in mm/s, exact: -8192000 to 8191750."""
 
     y_velocity: int = _base.field("Y Velocity", 304, 16, "int", default=0, unit="m/s")
     """Y Velocity: bits 304 to 319, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -411,6 +431,8 @@ class AdcsState(_base.Message):
     """
     y_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
     """Y Velocity in m/s: -8192 to 8191.75."""
+    y_velocity_mm_per_s: int = _base.whole(250, 0)
+    """Y Velocity in mm/s, exact: -8192000 to 8191750."""
 
     z_velocity: int = _base.field("Z Velocity", 320, 16, "int", default=0, unit="m/s")
     """Z Velocity: bits 320 to 335, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -418,6 +440,8 @@ class AdcsState(_base.Message):
     """
     z_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
     """Z Velocity in m/s: -8192 to 8191.75."""
+    z_velocity_mm_per_s: int = _base.whole(250, 0)
+    """Z Velocity in mm/s, exact: -8192000 to 8191750."""
 
     latitude: int = _base.field("Latitude", 336, 16, "int", default=0, unit="deg")
     """Latitude: bits 336 to 351, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
@@ -425,6 +449,8 @@ class AdcsState(_base.Message):
     """
     latitude_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Latitude in deg: -327.68 to 327.67."""
+    latitude_mdeg: int = _base.whole(10, 0)
+    """Latitude in thousandths of deg, exact: -327680 to 327670."""
 
     longitude: int = _base.field("Longitude", 352, 16, "int", default=0, unit="deg")
     """Longitude: bits 352 to 367, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
@@ -436,6 +462,8 @@ class AdcsState(_base.Message):
     """
     longitude_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Longitude in deg: -327.68 to 327.67."""
+    longitude_mdeg: int = _base.whole(10, 0)
+    """Longitude in thousandths of deg, exact: -327680 to 327670."""
 
     altitude: int = _base.field("Altitude", 368, 16, "uint", default=0, unit="km")
     """Altitude: bits 368 to 383, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
@@ -446,6 +474,8 @@ class AdcsState(_base.Message):
     """
     altitude_km: float = _base.scaled(1, 0, 100, default=0.0)
     """Altitude in km: 0 to 655.35."""
+    altitude_m: int = _base.whole(10, 0)
+    """Altitude in m, exact: 0 to 655350."""
 
     ecef_position_x: int = _base.field("ECEF Position X", 384, 16, "int", default=0)
     """ECEF Position X: bits 384 to 399, raw -32768 to 32767.

@@ -43,6 +43,8 @@ class AdcsTemperatures(_base.Message):
     """
     magnetometer_temperature_c: float = _base.scaled(1, 0, 10, default=0.0)
     """Magnetometer Temperature in C: -3276.8 to 3276.7."""
+    magnetometer_temperature_mc: int = _base.whole(100, 0)
+    """Magnetometer Temperature in thousandths of C, exact: -3276800 to 3276700."""
 
     redundant_mag_temperature: int = _base.field(
         "Redundant Magnetometer Temperature", 32, 16, "int", default=0, unit="C"
@@ -57,3 +59,7 @@ class AdcsTemperatures(_base.Message):
     """
     redundant_mag_temperature_c: float = _base.scaled(1, 0, 10, default=0.0)
     """Redundant Magnetometer Temperature in C: -3276.8 to 3276.7."""
+    redundant_mag_temperature_mc: int = _base.whole(100, 0)
+    """Redundant Magnetometer Temperature in thousandths of C, exact: -3276800 to
+    3276700.
+    """

@@ -31,6 +31,8 @@ class AngularRateCovariance(_base.Message):
     """
     x_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """X Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    x_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """X Angular Rate Covariance in thousandths, exact: -32768 to 32767."""
 
     y_angular_rate_covariance: int = _base.field("Y Angular Rate Covariance", 16, 16, "int", default=0)
     """Y Angular Rate Covariance: bits 16 to 31, raw -32768 to 32767; physical
@@ -40,6 +42,8 @@ class AngularRateCovariance(_base.Message):
     """
     y_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Y Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    y_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """Y Angular Rate Covariance in thousandths, exact: -32768 to 32767."""
 
     z_angular_rate_covariance: int = _base.field("Z Angular Rate Covariance", 32, 16, "int", default=0)
     """Z Angular Rate Covariance: bits 32 to 47, raw -32768 to 32767; physical
@@ -49,3 +53,5 @@ class AngularRateCovariance(_base.Message):
     """
     z_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Z Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    z_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """Z Angular Rate Covariance in thousandths, exact: -32768 to 32767."""

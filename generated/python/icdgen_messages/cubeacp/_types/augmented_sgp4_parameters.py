@@ -39,6 +39,8 @@ class AugmentedSgp4Parameters(_base.Message):
     """
     incl_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Incl. coefficient, as a physical value: 0 to 65.535."""
+    incl_coefficient_milli: int = _base.whole(1, 0)
+    """Incl. coefficient in thousandths, exact: 0 to 65535."""
 
     raan_coefficient: int = _base.field("Raan coefficient", 16, 16, "uint", default=0)
     """Raan coefficient: bits 16 to 31, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -50,6 +52,8 @@ class AugmentedSgp4Parameters(_base.Message):
     """
     raan_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Raan coefficient, as a physical value: 0 to 65.535."""
+    raan_coefficient_milli: int = _base.whole(1, 0)
+    """Raan coefficient in thousandths, exact: 0 to 65535."""
 
     ecc_coefficient: int = _base.field("Ecc coefficient", 32, 16, "uint", default=0)
     """Ecc coefficient: bits 32 to 47, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -63,6 +67,8 @@ class AugmentedSgp4Parameters(_base.Message):
     """
     ecc_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Ecc coefficient, as a physical value: 0 to 65.535."""
+    ecc_coefficient_milli: int = _base.whole(1, 0)
+    """Ecc coefficient in thousandths, exact: 0 to 65535."""
 
     aop_coefficient: int = _base.field("Aop coefficient", 48, 16, "uint", default=0)
     """Aop coefficient: bits 48 to 63, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -76,6 +82,8 @@ class AugmentedSgp4Parameters(_base.Message):
     """
     aop_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Aop coefficient, as a physical value: 0 to 65.535."""
+    aop_coefficient_milli: int = _base.whole(1, 0)
+    """Aop coefficient in thousandths, exact: 0 to 65535."""
 
     time_coefficient: int = _base.field("Time coefficient", 64, 16, "uint", default=0)
     """Time coefficient: bits 64 to 79, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -87,6 +95,8 @@ class AugmentedSgp4Parameters(_base.Message):
     """
     time_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Time coefficient, as a physical value: 0 to 65.535."""
+    time_coefficient_milli: int = _base.whole(1, 0)
+    """Time coefficient in thousandths, exact: 0 to 65535."""
 
     pos_coefficient: int = _base.field("Pos coefficient", 80, 16, "uint", default=0)
     """Pos coefficient: bits 80 to 95, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -100,6 +110,8 @@ class AugmentedSgp4Parameters(_base.Message):
     """
     pos_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Pos coefficient, as a physical value: 0 to 65.535."""
+    pos_coefficient_milli: int = _base.whole(1, 0)
+    """Pos coefficient in thousandths, exact: 0 to 65535."""
 
     maximum_position_error: int = _base.field("Maximum position error", 96, 8, "uint", default=0)
     """Maximum position error: bits 96 to 103, raw 0 to 255; physical `raw*0.1`, 0 to
@@ -113,6 +125,8 @@ class AugmentedSgp4Parameters(_base.Message):
     """
     maximum_position_error_physical: float = _base.scaled(1, 0, 10, default=0.0)
     """Maximum position error, as a physical value: 0 to 25.5."""
+    maximum_position_error_milli: int = _base.whole(100, 0)
+    """Maximum position error in thousandths, exact: 0 to 25500."""
 
     asgp4_filter: AsgpFilter = _base.field("ASGP4 filter", 104, 8, "enum", default=AsgpFilter.LPF)
     """ASGP4 filter: bits 104 to 111."""
@@ -155,6 +169,8 @@ class AugmentedSgp4Parameters(_base.Message):
     """
     position_sd_physical: float = _base.scaled(1, 0, 10, default=0.0)
     """Position sd, as a physical value: 0 to 25.5."""
+    position_sd_milli: int = _base.whole(100, 0)
+    """Position sd in thousandths, exact: 0 to 25500."""
 
     velocity_sd: int = _base.field("Velocity sd", 192, 8, "uint", default=0)
     """Velocity sd: bits 192 to 199, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
@@ -165,6 +181,8 @@ class AugmentedSgp4Parameters(_base.Message):
     """
     velocity_sd_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Velocity sd, as a physical value: 0 to 2.55."""
+    velocity_sd_milli: int = _base.whole(10, 0)
+    """Velocity sd in thousandths, exact: 0 to 2550."""
 
     min_satellites: int = _base.field("Min. satellites", 200, 8, "uint", default=0)
     """Min. satellites: bits 200 to 207, raw 0 to 255.
@@ -183,6 +201,8 @@ class AugmentedSgp4Parameters(_base.Message):
     """
     time_gain_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Time gain, as a physical value: 0 to 2.55."""
+    time_gain_milli: int = _base.whole(10, 0)
+    """Time gain in thousandths, exact: 0 to 2550."""
 
     max_lag: int = _base.field("Max. lag", 216, 8, "uint", default=0)
     """Max. lag: bits 216 to 223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
@@ -195,6 +215,8 @@ class AugmentedSgp4Parameters(_base.Message):
     """
     max_lag_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Max. lag, as a physical value: 0 to 2.55."""
+    max_lag_milli: int = _base.whole(10, 0)
+    """Max. lag in thousandths, exact: 0 to 2550."""
 
     min_samples: int = _base.field("Min. samples", 224, 16, "uint", default=0)
     """Min. samples: bits 224 to 239, raw 0 to 65535.

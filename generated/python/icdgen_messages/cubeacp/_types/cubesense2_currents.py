@@ -36,6 +36,8 @@ class Cubesense2Currents(_base.Message):
     """
     cubesense2_3v3_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense2 3V3 Current in mA: 0 to 6553.5."""
+    cubesense2_3v3_current_ua: int = _base.whole(100, 0)
+    """CubeSense2 3V3 Current in uA, exact: 0 to 6553500."""
 
     cubesense2_cam_sram_current: int = _base.field("CubeSense2 Cam SRAM Current", 16, 16, "uint", default=0, unit="mA")
     """CubeSense2 Cam SRAM Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0
@@ -43,3 +45,5 @@ class Cubesense2Currents(_base.Message):
     """
     cubesense2_cam_sram_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense2 Cam SRAM Current in mA: 0 to 6553.5."""
+    cubesense2_cam_sram_current_ua: int = _base.whole(100, 0)
+    """CubeSense2 Cam SRAM Current in uA, exact: 0 to 6553500."""

@@ -36,6 +36,10 @@ class CubesenseConfiguration(_base.Message):
     """
     cam1_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam1_mounting_beta: int = _base.field(
         "Cam1 Sensor Mounting Transform Beta Angle", 16, 16, "int", default=0, unit="deg"
@@ -47,6 +51,10 @@ class CubesenseConfiguration(_base.Message):
     """
     cam1_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam1_mounting_gamma: int = _base.field(
         "Cam1 Sensor Mounting Transform Gamma Angle", 32, 16, "int", default=0, unit="deg"
@@ -58,6 +66,10 @@ class CubesenseConfiguration(_base.Message):
     """
     cam1_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam1_detection_threshold: int = _base.field("Cam1 detection threshold", 48, 8, "uint", default=0)
     """Cam1 detection threshold: bits 48 to 55, raw 0 to 255.
@@ -89,6 +101,8 @@ class CubesenseConfiguration(_base.Message):
     """
     cam1_boresight_x_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Boresight X in pixels: 0 to 655.35."""
+    cam1_boresight_x_milli_pixels: int = _base.whole(10, 0)
+    """Cam1 Boresight X in thousandths of pixels, exact: 0 to 655350."""
 
     cam1_boresight_y: int = _base.field("Cam1 Boresight Y", 96, 16, "uint", default=0, unit="pixels")
     """Cam1 Boresight Y: bits 96 to 111, raw 0 to 65535; physical `raw*0.01`, 0 to
@@ -98,6 +112,8 @@ class CubesenseConfiguration(_base.Message):
     """
     cam1_boresight_y_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Boresight Y in pixels: 0 to 655.35."""
+    cam1_boresight_y_milli_pixels: int = _base.whole(10, 0)
+    """Cam1 Boresight Y in thousandths of pixels, exact: 0 to 655350."""
 
     cam2_mounting_alpha: int = _base.field(
         "Cam2 Sensor Mounting Transform Alpha Angle", 112, 16, "int", default=0, unit="deg"
@@ -109,6 +125,10 @@ class CubesenseConfiguration(_base.Message):
     """
     cam2_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam2_mounting_beta: int = _base.field(
         "Cam2 Sensor Mounting Transform Beta Angle", 128, 16, "int", default=0, unit="deg"
@@ -120,6 +140,10 @@ class CubesenseConfiguration(_base.Message):
     """
     cam2_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam2_mounting_gamma: int = _base.field(
         "Cam2 Sensor Mounting Transform Gamma Angle", 144, 16, "int", default=0, unit="deg"
@@ -131,6 +155,10 @@ class CubesenseConfiguration(_base.Message):
     """
     cam2_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam2_detection_threshold: int = _base.field("Cam2 detection threshold", 160, 8, "uint", default=0)
     """Cam2 detection threshold: bits 160 to 167, raw 0 to 255."""
@@ -156,6 +184,8 @@ class CubesenseConfiguration(_base.Message):
     """
     cam2_boresight_x_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Boresight X in pixels: 0 to 655.35."""
+    cam2_boresight_x_milli_pixels: int = _base.whole(10, 0)
+    """Cam2 Boresight X in thousandths of pixels, exact: 0 to 655350."""
 
     cam2_boresight_y: int = _base.field("Cam2 Boresight Y", 208, 16, "uint", default=0, unit="pixels")
     """Cam2 Boresight Y: bits 208 to 223, raw 0 to 65535; physical `raw*0.01`, 0 to
@@ -165,6 +195,8 @@ class CubesenseConfiguration(_base.Message):
     """
     cam2_boresight_y_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Boresight Y in pixels: 0 to 655.35."""
+    cam2_boresight_y_milli_pixels: int = _base.whole(10, 0)
+    """Cam2 Boresight Y in thousandths of pixels, exact: 0 to 655350."""
 
     nadir_max_deviation_percentage: int = _base.field(
         "Nadir Max Deviation Percentage", 224, 8, "uint", default=0, unit="%"

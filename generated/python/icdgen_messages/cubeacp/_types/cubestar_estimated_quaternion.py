@@ -37,6 +37,8 @@ class CubestarEstimatedQuaternion(_base.Message):
     """
     q0_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q0, as a physical value: -3.2768 to 3.2767."""
+    q0_micro: int = _base.whole(100, 0)
+    """Q0 in millionths, exact: -3276800 to 3276700."""
 
     q1: int = _base.field("Q1", 16, 16, "int", default=0)
     """Q1: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -48,6 +50,8 @@ class CubestarEstimatedQuaternion(_base.Message):
     """
     q1_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q1, as a physical value: -3.2768 to 3.2767."""
+    q1_micro: int = _base.whole(100, 0)
+    """Q1 in millionths, exact: -3276800 to 3276700."""
 
     q2: int = _base.field("Q2", 32, 16, "int", default=0)
     """Q2: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -59,3 +63,5 @@ class CubestarEstimatedQuaternion(_base.Message):
     """
     q2_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q2, as a physical value: -3.2768 to 3.2767."""
+    q2_micro: int = _base.whole(100, 0)
+    """Q2 in millionths, exact: -3276800 to 3276700."""

@@ -39,6 +39,8 @@ class FineAngularRates(_base.Message):
     """
     estimated_x_angular_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Estimated X Angular Rate in deg/s: -32.768 to 32.767."""
+    estimated_x_angular_rate_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated X Angular Rate in thousandths of deg/s, exact: -32768 to 32767."""
 
     estimated_y_angular_rate: int = _base.field("Estimated Y Angular Rate", 16, 16, "int", default=0, unit="deg/s")
     """Estimated Y Angular Rate: bits 16 to 31, raw -32768 to 32767; physical
@@ -50,6 +52,8 @@ class FineAngularRates(_base.Message):
     """
     estimated_y_angular_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Estimated Y Angular Rate in deg/s: -32.768 to 32.767."""
+    estimated_y_angular_rate_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated Y Angular Rate in thousandths of deg/s, exact: -32768 to 32767."""
 
     estimated_z_angular_rate: int = _base.field("Estimated Z Angular Rate", 32, 16, "int", default=0, unit="deg/s")
     """Estimated Z Angular Rate: bits 32 to 47, raw -32768 to 32767; physical
@@ -61,3 +65,5 @@ class FineAngularRates(_base.Message):
     """
     estimated_z_angular_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Estimated Z Angular Rate in deg/s: -32.768 to 32.767."""
+    estimated_z_angular_rate_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated Z Angular Rate in thousandths of deg/s, exact: -32768 to 32767."""

@@ -38,6 +38,8 @@ class InertialPointingReferenceVector(_base.Message):
     """
     reference_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Inertial Reference X, as a physical value: -3.2768 to 3.2767."""
+    reference_x_micro: int = _base.whole(100, 0)
+    """Inertial Reference X in millionths, exact: -3276800 to 3276700."""
 
     reference_y: int = _base.field("Inertial Reference Y", 16, 16, "int", default=0)
     """Inertial Reference Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`,
@@ -47,6 +49,8 @@ class InertialPointingReferenceVector(_base.Message):
     """
     reference_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Inertial Reference Y, as a physical value: -3.2768 to 3.2767."""
+    reference_y_micro: int = _base.whole(100, 0)
+    """Inertial Reference Y in millionths, exact: -3276800 to 3276700."""
 
     reference_z: int = _base.field("Inertial Reference Z", 32, 16, "int", default=0)
     """Inertial Reference Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`,
@@ -56,3 +60,5 @@ class InertialPointingReferenceVector(_base.Message):
     """
     reference_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Inertial Reference Z, as a physical value: -3.2768 to 3.2767."""
+    reference_z_micro: int = _base.whole(100, 0)
+    """Inertial Reference Z in millionths, exact: -3276800 to 3276700."""

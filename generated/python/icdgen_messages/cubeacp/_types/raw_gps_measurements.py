@@ -120,6 +120,8 @@ class RawGpsMeasurements(_base.Message):
     """
     x_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
     """X-pos Standard Deviation in m: 0 to 25.5."""
+    x_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """X-pos Standard Deviation in mm, exact: 0 to 25500."""
 
     y_pos_standard_deviation: int = _base.field("Y-pos Standard Deviation", 248, 8, "uint", default=0, unit="m")
     """Y-pos Standard Deviation: bits 248 to 255, raw 0 to 255; physical `raw*0.1`, 0 to
@@ -127,6 +129,8 @@ class RawGpsMeasurements(_base.Message):
     """
     y_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
     """Y-pos Standard Deviation in m: 0 to 25.5."""
+    y_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """Y-pos Standard Deviation in mm, exact: 0 to 25500."""
 
     z_pos_standard_deviation: int = _base.field("Z-pos Standard Deviation", 256, 8, "uint", default=0, unit="m")
     """Z-pos Standard Deviation: bits 256 to 263, raw 0 to 255; physical `raw*0.1`, 0 to
@@ -134,6 +138,8 @@ class RawGpsMeasurements(_base.Message):
     """
     z_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
     """Z-pos Standard Deviation in m: 0 to 25.5."""
+    z_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """Z-pos Standard Deviation in mm, exact: 0 to 25500."""
 
     x_vel_standard_deviation: int = _base.field("X-vel Standard Deviation", 264, 8, "uint", default=0, unit="m/s")
     """X-vel Standard Deviation: bits 264 to 271, raw 0 to 255, in m/s.

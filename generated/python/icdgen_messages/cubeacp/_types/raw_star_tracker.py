@@ -203,6 +203,8 @@ class RawStarTracker(_base.Message):
     """
     x_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """x-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    x_axis_rate_micro: int = _base.whole(100, 0)
+    """x-Axis rate in millionths, exact: -3276800 to 3276700."""
 
     y_axis_rate: int = _base.field("y-Axis rate", 352, 16, "int", default=0)
     """y-Axis rate: bits 352 to 367, raw -32768 to 32767; physical `raw/10000.0`,
@@ -214,6 +216,8 @@ class RawStarTracker(_base.Message):
     """
     y_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """y-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    y_axis_rate_micro: int = _base.whole(100, 0)
+    """y-Axis rate in millionths, exact: -3276800 to 3276700."""
 
     z_axis_rate: int = _base.field("z-Axis rate", 368, 16, "int", default=0)
     """z-Axis rate: bits 368 to 383, raw -32768 to 32767; physical `raw/10000.0`,
@@ -225,6 +229,8 @@ class RawStarTracker(_base.Message):
     """
     z_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """z-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    z_axis_rate_micro: int = _base.whole(100, 0)
+    """z-Axis rate in millionths, exact: -3276800 to 3276700."""
 
     q0: int = _base.field("Q0", 384, 16, "int", default=0)
     """Q0: bits 384 to 399, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -238,6 +244,8 @@ class RawStarTracker(_base.Message):
     """
     q0_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q0, as a physical value: -3.2768 to 3.2767."""
+    q0_micro: int = _base.whole(100, 0)
+    """Q0 in millionths, exact: -3276800 to 3276700."""
 
     q1: int = _base.field("Q1", 400, 16, "int", default=0)
     """Q1: bits 400 to 415, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -249,6 +257,8 @@ class RawStarTracker(_base.Message):
     """
     q1_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q1, as a physical value: -3.2768 to 3.2767."""
+    q1_micro: int = _base.whole(100, 0)
+    """Q1 in millionths, exact: -3276800 to 3276700."""
 
     q2: int = _base.field("Q2", 416, 16, "int", default=0)
     """Q2: bits 416 to 431, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -260,3 +270,5 @@ class RawStarTracker(_base.Message):
     """
     q2_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q2, as a physical value: -3.2768 to 3.2767."""
+    q2_micro: int = _base.whole(100, 0)
+    """Q2 in millionths, exact: -3276800 to 3276700."""

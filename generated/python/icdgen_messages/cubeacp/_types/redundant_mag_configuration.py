@@ -37,6 +37,10 @@ class RedundantMagConfiguration(_base.Message):
     mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     """
+    mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg,
+    exact: -327680 to 327670.
+    """
 
     mounting_beta: int = _base.field(
         "Redundant Magnetometer Mounting Transform Beta Angle", 16, 16, "int", default=0, unit="deg"
@@ -48,6 +52,10 @@ class RedundantMagConfiguration(_base.Message):
     """
     mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
+    """
+    mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg,
+    exact: -327680 to 327670.
     """
 
     mounting_gamma: int = _base.field(
@@ -61,6 +69,10 @@ class RedundantMagConfiguration(_base.Message):
     mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     """
+    mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg,
+    exact: -327680 to 327670.
+    """
 
     channel_1_offset: int = _base.field("Redundant Magnetometer Channel 1 Offset", 48, 16, "int", default=0)
     """Redundant Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767;
@@ -73,6 +85,9 @@ class RedundantMagConfiguration(_base.Message):
     channel_1_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767.
     """
+    channel_1_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767.
+    """
 
     channel_2_offset: int = _base.field("Redundant Magnetometer Channel 2 Offset", 64, 16, "int", default=0)
     """Redundant Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767;
@@ -82,6 +97,9 @@ class RedundantMagConfiguration(_base.Message):
     """
     channel_2_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767.
+    """
+    channel_2_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767.
     """
 
     channel_3_offset: int = _base.field("Redundant Magnetometer Channel 3 Offset", 80, 16, "int", default=0)
@@ -93,6 +111,9 @@ class RedundantMagConfiguration(_base.Message):
     channel_3_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767.
     """
+    channel_3_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767.
+    """
 
     sensitivity_s11: int = _base.field("Redundant Magnetometer Sensitivity Matrix S11", 96, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S11: bits 96 to 111, raw -32768 to
@@ -101,6 +122,10 @@ class RedundantMagConfiguration(_base.Message):
     sensitivity_s11_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to
     32.767.
+    """
+    sensitivity_s11_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to
+    32767.
     """
 
     sensitivity_s22: int = _base.field("Redundant Magnetometer Sensitivity Matrix S22", 112, 16, "int", default=0)
@@ -111,6 +136,10 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to
     32.767.
     """
+    sensitivity_s22_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to
+    32767.
+    """
 
     sensitivity_s33: int = _base.field("Redundant Magnetometer Sensitivity Matrix S33", 128, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S33: bits 128 to 143, raw -32768 to
@@ -119,6 +148,10 @@ class RedundantMagConfiguration(_base.Message):
     sensitivity_s33_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to
     32.767.
+    """
+    sensitivity_s33_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to
+    32767.
     """
 
     sensitivity_s12: int = _base.field("Redundant Magnetometer Sensitivity Matrix S12", 144, 16, "int", default=0)
@@ -129,6 +162,10 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to
     32.767.
     """
+    sensitivity_s12_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to
+    32767.
+    """
 
     sensitivity_s13: int = _base.field("Redundant Magnetometer Sensitivity Matrix S13", 160, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S13: bits 160 to 175, raw -32768 to
@@ -137,6 +174,10 @@ class RedundantMagConfiguration(_base.Message):
     sensitivity_s13_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to
     32.767.
+    """
+    sensitivity_s13_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to
+    32767.
     """
 
     sensitivity_s21: int = _base.field("Redundant Magnetometer Sensitivity Matrix S21", 176, 16, "int", default=0)
@@ -147,6 +188,10 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to
     32.767.
     """
+    sensitivity_s21_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to
+    32767.
+    """
 
     sensitivity_s23: int = _base.field("Redundant Magnetometer Sensitivity Matrix S23", 192, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S23: bits 192 to 207, raw -32768 to
@@ -155,6 +200,10 @@ class RedundantMagConfiguration(_base.Message):
     sensitivity_s23_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to
     32.767.
+    """
+    sensitivity_s23_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to
+    32767.
     """
 
     sensitivity_s31: int = _base.field("Redundant Magnetometer Sensitivity Matrix S31", 208, 16, "int", default=0)
@@ -165,6 +214,10 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to
     32.767.
     """
+    sensitivity_s31_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to
+    32767.
+    """
 
     sensitivity_s32: int = _base.field("Redundant Magnetometer Sensitivity Matrix S32", 224, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S32: bits 224 to 239, raw -32768 to
@@ -173,4 +226,8 @@ class RedundantMagConfiguration(_base.Message):
     sensitivity_s32_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to
     32.767.
+    """
+    sensitivity_s32_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to
+    32767.
     """

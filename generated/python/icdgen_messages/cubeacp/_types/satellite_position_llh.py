@@ -30,6 +30,8 @@ class SatellitePositionLlh(_base.Message):
     """
     latitude_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Latitude in deg: -327.68 to 327.67."""
+    latitude_mdeg: int = _base.whole(10, 0)
+    """Latitude in thousandths of deg, exact: -327680 to 327670."""
 
     longitude: int = _base.field("Longitude", 16, 16, "int", default=0, unit="deg")
     """Longitude: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
@@ -41,6 +43,8 @@ class SatellitePositionLlh(_base.Message):
     """
     longitude_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Longitude in deg: -327.68 to 327.67."""
+    longitude_mdeg: int = _base.whole(10, 0)
+    """Longitude in thousandths of deg, exact: -327680 to 327670."""
 
     altitude: int = _base.field("Altitude", 32, 16, "uint", default=0, unit="km")
     """Altitude: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
@@ -51,3 +55,5 @@ class SatellitePositionLlh(_base.Message):
     """
     altitude_km: float = _base.scaled(1, 0, 100, default=0.0)
     """Altitude in km: 0 to 655.35."""
+    altitude_m: int = _base.whole(10, 0)
+    """Altitude in m, exact: 0 to 655350."""

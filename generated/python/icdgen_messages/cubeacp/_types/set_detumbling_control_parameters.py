@@ -59,6 +59,8 @@ class SetDetumblingControlParameters(_base.Message):
     """
     spin_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s."""
+    spin_rate_mdeg_per_s: int = _base.whole(1, 0)
+    """Reference spin rate in thousandths of deg/s, exact: -32768 to 32767."""
 
     fast_bdot_detumbling_gain: float = _base.field("Fast BDot Detumbling Gain", 80, 32, "float", default=0.0)
     """Fast BDot Detumbling Gain: bits 80 to 111, 32-bit float.

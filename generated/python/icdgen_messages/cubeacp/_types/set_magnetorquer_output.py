@@ -40,6 +40,8 @@ class SetMagnetorquerOutput(_base.Message):
     """
     x_duty_cycle_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Commanded X Magnetorquer duty cycle, as a physical value: -32.768 to 32.767."""
+    x_duty_cycle_milli: int = _base.whole(1, 0)
+    """Commanded X Magnetorquer duty cycle in thousandths, exact: -32768 to 32767."""
 
     y_duty_cycle: int = _base.field("Commanded Y Magnetorquer duty cycle", 16, 16, "int", default=0)
     """Commanded Y Magnetorquer duty cycle: bits 16 to 31, raw -32768 to 32767; physical
@@ -51,6 +53,8 @@ class SetMagnetorquerOutput(_base.Message):
     """
     y_duty_cycle_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Commanded Y Magnetorquer duty cycle, as a physical value: -32.768 to 32.767."""
+    y_duty_cycle_milli: int = _base.whole(1, 0)
+    """Commanded Y Magnetorquer duty cycle in thousandths, exact: -32768 to 32767."""
 
     z_duty_cycle: int = _base.field("Commanded Z Magnetorquer duty cycle", 32, 16, "int", default=0)
     """Commanded Z Magnetorquer duty cycle: bits 32 to 47, raw -32768 to 32767; physical
@@ -62,3 +66,5 @@ class SetMagnetorquerOutput(_base.Message):
     """
     z_duty_cycle_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Commanded Z Magnetorquer duty cycle, as a physical value: -32.768 to 32.767."""
+    z_duty_cycle_milli: int = _base.whole(1, 0)
+    """Commanded Z Magnetorquer duty cycle in thousandths, exact: -32768 to 32767."""

@@ -49,6 +49,8 @@ class SetRateGyroConfiguration(_base.Message):
     """
     x_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """X-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    x_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """X-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
 
     y_rate_sensor_offset: int = _base.field("Y-Rate Sensor Offset", 40, 16, "int", default=0, unit="deg/s")
     """Y-Rate Sensor Offset: bits 40 to 55, raw -32768 to 32767; physical `raw*0.001`,
@@ -58,6 +60,8 @@ class SetRateGyroConfiguration(_base.Message):
     """
     y_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Y-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    y_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """Y-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
 
     z_rate_sensor_offset: int = _base.field("Z-Rate Sensor Offset", 56, 16, "int", default=0, unit="deg/s")
     """Z-Rate Sensor Offset: bits 56 to 71, raw -32768 to 32767; physical `raw*0.001`,
@@ -67,6 +71,8 @@ class SetRateGyroConfiguration(_base.Message):
     """
     z_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Z-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    z_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """Z-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
 
     rate_sensor_mult: int = _base.field("RateSensorMult", 72, 8, "uint", default=0)
     """RateSensorMult: bits 72 to 79, raw 0 to 255.

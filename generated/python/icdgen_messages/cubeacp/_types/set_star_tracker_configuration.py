@@ -40,6 +40,10 @@ class SetStarTrackerConfiguration(_base.Message):
     """
     mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     mounting_beta: int = _base.field("StarTracker Mounting Transform Beta Angle", 16, 16, "int", default=0, unit="deg")
     """StarTracker Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767;
@@ -49,6 +53,10 @@ class SetStarTrackerConfiguration(_base.Message):
     """
     mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    mounting_beta_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     mounting_gamma: int = _base.field(
         "StarTracker Mounting Transform Gamma Angle", 32, 16, "int", default=0, unit="deg"
@@ -60,6 +68,10 @@ class SetStarTrackerConfiguration(_base.Message):
     """
     mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     star_tracker_exposure_time: int = _base.field("StarTracker exposure time", 48, 16, "uint", default=0)
     """StarTracker exposure time: bits 48 to 63, raw 0 to 65535.
@@ -134,6 +146,8 @@ class SetStarTrackerConfiguration(_base.Message):
     """
     error_margin_percent: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Tracker Error Margin in %: 0 to 2.55."""
+    error_margin_milli_percent: int = _base.whole(10, 0)
+    """Star Tracker Error Margin in thousandths of %, exact: 0 to 2550."""
 
     star_tracker_delay_time: int = _base.field("Star Tracker Delay Time", 144, 16, "uint", default=0, unit="ms")
     """Star Tracker Delay Time: bits 144 to 159, raw 0 to 65535, in ms.
@@ -219,6 +233,8 @@ class SetStarTrackerConfiguration(_base.Message):
     """
     tracking_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Tracking Margin, as a physical value: 0 to 2.55."""
+    tracking_margin_milli: int = _base.whole(10, 0)
+    """Star Tracking Margin in thousandths, exact: 0 to 2550."""
 
     validation_margin: int = _base.field("Star Validation Margin", 400, 8, "uint", default=0)
     """Star Validation Margin: bits 400 to 407, raw 0 to 255; physical `raw/100.0`, 0 to
@@ -228,6 +244,8 @@ class SetStarTrackerConfiguration(_base.Message):
     """
     validation_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Validation Margin, as a physical value: 0 to 2.55."""
+    validation_margin_milli: int = _base.whole(10, 0)
+    """Star Validation Margin in thousandths, exact: 0 to 2550."""
 
     star_tracking_module_enable: bool = _base.field("Star Tracking Module Enable", 408, 1, "bool", default=False)
     """Star Tracking Module Enable: bit 408."""
@@ -248,3 +266,5 @@ class SetStarTrackerConfiguration(_base.Message):
     """
     search_width_physical: float = _base.scaled(1, 0, 5, default=0.0)
     """Star Tracking Search Width, as a physical value: 0 to 51."""
+    search_width_milli: int = _base.whole(200, 0)
+    """Star Tracking Search Width in thousandths, exact: 0 to 51000."""

@@ -34,6 +34,8 @@ class Star1OrbitVector(_base.Message):
     """
     star1_orbit_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1OX, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_x_micro: int = _base.whole(100, 0)
+    """Star1OX in millionths, exact: -3276800 to 3276700."""
 
     star1_orbit_y: int = _base.field("Star1OY", 16, 16, "int", default=0)
     """Star1OY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -45,6 +47,8 @@ class Star1OrbitVector(_base.Message):
     """
     star1_orbit_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1OY, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_y_micro: int = _base.whole(100, 0)
+    """Star1OY in millionths, exact: -3276800 to 3276700."""
 
     star1_orbit_z: int = _base.field("Star1OZ", 32, 16, "int", default=0)
     """Star1OZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -56,3 +60,5 @@ class Star1OrbitVector(_base.Message):
     """
     star1_orbit_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1OZ, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_z_micro: int = _base.whole(100, 0)
+    """Star1OZ in millionths, exact: -3276800 to 3276700."""

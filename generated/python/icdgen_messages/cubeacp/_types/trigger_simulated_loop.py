@@ -448,6 +448,8 @@ class TriggerSimulatedLoop(_base.Message):
     """
     x_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
     """X-pos Standard Deviation in m: 0 to 25.5."""
+    x_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """X-pos Standard Deviation in mm, exact: 0 to 25500."""
 
     y_pos_standard_deviation: int = _base.field("Y-pos Standard Deviation", 976, 8, "uint", default=0, unit="m")
     """Y-pos Standard Deviation: bits 976 to 983, raw 0 to 255; physical `raw =
@@ -457,6 +459,8 @@ class TriggerSimulatedLoop(_base.Message):
     """
     y_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
     """Y-pos Standard Deviation in m: 0 to 25.5."""
+    y_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """Y-pos Standard Deviation in mm, exact: 0 to 25500."""
 
     z_pos_standard_deviation: int = _base.field("Z-pos Standard Deviation", 984, 8, "uint", default=0, unit="m")
     """Z-pos Standard Deviation: bits 984 to 991, raw 0 to 255; physical `raw =
@@ -466,6 +470,8 @@ class TriggerSimulatedLoop(_base.Message):
     """
     z_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
     """Z-pos Standard Deviation in m: 0 to 25.5."""
+    z_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """Z-pos Standard Deviation in mm, exact: 0 to 25500."""
 
     x_vel_standard_deviation: int = _base.field("X-vel Standard Deviation", 992, 8, "uint", default=0, unit="m/s")
     """X-vel Standard Deviation: bits 992 to 999, raw 0 to 255, in m/s.

@@ -37,6 +37,8 @@ class WheelCurrents(_base.Message):
     """
     wheel1_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel1Current in mA: 0 to 655.35."""
+    wheel1_current_ua: int = _base.whole(10, 0)
+    """Wheel1Current in uA, exact: 0 to 655350."""
 
     wheel2_current: int = _base.field("Wheel2Current", 16, 16, "uint", default=0, unit="mA")
     """Wheel2Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
@@ -48,6 +50,8 @@ class WheelCurrents(_base.Message):
     """
     wheel2_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel2Current in mA: 0 to 655.35."""
+    wheel2_current_ua: int = _base.whole(10, 0)
+    """Wheel2Current in uA, exact: 0 to 655350."""
 
     wheel3_current: int = _base.field("Wheel3Current", 32, 16, "uint", default=0, unit="mA")
     """Wheel3Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
@@ -59,3 +63,5 @@ class WheelCurrents(_base.Message):
     """
     wheel3_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel3Current in mA: 0 to 655.35."""
+    wheel3_current_ua: int = _base.whole(10, 0)
+    """Wheel3Current in uA, exact: 0 to 655350."""
