@@ -22,14 +22,13 @@ def words(name: str, vocabulary: tuple[str, ...] = ()) -> tuple[str, ...]:
     longest_first = sorted([word for word in vocabulary if word in text], key=len, reverse=True)
     found: list[str] = []
     for chunk in _SEPARATORS.split(text):
-        lower = chunk.lower()
-        if longest_first:
-            found += _split(chunk, longest_first)
-        elif lower[1:] != chunk[1:]:
-            found += (part.lower() for part in _HUMPS.split(chunk) if part)
-        elif lower:
-            found.append(lower)
+        found += _split(chunk, longest_first) if longest_first else _humps(chunk)
     return tuple(found)
+
+
+@lru_cache(maxsize=1 << 16)
+def _humps(chunk: str) -> tuple[str, ...]:
+    return tuple(part.lower() for part in _HUMPS.split(chunk) if part)
 
 
 def _split(chunk: str, vocabulary: list[str]) -> Iterable[str]:
@@ -40,7 +39,7 @@ def _split(chunk: str, vocabulary: list[str]) -> Iterable[str]:
         if is_word:
             yield text.lower()
         elif word is None:
-            yield from (part.lower() for part in _HUMPS.split(text) if part)
+            yield from _humps(text)
         else:
             before, _, after = text.partition(word)
             found = _DIGITS.match(after)

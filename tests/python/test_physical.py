@@ -100,3 +100,31 @@ def test_messages_are_made_from_physical_values(package):
         again = case.cls.from_physical(**message.as_dict(physical=True))
         assert again == message
         assert case.cls.from_physical() == case.cls()
+
+
+def test_whole_numbers_of_parts_of_a_unit_are_exact_and_come_back(package):
+    seen = 0
+    for case, field in distinct(package, 64):
+        info = case.infos[field.name]
+        if not info.whole:
+            continue
+        message = case.cls()
+        for raw in {field.raw_min, field.raw_max, field.raw_min // 2, (field.raw_min + field.raw_max) // 3}:
+            setattr(message, info.attribute, raw)
+            parts, exact = getattr(message, info.whole), field.scale.physical(raw)
+            assert isinstance(parts, int) and parts in (exact * 1000, exact * 1_000_000)
+            setattr(message, info.attribute, 0)
+            setattr(message, info.whole, parts)
+            assert getattr(message, info.attribute) == raw
+            seen += 1
+    assert seen > 10 or package.name == "ordered_messages"
+
+
+def test_whole_numbers_are_set_to_the_nearest_raw_value(shipped):
+    angles = shipped.module("cubeacp").EstimatedAttitudeAngles()
+    for value, raw in ((15, 2), (25, 2), (-327685, -32768), (327674, 32767)):
+        angles.estimated_roll_angle_mdeg = value
+        assert angles.estimated_roll_angle == raw
+    for value in (-327686, 327675, "1", None):
+        with pytest.raises(shipped.module().RangeError, match=r"takes -327680\.0 to 327670\.0"):
+            angles.estimated_roll_angle_mdeg = value

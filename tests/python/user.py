@@ -12,7 +12,7 @@ from icdgen_messages.cubeacp import (
     decode_telecommand,
     decode_telemetry,
 )
-from icdgen_messages.wire import Client, Done, Download, Event, Refused, Session, UartDecoder
+from icdgen_messages.wire import AsyncSession, Client, Done, Download, Event, Refused, Session, UartDecoder
 
 
 def roll(id: int, data: bytes) -> float:
@@ -55,8 +55,8 @@ def talk(client: Client, now: float, data: bytes) -> list[str]:
     events += client.received(now, data)
     found = []
     for event in events:
-        if isinstance(event, Done) and isinstance(event.message, EstimatedAttitudeAngles):
-            found.append(f"{event.message.estimated_roll_angle_deg}")
+        if isinstance(event, Done) and (angles := event.of(EstimatedAttitudeAngles)):
+            found.append(f"{angles.estimated_roll_angle_deg}")
         elif isinstance(event, Refused):
             found.append(event.reason or "unknown")
     return found
@@ -69,3 +69,24 @@ def wait(session: Session) -> tuple[float, bytes]:
     print([event.event for event in decoder.feed(b"")], cubeacp.LINK.assumptions[0].why)
     download = session.run(Download(cubeacp.LINK, "uart", 2, 0, 100))
     return session.get(EstimatedAttitudeAngles).estimated_roll_angle_deg, download.data
+
+
+def ask(session: Session) -> float:
+    """What became of a request, without an exception."""
+    outcome = session.ask(EstimatedAttitudeAngles)
+    return outcome.message.estimated_roll_angle_deg if isinstance(outcome, Done) else 0.0
+
+
+async def wait_async(session: AsyncSession) -> tuple[float, float, bytes]:
+    """The same while other tasks go on."""
+    await session.send(Reset())
+    outcome = await session.ask(EstimatedAttitudeAngles)
+    asked = outcome.message.estimated_roll_angle_deg if isinstance(outcome, Done) else 0.0
+    download = await session.run(Download(cubeacp.LINK, "uart", 2, 0, 100))
+    return (await session.get(EstimatedAttitudeAngles)).estimated_roll_angle_deg, asked, download.data
+
+
+def made(text: str) -> EstimatedAttitudeAngles:
+    """Of physical values, and of JSON."""
+    angles = EstimatedAttitudeAngles(estimated_roll_angle_deg=1.5, estimated_pitch_angle=3)
+    return EstimatedAttitudeAngles.from_json(text or angles.to_json(physical=True))

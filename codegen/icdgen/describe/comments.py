@@ -5,7 +5,7 @@ Text in backticks is code, and there is no other markup: text of the ICD comes a
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -40,9 +40,14 @@ def sentence(text: str) -> str:
     return text if not text or text.endswith((".", "?", "!", ":")) else f"{text}."
 
 
-def _comment(head: str, rest: Iterable[str], errata: Iterable[Erratum] = ()) -> Comment:
-    said = tuple(f"{e.label} {words(e.id)}{e.sureness}: {sentence(e.title)}" for e in errata)
+def _comment(head: str, rest: Iterable[str], errata: Iterable[Erratum], told: Mapping[str, str]) -> Comment:
+    said = tuple(f"{e.label} {words(e.id)}{e.sureness}: {_said(e, told.get(e.id))}" for e in errata)
     return Comment(head, tuple(filter(None, rest)), said)
+
+
+def _said(erratum: Erratum, teller: str | None) -> str:
+    """What it is and why so, or who says that."""
+    return f"see {words(teller)}." if teller else f"{sentence(erratum.title)} {sentence(erratum.why)}".strip()
 
 
 def message_comment(message: Message, log_bit: int | None = None) -> Comment:
@@ -62,7 +67,7 @@ def message_comment(message: Message, log_bit: int | None = None) -> Comment:
     if message.reserved:
         facts.append(f"The last {'byte is' if message.reserved == 1 else f'{message.reserved} bytes are'} reserved.")
     head = f"{words(message.name)}: {kind} {ids}, {byte_count(message.length)}.{_table(message.table)}"
-    return _comment(head, (sentence(message.summary), " ".join(facts)), message.errata)
+    return _comment(head, (sentence(message.summary), " ".join(facts)), message.errata, {})
 
 
 def _from(at: int) -> str:
@@ -75,16 +80,18 @@ def _table(number: int | None) -> str:
 
 def enum_comment(enum: Enum) -> Comment:
     """Name and table; summary."""
-    return _comment(f"{words(enum.name)}: an enumeration.{_table(enum.table)}", (sentence(enum.summary),), enum.errata)
+    return _comment(
+        f"{words(enum.name)}: an enumeration.{_table(enum.table)}", (sentence(enum.summary),), enum.errata, {}
+    )
 
 
-def member_comment(member: Member) -> Comment:
-    """Name and value; summary."""
-    return _comment(f"{words(member.name)} ({member.value}).", (sentence(member.summary),), member.errata)
+def member_comment(member: Member, told: Mapping[str, str]) -> Comment:
+    """Name and value; summary. ``told``: what tells of an erratum, by its id, if this does not."""
+    return _comment(f"{words(member.name)} ({member.value}).", (sentence(member.summary),), member.errata, told)
 
 
-def field_comment(field: Field) -> Comment:
-    """Name, place, range and unit; summary; the values that are allowed or mean something."""
+def field_comment(field: Field, told: Mapping[str, str]) -> Comment:
+    """Name, place, range and unit; summary; values that are allowed or mean something. ``told``: as for a member."""
     facts = ["A view: it reads bits of other fields, and is not set."] if field.view else []
     if field.const is not None:
         facts.append(f"Always {value_text(field.const)}.")
@@ -92,7 +99,7 @@ def field_comment(field: Field) -> Comment:
         facts.append(f"Must be {limits_text(bounds(field.limits), field)}.")
     facts += (f"{value_text(special.value)}: {sentence(special.meaning)}" for special in field.special)
     head = f"{words(field.name)}: {_place(field)}{_meaning(field)}."
-    return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata)
+    return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, told)
 
 
 def limits_text(limits: Iterable[Bound], field: Field) -> str:

@@ -11,10 +11,11 @@ from icdgen.describe.bounds import Bound, bounds
 from icdgen.describe.comments import Comment, field_comment, message_comment
 from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
+from icdgen.describe.errata import tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding, storage_of
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.model import Enum, Field, Icd, Message, Node
+from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
 
 
 class FieldDescription(Named[Field]):
@@ -118,7 +119,7 @@ class FieldDescription(Named[Field]):
 
     @cached_property
     def comment(self) -> Comment:
-        return field_comment(self.model)
+        return field_comment(self.model, told_elsewhere(self.model, self.message.tellers) if self.model.errata else {})
 
 
 class Id(NamedTuple):
@@ -202,6 +203,11 @@ class MessageDescription(Named[Message]):
     def has_wide_steps(self) -> bool:
         """Whether the formula of a field has numbers of many digits."""
         return any(field.steps is not None and field.steps.is_wide for field in self.all_fields)
+
+    @cached_property
+    def tellers(self) -> dict[str, Message | Field | Enum | Member]:
+        """By the ids of errata: which part of the message tells of it."""
+        return tellers((self.model, *self.model.members))
 
     @cached_property
     def comment(self) -> Comment:

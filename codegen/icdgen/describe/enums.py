@@ -5,9 +5,10 @@ from __future__ import annotations
 from functools import cached_property
 
 from icdgen.describe.comments import Comment, enum_comment, member_comment
+from icdgen.describe.errata import tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding
-from icdgen.icd.model import Enum, Icd, Member, Node
+from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
 
 
 def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
@@ -38,6 +39,11 @@ class EnumDescription(Named[Enum]):
         return tuple(MemberDescription(member, self) for member in self.model.members)
 
     @cached_property
+    def tellers(self) -> dict[str, Message | Field | Enum | Member]:
+        """By the ids of errata: which part of the enumeration tells of it."""
+        return tellers((self.model, *self.model.members))
+
+    @cached_property
     def comment(self) -> Comment:
         return enum_comment(self.model)
 
@@ -51,7 +57,8 @@ class MemberDescription(Named[Member]):
 
     def __init__(self, member: Member, enum: EnumDescription) -> None:
         super().__init__(member, enum.node.vocabulary, f"member `{member.name}` of `{enum.model.name}`")
+        self._enum = enum
 
     @cached_property
     def comment(self) -> Comment:
-        return member_comment(self.model)
+        return member_comment(self.model, told_elsewhere(self.model, self._enum.tellers) if self.model.errata else {})

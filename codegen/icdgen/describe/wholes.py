@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from icdgen.describe.steps import Steps
 from icdgen.icd.model import Field
+from icdgen.icd.units import STANDARD
 
 # Units that already carry a prefix: (a thousandth, a millionth). Empty where that has no name.
 _PREFIXED = {
@@ -20,6 +21,7 @@ _PREFIXABLE = frozenset(
     """deg rad m s g n a v w j wh ah ohm t k c pa bar rpm n_m nms deg_per_s rad_per_s m_per_s deg_per_s2 rad_per_s2
     m_per_s2 a_m2""".split()
 )
+_IN_WORDS = frozenset(("deg", "c", "rpm", "deg_per_s", "deg_per_s2"))  # whose symbols nobody writes with a prefix
 
 
 class Whole(NamedTuple):
@@ -53,15 +55,17 @@ def _whole(per: int, factor: int, offset: int, steps: Steps) -> Whole:
 
 
 def part_of_unit(field: Field, per: int) -> tuple[str, str]:
-    """The end of an accessor's name, and the unit in words: ``mdeg`` and ``thousandths of deg``."""
+    """The end of an accessor's name, and the unit in words: ``mdeg`` and ``thousandths of deg``, ``m`` and ``m`` of km."""
     prefix, part = ("milli", "thousandths") if per == 1000 else ("micro", "millionths")
     if field.unit is None:
         return prefix, part
-    unit = field.unit.identifier
-    words = f"{part} of {field.unit.symbol}"
-    if unit in _PREFIXED:
-        shifted = _PREFIXED[unit][per > 1000]
-        return (shifted or f"{prefix}_{unit}"), words
+    unit, symbol = field.unit.identifier, field.unit.symbol
+    words, is_known = f"{part} of {symbol}", symbol in STANDARD
+    shifted = _PREFIXED[unit][per > 1000] if unit in _PREFIXED else ""
+    if shifted:
+        base = symbol[1:] if shifted == unit[1:] else f"{shifted[0]}{symbol[1:]}"
+        return shifted, base if is_known else words
     if unit in _PREFIXABLE:
-        return f"{'m' if per == 1000 else 'u'}{unit}", words
+        letter = "m" if per == 1000 else "u"
+        return f"{letter}{unit}", words if unit in _IN_WORDS or not is_known else f"{letter}{symbol}"
     return f"{prefix}_{unit}", words

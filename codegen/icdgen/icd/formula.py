@@ -28,7 +28,7 @@ class Scale(NamedTuple):
     offset: Fraction = Fraction(0)
 
     def __hash__(self) -> int:
-        return hash((self[0].as_integer_ratio(), self[1].as_integer_ratio()))  # a fraction's own is a modular inverse
+        return hash(self[0].as_integer_ratio())  # few differ by the offset alone; a fraction's own is a modular inverse
 
     def physical(self, raw: int | Fraction) -> Fraction:
         a, b = self.factor, self.offset  # put together in one step: it is done for each value of each vector

@@ -21,7 +21,9 @@
 typedef struct {
     /**
      * Program Index: bits 0 to 7.
-     * @note Note BOOT-007 (certain): Set Boot Index selects among one.
+     * @note Note BOOT-007 (certain): Set Boot Index selects among one. The telecommand is to choose a program, but its
+     * enumeration has one member and the text forbids others. Its use is a side effect that the table does not mention:
+     * it sets the boot status back.
      */
     bootloader_boot_set_programs_list_t program_index;
 } bootloader_set_boot_index_t;

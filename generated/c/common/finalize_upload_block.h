@@ -7,8 +7,12 @@
  * @file
  * Finalize Upload Block: telecommand 116, 7 bytes. Table 22.
  * Commits the received block to its destination.
- * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
- * @note Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
+ * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
+ * upload are in the list common to both programs, the procedure belongs to the bootloader. Whether the ACP answers
+ * them, refuses them, or uploads somewhere is not said.
+ * @note Note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text ends with the checksum
+ * test before the block is committed. The telecommand that commits it and the frame that reports it are never named;
+ * both stood in a figure at best.
  */
 
 #include "../icdgen.h"
@@ -25,12 +29,13 @@ typedef struct {
     common_file_upload_destination_t destination;
     /**
      * Offset: bits 8 to 39, raw 0 to 4294967295, in byte. Where in the file the block belongs.
-     * @note Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+     * @note Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant throughout, but of the
+     * tables of messages only that of the program information says so.
      */
     uint32_t offset;
     /**
      * Block Length: bits 40 to 55, raw 0 to 65535, in byte.
-     * @note Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+     * @note Erratum COM-039 (likely): see Offset.
      */
     uint16_t block_length;
 } common_finalize_upload_block_t;

@@ -7,7 +7,9 @@
  * @file
  * Identification: telemetry 128, 8 bytes. Table 27.
  * Tells which program is running. Requesting it from the bootloader keeps it from booting on.
- * @note Note COM-054 (likely): The identification request stops the boot that it is to check.
+ * @note Note COM-054 (likely): The identification request stops the boot that it is to check. A request that reaches
+ * the bootloader keeps it from booting: asked within the first 5 s, or after a reset that nobody planned, it prevents
+ * the start. Section 7.1 does not say how the boot is resumed; Run Selected Program would do it.
  */
 
 #include "../icdgen.h"
@@ -23,7 +25,8 @@ typedef struct {
     uint8_t node_type;
     /**
      * Interface version: bits 8 to 15, raw 0 to 255.
-     * @note Erratum COM-055 (certain): Interface version should be 1.
+     * @note Erratum COM-055 (certain): Interface version should be 1. The identification frame is said to carry 1. The
+     * programs that it identifies carry 7 and 3, so the constant would refuse every real answer.
      */
     uint8_t interface_version;
     /** Firmware version (Major): bits 16 to 23, raw 0 to 255. */
@@ -32,13 +35,16 @@ typedef struct {
     uint8_t firmware_version_minor;
     /**
      * Runtime (seconds): bits 32 to 47, raw 0 to 65535, in s. Since the processor started.
-     * @note Erratum COM-057 (certain): Runtime has its unit in words only.
-     * @note Note COM-056 (open): Runtime ends after 18 hours.
+     * @note Erratum COM-057 (certain): Runtime has its unit in words only. Seconds stand in name and description, not
+     * as a unit of measure.
+     * @note Note COM-056 (open): Runtime ends after 18 hours. Seconds since start-up have 16 bits and reach 65535 s, 18
+     * h 12 min. What follows is not said.
      */
     uint16_t runtime_seconds;
     /**
      * Runtime (milliseconds): bits 48 to 63, raw 0 to 65535, in ms. Beyond the whole seconds.
-     * @note Erratum COM-127 (certain): Milliseconds of the runtime have their unit in words only.
+     * @note Erratum COM-127 (certain): Milliseconds of the runtime have their unit in words only. Milliseconds stand in
+     * name and description, not as a unit of measure.
      */
     uint16_t runtime_milliseconds;
 } common_identification_t;

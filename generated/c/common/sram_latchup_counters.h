@@ -6,7 +6,9 @@
 /**
  * @file
  * SRAM Latchup counters: telemetry 142, 6 bytes. Table 35.
- * @note Erratum COM-076 (open): SRAM Latchup counters: 6 bytes announced, 4 described.
+ * @note Erratum COM-076 (open): SRAM Latchup counters: 6 bytes announced, 4 described. Two counters of 16 bits fill
+ * four of the six bytes. A third field is missing, or the frame is filled up to the size of the loggable ones. The last
+ * two bytes are held as reserved.
  */
 
 #include "../icdgen.h"

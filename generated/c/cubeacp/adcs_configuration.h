@@ -15,8 +15,11 @@
  * Tracking Controller Gain Parameters from byte 310. Repeats Moment of Inertia Matrix from byte 323. Repeats Estimation
  * Parameters from byte 347. Repeats Augmented-SGP4 Parameters from byte 378. Repeats User-coded Controller and
  * Estimator Parameters from byte 408.
- * @note Note ACP-020 (open): Reserved bits.
- * @note Note ACP-159 (open): The current configuration is not all of it.
+ * @note Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0
+ * and ignored.
+ * @note Note ACP-159 (open): The current configuration is not all of it. The message is described as the current
+ * configuration. It joins 16 of the 25 others; orbit, target, attitude command, power, logs, inertial vector and system
+ * configuration are not in it. Save Configuration uses the same words.
  */
 
 #include "../icdgen.h"
@@ -63,7 +66,8 @@ typedef struct {
     int16_t z_rate_sensor_offset;
     /**
      * RateSensorMult: bits 128 to 135, raw 0 to 255. Factor on the rate sensor measurements.
-     * @note Note ACP-130 (open): RateSensorMult has no scale and no blanks.
+     * @note Note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8 bits; whether it is a
+     * whole factor, and of which quantity, is not said.
      */
     uint8_t rate_sensor_mult;
     /** CSS1 Configuration: bits 136 to 143. */
@@ -108,7 +112,8 @@ typedef struct {
     uint8_t css10_relative_scale;
     /**
      * CSS Threshold: bits 296 to 303, raw 0 to 255.
-     * @note Note ACP-133 (open): CSS threshold has no description.
+     * @note Note ACP-133 (open): CSS threshold has no description. The name is repeated; neither unit nor what lies
+     * below it is said. The message is described as directions and scale factors.
      */
     uint8_t css_threshold;
     /**
@@ -176,7 +181,8 @@ typedef struct {
     /**
      * Nadir Max Deviation Percentage: bits 528 to 535, raw 0 to 255, in %. Largest deviation of an edge, of the
      * measured angular radius.
-     * @note Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
+     * @note Erratum ACP-151 (certain): Deviation percentage has its unit in words only. A percentage of the measured
+     * angular radius by name and description, without the unit of measure.
      */
     uint8_t nadir_max_deviation_percentage;
     /**
@@ -186,12 +192,12 @@ typedef struct {
     uint8_t nadir_max_bad_edges;
     /**
      * Nadir Max Radius: bits 544 to 551, raw 0 to 255, in deg.
-     * @note Erratum ACP-148 (certain): Degree sign is deg.
+     * @note Erratum ACP-148 (certain): Degree sign is deg. Two fields have the sign, all other angles deg.
      */
     uint8_t nadir_max_radius;
     /**
      * Nadir Min Radius: bits 552 to 559, raw 0 to 255, in deg.
-     * @note Erratum ACP-148 (certain): Degree sign is deg.
+     * @note Erratum ACP-148 (certain): see Nadir Max Radius.
      */
     uint8_t nadir_min_radius;
     /** Cam 1 Minimum X of area 1: bits 560 to 575, raw 0 to 65535. */
@@ -438,32 +444,35 @@ typedef struct {
     int16_t star_tracker_mounting_gamma;
     /**
      * StarTracker exposure time: bits 1728 to 1743, raw 0 to 65535. Register value.
-     * @note Note ACP-145 (open): Exposure and gain are register values.
+     * @note Note ACP-145 (open): Exposure and gain are register values. Neither the register nor its scale is given, so
+     * times and gains cannot be told from them.
      */
     uint16_t star_tracker_exposure_time;
     /**
      * StarTracker analog gain: bits 1744 to 1759, raw 0 to 65535. Register value.
-     * @note Note ACP-145 (open): Exposure and gain are register values.
+     * @note Note ACP-145 (open): see StarTracker exposure time.
      */
     uint16_t star_tracker_analog_gain;
     /**
      * StarTracker detection threshold: bits 1760 to 1767, raw 0 to 255.
-     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description. Names are repeated or a
+     * noun is missing, as in maximum of stars.
      */
     uint8_t star_tracker_detection_threshold;
     /**
      * StarTracker star threshold: bits 1768 to 1775, raw 0 to 255.
-     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+     * @note Note ACP-146 (open): see StarTracker detection threshold.
      */
     uint8_t star_tracker_star_threshold;
     /**
      * Maximum Star Matched: bits 1776 to 1783, raw 0 to 255. Most stars that are matched.
-     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+     * @note Note ACP-146 (open): see StarTracker detection threshold.
      */
     uint8_t maximum_star_matched;
     /**
      * Detection Timeout duration: bits 1784 to 1799, raw 0 to 65535.
-     * @note Note ACP-141 (open): Detection timeout has no unit.
+     * @note Note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in milliseconds; registers
+     * and pixels stand in between.
      */
     uint16_t detection_timeout_duration;
     /** Maximum Star Pixel: bits 1800 to 1807, raw 0 to 255. Most pixels of a star. */
@@ -473,59 +482,64 @@ typedef struct {
     /**
      * Star Tracker Error Margin: bits 1816 to 1823, raw 0 to 255; physical `raw*0.01`, 0 to 2.55 %. Of the star
      * identification.
-     * @note Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
+     * @note Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit % and a factor of 0.01
+     * give steps of 0.01 % in 8 bits. If the factor already makes a fraction, as in the margins that follow without a
+     * unit, the range is 255 %.
      */
     uint8_t star_tracker_error_margin;
     /**
      * Star Tracker Delay Time: bits 1824 to 1839, raw 0 to 65535, in ms.
-     * @note Erratum ACP-140 (certain): milliseconds is ms.
+     * @note Erratum ACP-140 (certain): milliseconds is ms. The unit is spelt out in one field.
      */
     uint16_t star_tracker_delay_time;
     /**
      * Star Tracker Centroid X: bits 1840 to 1871, 32-bit float, in pixels.
-     * @note Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
+     * @note Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only. The fields are
+     * described as pixel centroids, without the unit of measure that the boresights of the cameras have.
      */
     float star_tracker_centroid_x;
     /**
      * Star Tracker Centroid Y: bits 1872 to 1903, 32-bit float, in pixels.
-     * @note Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
+     * @note Erratum ACP-202 (likely): see Star Tracker Centroid X.
      */
     float star_tracker_centroid_y;
     /** Star Tracker Focal Length: bits 1904 to 1935, 32-bit float, in mm. */
     float star_tracker_focal_length;
     /**
      * K1 radial distortion coefficient: bits 1936 to 1967, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): gain is no unit.
+     * @note Note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain. It is kept as a plain
+     * factor; which lens model and which normalisation they belong to is not said.
      */
     float k1_radial_distortion_coefficient;
     /**
      * K2 radial distortion coefficient: bits 1968 to 1999, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): gain is no unit.
+     * @note Note ACP-144 (certain): see K1 radial distortion coefficient.
      */
     float k2_radial_distortion_coefficient;
     /**
      * P1 tangential distortion coefficient: bits 2000 to 2031, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): gain is no unit.
+     * @note Note ACP-144 (certain): see K1 radial distortion coefficient.
      */
     float p1_tangential_distortion_coefficient;
     /**
      * P2 tangential distortion coefficient: bits 2032 to 2063, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): gain is no unit.
+     * @note Note ACP-144 (certain): see K1 radial distortion coefficient.
      */
     float p2_tangential_distortion_coefficient;
     /**
      * Star tracking window width: bits 2064 to 2071, raw 0 to 255.
-     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+     * @note Note ACP-146 (open): see StarTracker detection threshold.
      */
     uint8_t star_tracking_window_width;
     /**
      * Star Tracking Margin: bits 2072 to 2079, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
-     * @note Note ACP-143 (open): Margins and search width have no unit.
+     * @note Note ACP-143 (open): Margins and search width have no unit. Factors are given, units are not; pixels,
+     * fractions and degrees are all possible.
      */
     uint8_t star_tracking_margin;
     /**
      * Star Validation Margin: bits 2080 to 2087, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
-     * @note Note ACP-143 (open): Margins and search width have no unit.
+     * @note Note ACP-143 (open): see Star Tracking Margin.
      */
     uint8_t star_validation_margin;
     /** Star Tracking Module Enable: bit 2088. */
@@ -534,7 +548,7 @@ typedef struct {
     bool star_tracking_location_prediction_enable;
     /**
      * Star Tracking Search Width: bits 2096 to 2103, raw 0 to 255; physical `raw/5.0`, 0 to 51.
-     * @note Note ACP-143 (open): Margins and search width have no unit.
+     * @note Note ACP-143 (open): see Star Tracking Margin.
      */
     uint8_t star_tracking_search_width;
     /** Detumbling Spin Gain: bits 2104 to 2135, 32-bit float. Ks. */
@@ -544,7 +558,8 @@ typedef struct {
     /**
      * Reference spin rate: bits 2168 to 2183, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
      * wy-ref. Must be below 0 deg/s.
-     * @note Note ACP-162 (certain): Limits of a sign in words only.
+     * @note Note ACP-162 (certain): Limits of a sign in words only. Two references must always be smaller than 0; the
+     * types allow the opposite, and what the program does with it is not said.
      */
     int16_t reference_spin_rate;
     /** Fast BDot Detumbling Gain: bits 2184 to 2215, 32-bit float. Kdf. */
@@ -559,7 +574,7 @@ typedef struct {
     float y_momentum_derivative_gain;
     /**
      * Reference Wheel Momentum: bits 2344 to 2375, 32-bit float, in Nms. H-ref. Must be below 0 Nms.
-     * @note Note ACP-162 (certain): Limits of a sign in words only.
+     * @note Note ACP-162 (certain): see Reference spin rate.
      */
     float reference_wheel_momentum;
     /** RWheel Proportional Gain: bits 2376 to 2407, 32-bit float. Kp2. */
@@ -584,35 +599,38 @@ typedef struct {
     cubeacp_axis_select_t target_tracking_facet;
     /**
      * Moment Of Inertia - Ixx: bits 2584 to 2615, 32-bit float, in kg.m^2.
-     * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+     * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2. The same fields have the unit in two
+     * spellings. Held as kg.m^2.
      */
     float moment_of_inertia_ixx;
     /**
      * Moment Of Inertia - Iyy: bits 2616 to 2647, 32-bit float, in kg.m^2.
-     * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+     * @note Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
      */
     float moment_of_inertia_iyy;
     /**
      * Moment Of Inertia - Izz: bits 2648 to 2679, 32-bit float, in kg.m^2.
-     * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+     * @note Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
      */
     float moment_of_inertia_izz;
     /**
      * Product Of Inertia - Ixy: bits 2680 to 2711, 32-bit float, in kg.m^2.
-     * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
-     * @note Note ACP-201 (open): Products of inertia: the sign is not given.
+     * @note Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
+     * @note Note ACP-201 (open): Products of inertia: the sign is not given. The products are elements of a matrix by
+     * the message and products of inertia by their names, which differ in sign by the usual definitions. Neither is
+     * defined.
      */
     float product_of_inertia_ixy;
     /**
      * Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
-     * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
-     * @note Note ACP-201 (open): Products of inertia: the sign is not given.
+     * @note Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
+     * @note Note ACP-201 (open): see Product Of Inertia - Ixy.
      */
     float product_of_inertia_ixz;
     /**
      * Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
-     * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
-     * @note Note ACP-201 (open): Products of inertia: the sign is not given.
+     * @note Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
+     * @note Note ACP-201 (open): see Product Of Inertia - Ixy.
      */
     float product_of_inertia_iyz;
     /** Magnetometer Rate Filter System Noise: bits 2776 to 2807, 32-bit float. */
@@ -643,7 +661,9 @@ typedef struct {
     bool automatic_magnetometer_recovery;
     /**
      * Magnetometer Mode: bits 3006 to 3007. The magnetometer that estimation and control use.
-     * @note Note ACP-049 (open): Magnetometer mode can be set in two places.
+     * @note Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a configuration message
+     * set the same mode. Which wins after a restart, and whether the telecommand changes what the configuration
+     * returns, is not said.
      */
     cubeacp_mag_mode_val_t magnetometer_mode;
     /**
@@ -659,13 +679,15 @@ typedef struct {
     /**
      * Cam1 period: bits 3016 to 3019, raw 0 to 15, in s. Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0
      * stops the sampling of that camera.
-     * @note Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+     * @note Erratum ACP-169 (certain): Two sampling periods in one field with a unit. Two periods of four bits share a
+     * byte that has the unit s. The value of the byte is no time; each half is, up to 15 s, and is held as a field of
+     * its own.
      */
     uint8_t cam1_period;
     /**
      * Cam2 period: bits 3020 to 3023, raw 0 to 15, in s. Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0
      * stops the sampling of that camera.
-     * @note Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+     * @note Erratum ACP-169 (certain): see Cam1 period.
      */
     uint8_t cam2_period;
     /**
@@ -743,12 +765,13 @@ typedef struct {
     uint16_t min_samples;
     /**
      * User Coded Controller Settings: bytes 408 to 455.
-     * @note Note ACP-178 (open): User coded settings: content of the arrays.
+     * @note Note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes without types; what they
+     * hold depends on code that the user supplies.
      */
     uint8_t user_coded_controller_settings[48];
     /**
      * User Coded Estimator Settings: bytes 456 to 503.
-     * @note Note ACP-178 (open): User coded settings: content of the arrays.
+     * @note Note ACP-178 (open): see User Coded Controller Settings.
      */
     uint8_t user_coded_estimator_settings[48];
 } cubeacp_adcs_configuration_t;

@@ -183,13 +183,13 @@ static inline icd_status_t cubeacp_adcs_measurements_encode(
     return ICD_OK;
 }
 
-/** Magnetic Field X in thousandths of uT, exact: -327680 to 327670. */
+/** Magnetic Field X in nT, exact: -327680 to 327670. */
 static inline int32_t cubeacp_adcs_measurements_magnetic_field_x_nt(const cubeacp_adcs_measurements_t *message)
 {
     return message->magnetic_field_x * INT32_C(10);
 }
 
-/** Sets Magnetic Field X in thousandths of uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetic Field X in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_x_nt(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -201,13 +201,13 @@ static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_x_nt(
     return ICD_OK;
 }
 
-/** Magnetic Field Y in thousandths of uT, exact: -327680 to 327670. */
+/** Magnetic Field Y in nT, exact: -327680 to 327670. */
 static inline int32_t cubeacp_adcs_measurements_magnetic_field_y_nt(const cubeacp_adcs_measurements_t *message)
 {
     return message->magnetic_field_y * INT32_C(10);
 }
 
-/** Sets Magnetic Field Y in thousandths of uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetic Field Y in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_y_nt(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
@@ -219,13 +219,13 @@ static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_y_nt(
     return ICD_OK;
 }
 
-/** Magnetic Field Z in thousandths of uT, exact: -327680 to 327670. */
+/** Magnetic Field Z in nT, exact: -327680 to 327670. */
 static inline int32_t cubeacp_adcs_measurements_magnetic_field_z_nt(const cubeacp_adcs_measurements_t *message)
 {
     return message->magnetic_field_z * INT32_C(10);
 }
 
-/** Sets Magnetic Field Z in thousandths of uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetic Field Z in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_z_nt(
     cubeacp_adcs_measurements_t *message,
     int32_t value)

@@ -21,15 +21,19 @@
 typedef struct {
     /**
      * CubeStarCurrent: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of 0.01 mA sixteen bits
+     * reach 655.35 mA, which a wheel motor may well exceed. All other currents have steps of 0.1 mA and more. The
+     * factor is held as printed.
      */
     uint16_t cubestar_current;
     /** Magnetorquer Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA. */
     uint16_t magnetorquer_current;
     /**
      * CubeStar MCU temperature: bits 32 to 47, raw -32768 to 32767; physical `raw/100.0`, -327.68 to 327.67 C.
-     * @note Note ACP-005 (likely): Symbol C is the coulomb.
-     * @note Note ACP-108 (certain): ADCS Misc Current Measurements holds a temperature.
+     * @note Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a degree sign. Degrees
+     * Celsius are meant.
+     * @note Note ACP-108 (certain): ADCS Misc Current Measurements holds a temperature. The name speaks of currents,
+     * the description of CubeStar and torquer currents and temperatures; one temperature is there, of CubeStar.
      */
     int16_t cubestar_mcu_temperature;
 } cubeacp_adcs_misc_currents_t;
@@ -70,13 +74,13 @@ static inline icd_status_t cubeacp_adcs_misc_currents_encode(
     return ICD_OK;
 }
 
-/** CubeStarCurrent in thousandths of mA, exact: 0 to 655350. */
+/** CubeStarCurrent in uA, exact: 0 to 655350. */
 static inline int32_t cubeacp_adcs_misc_currents_cubestar_current_ua(const cubeacp_adcs_misc_currents_t *message)
 {
     return message->cubestar_current * INT32_C(10);
 }
 
-/** Sets CubeStarCurrent in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeStarCurrent in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_cubestar_current_ua(
     cubeacp_adcs_misc_currents_t *message,
     int32_t value)
@@ -88,13 +92,13 @@ static inline icd_status_t cubeacp_adcs_misc_currents_set_cubestar_current_ua(
     return ICD_OK;
 }
 
-/** Magnetorquer Current in thousandths of mA, exact: 0 to 6553500. */
+/** Magnetorquer Current in uA, exact: 0 to 6553500. */
 static inline int32_t cubeacp_adcs_misc_currents_magnetorquer_current_ua(const cubeacp_adcs_misc_currents_t *message)
 {
     return message->magnetorquer_current * INT32_C(100);
 }
 
-/** Sets Magnetorquer Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetorquer Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_misc_currents_set_magnetorquer_current_ua(
     cubeacp_adcs_misc_currents_t *message,
     int32_t value)

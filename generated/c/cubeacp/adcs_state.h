@@ -11,8 +11,10 @@
  * from byte 12. Repeats Estimated Quaternion from byte 18. Repeats Estimated Angular Rates from byte 24. Repeats
  * Satellite Position (ECI) from byte 30. Repeats Satellite Velocity (ECI) from byte 36. Repeats Satellite Position
  * (LLH) from byte 42. Repeats ECEF Position from byte 48.
- * @note Note ACP-059 (certain): Current ADCS State and ADCS State.
- * @note Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles.
+ * @note Note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called Current ADCS State, and frame
+ * 190, which holds it and much more, ADCS State with the description current ADCS state.
+ * @note Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles. Bits 66 to 95 are not described.
+ * They are the unused end of frame 224, which the frame repeats.
  */
 
 #include "../icdgen.h"
@@ -33,7 +35,8 @@ typedef struct {
     cubeacp_adcs_run_mode_t adcs_run_mode;
     /**
      * ASGP4 Mode: bits 10 to 11.
-     * @note Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+     * @note Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode with four
+     * values; the description has an enabled state.
      */
     cubeacp_asgp4_mode_select_t asgp4_mode;
     /** CubeControl Signal Enabled: bit 12. */
@@ -78,7 +81,8 @@ typedef struct {
     bool cubestar_communications_error;
     /**
      * Magnetometer Range Error: bit 32. About a measured field of 65 uT. Whether above or below is not printed.
-     * @note Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
+     * @note Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is set when the field has
+     * a size 65 uT. Above is likely, since the field of the earth hardly reaches it.
      */
     bool magnetometer_range_error;
     /** Cam1 SRAM Overcurrent Detected: bit 33. */
@@ -91,7 +95,9 @@ typedef struct {
     bool cam1_sensor_detection_error;
     /**
      * Sun Sensor Range Error: bit 37. A detected sun angle was beyond +/-90 deg.
-     * @note Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+     * @note Note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag each is for the sun and
+     * the nadir sensor; the cameras are numbered, and which of them is which is a setting. With two sun sensors one
+     * flag serves both.
      */
     bool sun_sensor_range_error;
     /** Cam2 SRAM Overcurrent Detected: bit 38. */
@@ -104,7 +110,7 @@ typedef struct {
     bool cam2_sensor_detection_error;
     /**
      * Nadir Sensor Range Error: bit 42. A detected nadir angle was beyond +/-60 deg.
-     * @note Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+     * @note Note ACP-061 (open): see Sun Sensor Range Error.
      */
     bool nadir_sensor_range_error;
     /** Rate Sensor Range Error: bit 43. A measured body rate was beyond +/-20 deg/s. */
@@ -120,14 +126,18 @@ typedef struct {
     /**
      * Orbit Parameters are Invalid: bit 48. A parameter is out of bounds, or the SGP4 propagator could not start from
      * them.
-     * @note Note ACP-104 (open): Orbit parameter flag has two reasons.
+     * @note Note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds, or a propagator that
+     * failed to start, are told as two sentences for one bit.
      */
     bool orbit_parameters_are_invalid;
     /**
      * Configuration is Invalid: bit 49. Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at
      * least one CSS.
-     * @note Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
-     * @note Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+     * @note Note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames differ by a letter in
+     * the description, and principle stands for principal twice in each.
+     * @note Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output. Each axis is said to need a
+     * torquer output 1, 2 or 3. The configuration works the other way round and gives an axis to each torquer, or Not
+     * Used.
      */
     bool configuration_is_invalid;
     /**
@@ -173,17 +183,19 @@ typedef struct {
     int16_t estimated_yaw_angle;
     /**
      * Estimated q1: bits 144 to 159, raw -32768 to 32767.
-     * @note Note ACP-100 (open): Estimated quaternion has no formula.
+     * @note Note ACP-100 (open): Estimated quaternion has no formula. Components of a unit quaternion in 16 bits need a
+     * factor; all other quaternions have one of 1/10000. It is likely here too, but not printed, so the raw value is
+     * all that is offered.
      */
     int16_t estimated_q1;
     /**
      * Estimated q2: bits 160 to 175, raw -32768 to 32767.
-     * @note Note ACP-100 (open): Estimated quaternion has no formula.
+     * @note Note ACP-100 (open): see Estimated q1.
      */
     int16_t estimated_q2;
     /**
      * Estimated q3: bits 176 to 191, raw -32768 to 32767.
-     * @note Note ACP-100 (open): Estimated quaternion has no formula.
+     * @note Note ACP-100 (open): see Estimated q1.
      */
     int16_t estimated_q3;
     /** Estimated X Angular Rate: bits 192 to 207, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg/s. */
@@ -208,30 +220,35 @@ typedef struct {
     int16_t latitude;
     /**
      * Longitude: bits 352 to 367, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-     * @note Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
+     * @note Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The datum is missing in one
+     * of three rows; the frame is called LLH by name and WGS-84 frame by description.
      */
     int16_t longitude;
     /**
      * Altitude: bits 368 to 383, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
-     * @note Note ACP-067 (open): Position and altitude do not reach equally far.
+     * @note Note ACP-067 (open): Position and altitude do not reach equally far. The inertial position fits orbits up
+     * to 1800 km, the altitude of 16 bits ends at 655.35 km. Above that it wraps or sticks; which is not said.
      */
     uint16_t altitude;
     /**
      * ECEF Position X: bits 384 to 399, raw -32768 to 32767.
-     * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
-     * @note Note ACP-099 (certain): ECEF position: one name, two widths.
+     * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres. In metres the field reaches 32.767 km, a
+     * position some 7000 km. A factor is missing; 0.25 km as in the inertial position is one possibility, km another.
+     * No unit is held, so nothing is converted.
+     * @note Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16 bits in the state
+     * frames and 32 bits in the GPS frames and the simulated data, with the same name, description and unit.
      */
     int16_t ecef_position_x;
     /**
      * ECEF Position Y: bits 400 to 415, raw -32768 to 32767.
-     * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
-     * @note Note ACP-099 (certain): ECEF position: one name, two widths.
+     * @note Erratum ACP-098 (likely): see ECEF Position X.
+     * @note Note ACP-099 (certain): see ECEF Position X.
      */
     int16_t ecef_position_y;
     /**
      * ECEF Position Z: bits 416 to 431, raw -32768 to 32767.
-     * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
-     * @note Note ACP-099 (certain): ECEF position: one name, two widths.
+     * @note Erratum ACP-098 (likely): see ECEF Position X.
+     * @note Note ACP-099 (certain): see ECEF Position X.
      */
     int16_t ecef_position_z;
 } cubeacp_adcs_state_t;
@@ -570,13 +587,13 @@ static inline icd_status_t cubeacp_adcs_state_set_estimated_z_angular_rate_mdeg_
     return ICD_OK;
 }
 
-/** X position in thousandths of km, exact: -8192000 to 8191750. */
+/** X position in m, exact: -8192000 to 8191750. */
 static inline int32_t cubeacp_adcs_state_x_position_m(const cubeacp_adcs_state_t *message)
 {
     return message->x_position * INT32_C(250);
 }
 
-/** Sets X position in thousandths of km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X position in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_x_position_m(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -586,13 +603,13 @@ static inline icd_status_t cubeacp_adcs_state_set_x_position_m(cubeacp_adcs_stat
     return ICD_OK;
 }
 
-/** Y position in thousandths of km, exact: -8192000 to 8191750. */
+/** Y position in m, exact: -8192000 to 8191750. */
 static inline int32_t cubeacp_adcs_state_y_position_m(const cubeacp_adcs_state_t *message)
 {
     return message->y_position * INT32_C(250);
 }
 
-/** Sets Y position in thousandths of km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y position in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_y_position_m(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -602,13 +619,13 @@ static inline icd_status_t cubeacp_adcs_state_set_y_position_m(cubeacp_adcs_stat
     return ICD_OK;
 }
 
-/** Z position in thousandths of km, exact: -8192000 to 8191750. */
+/** Z position in m, exact: -8192000 to 8191750. */
 static inline int32_t cubeacp_adcs_state_z_position_m(const cubeacp_adcs_state_t *message)
 {
     return message->z_position * INT32_C(250);
 }
 
-/** Sets Z position in thousandths of km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z position in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_z_position_m(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -618,13 +635,13 @@ static inline icd_status_t cubeacp_adcs_state_set_z_position_m(cubeacp_adcs_stat
     return ICD_OK;
 }
 
-/** X Velocity in thousandths of m/s, exact: -8192000 to 8191750. */
+/** X Velocity in mm/s, exact: -8192000 to 8191750. */
 static inline int32_t cubeacp_adcs_state_x_velocity_mm_per_s(const cubeacp_adcs_state_t *message)
 {
     return message->x_velocity * INT32_C(250);
 }
 
-/** Sets X Velocity in thousandths of m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X Velocity in mm/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_x_velocity_mm_per_s(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -634,13 +651,13 @@ static inline icd_status_t cubeacp_adcs_state_set_x_velocity_mm_per_s(cubeacp_ad
     return ICD_OK;
 }
 
-/** Y Velocity in thousandths of m/s, exact: -8192000 to 8191750. */
+/** Y Velocity in mm/s, exact: -8192000 to 8191750. */
 static inline int32_t cubeacp_adcs_state_y_velocity_mm_per_s(const cubeacp_adcs_state_t *message)
 {
     return message->y_velocity * INT32_C(250);
 }
 
-/** Sets Y Velocity in thousandths of m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y Velocity in mm/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_y_velocity_mm_per_s(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -650,13 +667,13 @@ static inline icd_status_t cubeacp_adcs_state_set_y_velocity_mm_per_s(cubeacp_ad
     return ICD_OK;
 }
 
-/** Z Velocity in thousandths of m/s, exact: -8192000 to 8191750. */
+/** Z Velocity in mm/s, exact: -8192000 to 8191750. */
 static inline int32_t cubeacp_adcs_state_z_velocity_mm_per_s(const cubeacp_adcs_state_t *message)
 {
     return message->z_velocity * INT32_C(250);
 }
 
-/** Sets Z Velocity in thousandths of m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z Velocity in mm/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_z_velocity_mm_per_s(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -8192125) || (value > 8191874)) {
@@ -698,13 +715,13 @@ static inline icd_status_t cubeacp_adcs_state_set_longitude_mdeg(cubeacp_adcs_st
     return ICD_OK;
 }
 
-/** Altitude in thousandths of km, exact: 0 to 655350. */
+/** Altitude in m, exact: 0 to 655350. */
 static inline int32_t cubeacp_adcs_state_altitude_m(const cubeacp_adcs_state_t *message)
 {
     return message->altitude * INT32_C(10);
 }
 
-/** Sets Altitude in thousandths of km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Altitude in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_altitude_m(cubeacp_adcs_state_t *message, int32_t value)
 {
     if ((value < -5) || (value > 655354)) {

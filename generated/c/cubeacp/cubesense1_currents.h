@@ -7,7 +7,8 @@
  * @file
  * CubeSense1 Current Measurements: telemetry 171, 4 bytes. Table 129.
  * Bit 21 of the log mask.
- * @note Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
+ * @note Note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to have 10+6*(N+1)*M bytes,
+ * and the UART message 11+6*N. With a frame of 4 bytes in the mask both hold only if it is filled up.
  */
 
 #include "../icdgen.h"
@@ -59,14 +60,14 @@ static inline icd_status_t cubeacp_cubesense1_currents_encode(
     return ICD_OK;
 }
 
-/** CubeSense1 3V3 Current in thousandths of mA, exact: 0 to 6553500. */
+/** CubeSense1 3V3 Current in uA, exact: 0 to 6553500. */
 static inline int32_t cubeacp_cubesense1_currents_cubesense1_3v3_current_ua(
     const cubeacp_cubesense1_currents_t *message)
 {
     return message->cubesense1_3v3_current * INT32_C(100);
 }
 
-/** Sets CubeSense1 3V3 Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense1 3V3 Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense1_currents_set_cubesense1_3v3_current_ua(
     cubeacp_cubesense1_currents_t *message,
     int32_t value)
@@ -78,14 +79,14 @@ static inline icd_status_t cubeacp_cubesense1_currents_set_cubesense1_3v3_curren
     return ICD_OK;
 }
 
-/** CubeSense1 Cam SRAM Current in thousandths of mA, exact: 0 to 6553500. */
+/** CubeSense1 Cam SRAM Current in uA, exact: 0 to 6553500. */
 static inline int32_t cubeacp_cubesense1_currents_cubesense1_cam_sram_current_ua(
     const cubeacp_cubesense1_currents_t *message)
 {
     return message->cubesense1_cam_sram_current * INT32_C(100);
 }
 
-/** Sets CubeSense1 Cam SRAM Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense1 Cam SRAM Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense1_currents_set_cubesense1_cam_sram_current_ua(
     cubeacp_cubesense1_currents_t *message,
     int32_t value)

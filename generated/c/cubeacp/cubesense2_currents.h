@@ -7,8 +7,10 @@
  * @file
  * CubeSense2 Current Measurements: telemetry 232, 4 bytes. Table 175.
  * Bit 65 of the log mask.
- * @note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
- * @note Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
+ * @note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request
+ * sent to the wrong program is taken for another one.
+ * @note Note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to have 10+6*(N+1)*M bytes,
+ * and the UART message 11+6*N. With a frame of 4 bytes in the mask both hold only if it is filled up.
  */
 
 #include "../icdgen.h"
@@ -60,14 +62,14 @@ static inline icd_status_t cubeacp_cubesense2_currents_encode(
     return ICD_OK;
 }
 
-/** CubeSense2 3V3 Current in thousandths of mA, exact: 0 to 6553500. */
+/** CubeSense2 3V3 Current in uA, exact: 0 to 6553500. */
 static inline int32_t cubeacp_cubesense2_currents_cubesense2_3v3_current_ua(
     const cubeacp_cubesense2_currents_t *message)
 {
     return message->cubesense2_3v3_current * INT32_C(100);
 }
 
-/** Sets CubeSense2 3V3 Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense2 3V3 Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense2_currents_set_cubesense2_3v3_current_ua(
     cubeacp_cubesense2_currents_t *message,
     int32_t value)
@@ -79,14 +81,14 @@ static inline icd_status_t cubeacp_cubesense2_currents_set_cubesense2_3v3_curren
     return ICD_OK;
 }
 
-/** CubeSense2 Cam SRAM Current in thousandths of mA, exact: 0 to 6553500. */
+/** CubeSense2 Cam SRAM Current in uA, exact: 0 to 6553500. */
 static inline int32_t cubeacp_cubesense2_currents_cubesense2_cam_sram_current_ua(
     const cubeacp_cubesense2_currents_t *message)
 {
     return message->cubesense2_cam_sram_current * INT32_C(100);
 }
 
-/** Sets CubeSense2 Cam SRAM Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense2 Cam SRAM Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_cubesense2_currents_set_cubesense2_cam_sram_current_ua(
     cubeacp_cubesense2_currents_t *message,
     int32_t value)

@@ -68,16 +68,14 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_encode(
     return ICD_OK;
 }
 
-/** IGRF Modelled Magnetic Field X in thousandths of uT, exact: -327680 to 327670. */
+/** IGRF Modelled Magnetic Field X in nT, exact: -327680 to 327670. */
 static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_field_x_nt(
     const cubeacp_igrf_modelled_magnetic_field_vector_t *message)
 {
     return message->field_x * INT32_C(10);
 }
 
-/**
- * Sets IGRF Modelled Magnetic Field X in thousandths of uT to the nearest raw value; ICD_ERROR_RANGE if there is none.
- */
+/** Sets IGRF Modelled Magnetic Field X in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_x_nt(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
@@ -89,16 +87,14 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field
     return ICD_OK;
 }
 
-/** IGRF Modelled Magnetic Field Y in thousandths of uT, exact: -327680 to 327670. */
+/** IGRF Modelled Magnetic Field Y in nT, exact: -327680 to 327670. */
 static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_field_y_nt(
     const cubeacp_igrf_modelled_magnetic_field_vector_t *message)
 {
     return message->field_y * INT32_C(10);
 }
 
-/**
- * Sets IGRF Modelled Magnetic Field Y in thousandths of uT to the nearest raw value; ICD_ERROR_RANGE if there is none.
- */
+/** Sets IGRF Modelled Magnetic Field Y in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_y_nt(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
@@ -110,16 +106,14 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field
     return ICD_OK;
 }
 
-/** IGRF Modelled Magnetic Field Z in thousandths of uT, exact: -327680 to 327670. */
+/** IGRF Modelled Magnetic Field Z in nT, exact: -327680 to 327670. */
 static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_field_z_nt(
     const cubeacp_igrf_modelled_magnetic_field_vector_t *message)
 {
     return message->field_z * INT32_C(10);
 }
 
-/**
- * Sets IGRF Modelled Magnetic Field Z in thousandths of uT to the nearest raw value; ICD_ERROR_RANGE if there is none.
- */
+/** Sets IGRF Modelled Magnetic Field Z in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_z_nt(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)

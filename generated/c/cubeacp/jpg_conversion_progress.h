@@ -20,7 +20,8 @@
 typedef struct {
     /**
      * Progress Percentage: bits 0 to 7, raw 0 to 255, in %.
-     * @note Erratum ACP-065 (certain): JPG progress has its unit in words only.
+     * @note Erratum ACP-065 (certain): JPG progress has its unit in words only. Name and description are of a
+     * percentage; the unit of measure is missing, which the frame for images has.
      */
     uint8_t progress_percentage;
     /** Conversion Result: bits 8 to 15. */

@@ -8,7 +8,9 @@
  * Magnetic Field Vector: telemetry 151, 6 bytes. Table 107.
  * As measured.
  * Bit 9 of the log mask.
- * @note Note ACP-069 (open): Reference frames of measured vectors are not named.
+ * @note Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled vectors are in the orbit
+ * frame, estimated rates relative to it. Of the measured field, sun, nadir and rate vectors nothing is said; SBC for
+ * the body frame is in the list of acronyms and used nowhere.
  */
 
 #include "../icdgen.h"
@@ -64,13 +66,13 @@ static inline icd_status_t cubeacp_magnetic_field_vector_encode(
     return ICD_OK;
 }
 
-/** Magnetic Field X in thousandths of uT, exact: -327680 to 327670. */
+/** Magnetic Field X in nT, exact: -327680 to 327670. */
 static inline int32_t cubeacp_magnetic_field_vector_magnetic_field_x_nt(const cubeacp_magnetic_field_vector_t *message)
 {
     return message->magnetic_field_x * INT32_C(10);
 }
 
-/** Sets Magnetic Field X in thousandths of uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetic Field X in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_x_nt(
     cubeacp_magnetic_field_vector_t *message,
     int32_t value)
@@ -82,13 +84,13 @@ static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_x_nt
     return ICD_OK;
 }
 
-/** Magnetic Field Y in thousandths of uT, exact: -327680 to 327670. */
+/** Magnetic Field Y in nT, exact: -327680 to 327670. */
 static inline int32_t cubeacp_magnetic_field_vector_magnetic_field_y_nt(const cubeacp_magnetic_field_vector_t *message)
 {
     return message->magnetic_field_y * INT32_C(10);
 }
 
-/** Sets Magnetic Field Y in thousandths of uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetic Field Y in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_y_nt(
     cubeacp_magnetic_field_vector_t *message,
     int32_t value)
@@ -100,13 +102,13 @@ static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_y_nt
     return ICD_OK;
 }
 
-/** Magnetic Field Z in thousandths of uT, exact: -327680 to 327670. */
+/** Magnetic Field Z in nT, exact: -327680 to 327670. */
 static inline int32_t cubeacp_magnetic_field_vector_magnetic_field_z_nt(const cubeacp_magnetic_field_vector_t *message)
 {
     return message->magnetic_field_z * INT32_C(10);
 }
 
-/** Sets Magnetic Field Z in thousandths of uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetic Field Z in nT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_z_nt(
     cubeacp_magnetic_field_vector_t *message,
     int32_t value)

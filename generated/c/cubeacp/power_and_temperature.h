@@ -36,67 +36,73 @@ typedef struct {
     uint16_t cubecontrol_vbat_current;
     /**
      * Wheel1Current: bits 112 to 127, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): Wheel currents: by number, described by axis.
-     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+     * @note Note ACP-083 (open): Wheel currents: by number, described by axis. The frame is described as XYZ wheel
+     * currents, its fields are numbered, and names run together although their descriptions do not.
+     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of 0.01 mA sixteen bits
+     * reach 655.35 mA, which a wheel motor may well exceed. All other currents have steps of 0.1 mA and more. The
+     * factor is held as printed.
      */
     uint16_t wheel1_current;
     /**
      * Wheel2Current: bits 128 to 143, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): Wheel currents: by number, described by axis.
-     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+     * @note Note ACP-083 (open): see Wheel1Current.
+     * @note Note ACP-084 (open): see Wheel1Current.
      */
     uint16_t wheel2_current;
     /**
      * Wheel3Current: bits 144 to 159, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): Wheel currents: by number, described by axis.
-     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+     * @note Note ACP-083 (open): see Wheel1Current.
+     * @note Note ACP-084 (open): see Wheel1Current.
      */
     uint16_t wheel3_current;
     /**
      * CubeStarCurrent: bits 160 to 175, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+     * @note Note ACP-084 (open): see Wheel1Current.
      */
     uint16_t cubestar_current;
     /** Magnetorquer Current: bits 176 to 191, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA. */
     uint16_t magnetorquer_current;
     /**
      * CubeStar MCU temperature: bits 192 to 207, raw -32768 to 32767; physical `raw/100.0`, -327.68 to 327.67 C.
-     * @note Note ACP-005 (likely): Symbol C is the coulomb.
+     * @note Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a degree sign. Degrees
+     * Celsius are meant.
      */
     int16_t cubestar_mcu_temperature;
     /**
      * MCU Temperature: bits 208 to 223, raw -32768 to 32767, in C.
-     * @note Note ACP-005 (likely): Symbol C is the coulomb.
-     * @note Note ACP-085 (open): Temperatures have three scales.
+     * @note Note ACP-005 (likely): see CubeStar MCU temperature.
+     * @note Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and hundredths stand side by
+     * side, in one frame even. That the controllers and rate sensors report whole degrees in 16 bits may be a lost
+     * factor.
      */
     int16_t mcu_temperature;
     /**
      * Magnetometer Temperature: bits 224 to 239, raw -32768 to 32767; physical `raw/10.0`, -3276.8 to 3276.7 C.
-     * @note Note ACP-005 (likely): Symbol C is the coulomb.
+     * @note Note ACP-005 (likely): see CubeStar MCU temperature.
      */
     int16_t magnetometer_temperature;
     /**
      * Redundant Magnetometer Temperature: bits 240 to 255, raw -32768 to 32767; physical `raw/10.0`, -3276.8 to 3276.7
      * C.
-     * @note Note ACP-005 (likely): Symbol C is the coulomb.
+     * @note Note ACP-005 (likely): see CubeStar MCU temperature.
      */
     int16_t redundant_mag_temperature;
     /**
      * X-Rate Sensor Temperature: bits 256 to 271, raw -32768 to 32767, in C.
-     * @note Note ACP-005 (likely): Symbol C is the coulomb.
-     * @note Note ACP-085 (open): Temperatures have three scales.
+     * @note Note ACP-005 (likely): see CubeStar MCU temperature.
+     * @note Note ACP-085 (open): see MCU Temperature.
      */
     int16_t x_rate_sensor_temperature;
     /**
      * Y-Rate Sensor Temperature: bits 272 to 287, raw -32768 to 32767, in C.
-     * @note Note ACP-005 (likely): Symbol C is the coulomb.
-     * @note Note ACP-085 (open): Temperatures have three scales.
+     * @note Note ACP-005 (likely): see CubeStar MCU temperature.
+     * @note Note ACP-085 (open): see MCU Temperature.
      */
     int16_t y_rate_sensor_temperature;
     /**
      * Z-Rate Sensor Temperature: bits 288 to 303, raw -32768 to 32767, in C.
-     * @note Note ACP-005 (likely): Symbol C is the coulomb.
-     * @note Note ACP-085 (open): Temperatures have three scales.
+     * @note Note ACP-005 (likely): see CubeStar MCU temperature.
+     * @note Note ACP-085 (open): see MCU Temperature.
      */
     int16_t z_rate_sensor_temperature;
 } cubeacp_power_and_temperature_t;
@@ -145,14 +151,14 @@ static inline icd_status_t cubeacp_power_and_temperature_encode(
     return ICD_OK;
 }
 
-/** CubeSense1 3V3 Current in thousandths of mA, exact: 0 to 6553500. */
+/** CubeSense1 3V3 Current in uA, exact: 0 to 6553500. */
 static inline int32_t cubeacp_power_and_temperature_cubesense1_3v3_current_ua(
     const cubeacp_power_and_temperature_t *message)
 {
     return message->cubesense1_3v3_current * INT32_C(100);
 }
 
-/** Sets CubeSense1 3V3 Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense1 3V3 Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_3v3_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -164,14 +170,14 @@ static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_3v3_curr
     return ICD_OK;
 }
 
-/** CubeSense1 Cam SRAM Current in thousandths of mA, exact: 0 to 6553500. */
+/** CubeSense1 Cam SRAM Current in uA, exact: 0 to 6553500. */
 static inline int32_t cubeacp_power_and_temperature_cubesense1_cam_sram_current_ua(
     const cubeacp_power_and_temperature_t *message)
 {
     return message->cubesense1_cam_sram_current * INT32_C(100);
 }
 
-/** Sets CubeSense1 Cam SRAM Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense1 Cam SRAM Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_cam_sram_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -183,14 +189,14 @@ static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_cam_sram
     return ICD_OK;
 }
 
-/** CubeSense2 3V3 Current in thousandths of mA, exact: 0 to 6553500. */
+/** CubeSense2 3V3 Current in uA, exact: 0 to 6553500. */
 static inline int32_t cubeacp_power_and_temperature_cubesense2_3v3_current_ua(
     const cubeacp_power_and_temperature_t *message)
 {
     return message->cubesense2_3v3_current * INT32_C(100);
 }
 
-/** Sets CubeSense2 3V3 Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense2 3V3 Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_3v3_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -202,14 +208,14 @@ static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_3v3_curr
     return ICD_OK;
 }
 
-/** CubeSense2 Cam SRAM Current in thousandths of mA, exact: 0 to 6553500. */
+/** CubeSense2 Cam SRAM Current in uA, exact: 0 to 6553500. */
 static inline int32_t cubeacp_power_and_temperature_cubesense2_cam_sram_current_ua(
     const cubeacp_power_and_temperature_t *message)
 {
     return message->cubesense2_cam_sram_current * INT32_C(100);
 }
 
-/** Sets CubeSense2 Cam SRAM Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeSense2 Cam SRAM Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_cam_sram_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -221,13 +227,13 @@ static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_cam_sram
     return ICD_OK;
 }
 
-/** Wheel1Current in thousandths of mA, exact: 0 to 655350. */
+/** Wheel1Current in uA, exact: 0 to 655350. */
 static inline int32_t cubeacp_power_and_temperature_wheel1_current_ua(const cubeacp_power_and_temperature_t *message)
 {
     return message->wheel1_current * INT32_C(10);
 }
 
-/** Sets Wheel1Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel1Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel1_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -239,13 +245,13 @@ static inline icd_status_t cubeacp_power_and_temperature_set_wheel1_current_ua(
     return ICD_OK;
 }
 
-/** Wheel2Current in thousandths of mA, exact: 0 to 655350. */
+/** Wheel2Current in uA, exact: 0 to 655350. */
 static inline int32_t cubeacp_power_and_temperature_wheel2_current_ua(const cubeacp_power_and_temperature_t *message)
 {
     return message->wheel2_current * INT32_C(10);
 }
 
-/** Sets Wheel2Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel2Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel2_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -257,13 +263,13 @@ static inline icd_status_t cubeacp_power_and_temperature_set_wheel2_current_ua(
     return ICD_OK;
 }
 
-/** Wheel3Current in thousandths of mA, exact: 0 to 655350. */
+/** Wheel3Current in uA, exact: 0 to 655350. */
 static inline int32_t cubeacp_power_and_temperature_wheel3_current_ua(const cubeacp_power_and_temperature_t *message)
 {
     return message->wheel3_current * INT32_C(10);
 }
 
-/** Sets Wheel3Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel3Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_wheel3_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -275,13 +281,13 @@ static inline icd_status_t cubeacp_power_and_temperature_set_wheel3_current_ua(
     return ICD_OK;
 }
 
-/** CubeStarCurrent in thousandths of mA, exact: 0 to 655350. */
+/** CubeStarCurrent in uA, exact: 0 to 655350. */
 static inline int32_t cubeacp_power_and_temperature_cubestar_current_ua(const cubeacp_power_and_temperature_t *message)
 {
     return message->cubestar_current * INT32_C(10);
 }
 
-/** Sets CubeStarCurrent in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets CubeStarCurrent in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_cubestar_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
@@ -293,14 +299,14 @@ static inline icd_status_t cubeacp_power_and_temperature_set_cubestar_current_ua
     return ICD_OK;
 }
 
-/** Magnetorquer Current in thousandths of mA, exact: 0 to 6553500. */
+/** Magnetorquer Current in uA, exact: 0 to 6553500. */
 static inline int32_t cubeacp_power_and_temperature_magnetorquer_current_ua(
     const cubeacp_power_and_temperature_t *message)
 {
     return message->magnetorquer_current * INT32_C(100);
 }
 
-/** Sets Magnetorquer Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Magnetorquer Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_power_and_temperature_set_magnetorquer_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)

@@ -21,7 +21,8 @@
 typedef struct {
     /**
      * Gps Solution Status: bits 0 to 7.
-     * @note Note ACP-042 (certain): GPS is spelt Gps in one field.
+     * @note Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands among fields with GPS,
+     * and the sun sensors are Css in the same telecommand.
      */
     cubeacp_gps_solution_status_t gps_solution_status;
     /** Number of tracked GPS satellites: bits 8 to 15, raw 0 to 255. */
@@ -30,7 +31,8 @@ typedef struct {
     uint8_t number_of_gps_satellites_used_in_solution;
     /**
      * Counter for XYZ Lof from GPS: bits 24 to 31, raw 0 to 255.
-     * @note Erratum ACP-087 (certain): GPS counter: Lof is Log.
+     * @note Erratum ACP-087 (certain): GPS counter: Lof is Log. A letter is wrong in name and description. The
+     * identifier is held without the slip.
      */
     uint8_t counter_for_xyz_log_from_gps;
     /** Counter for RANGE log from GPS: bits 32 to 39, raw 0 to 255. */
@@ -38,7 +40,8 @@ typedef struct {
     /**
      * Response Message for GPS log setup: bits 40 to 47, raw 0 to 255. Explained on page 656 of the OEMV615 reference
      * manual.
-     * @note Note ACP-088 (open): GPS response: explained in another manual.
+     * @note Note ACP-088 (open): GPS response: explained in another manual. The meaning is on page 656 of a reference
+     * manual of the receiver, which is not among the documents named at the front. Other receivers have other manuals.
      */
     uint8_t response_message_for_gps_log_setup;
 } cubeacp_raw_gps_status_t;

@@ -62,13 +62,13 @@ static inline icd_status_t cubeacp_satellite_position_eci_encode(
     return ICD_OK;
 }
 
-/** X position in thousandths of km, exact: -8192000 to 8191750. */
+/** X position in m, exact: -8192000 to 8191750. */
 static inline int32_t cubeacp_satellite_position_eci_x_position_m(const cubeacp_satellite_position_eci_t *message)
 {
     return message->x_position * INT32_C(250);
 }
 
-/** Sets X position in thousandths of km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X position in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_x_position_m(
     cubeacp_satellite_position_eci_t *message,
     int32_t value)
@@ -80,13 +80,13 @@ static inline icd_status_t cubeacp_satellite_position_eci_set_x_position_m(
     return ICD_OK;
 }
 
-/** Y position in thousandths of km, exact: -8192000 to 8191750. */
+/** Y position in m, exact: -8192000 to 8191750. */
 static inline int32_t cubeacp_satellite_position_eci_y_position_m(const cubeacp_satellite_position_eci_t *message)
 {
     return message->y_position * INT32_C(250);
 }
 
-/** Sets Y position in thousandths of km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y position in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_y_position_m(
     cubeacp_satellite_position_eci_t *message,
     int32_t value)
@@ -98,13 +98,13 @@ static inline icd_status_t cubeacp_satellite_position_eci_set_y_position_m(
     return ICD_OK;
 }
 
-/** Z position in thousandths of km, exact: -8192000 to 8191750. */
+/** Z position in m, exact: -8192000 to 8191750. */
 static inline int32_t cubeacp_satellite_position_eci_z_position_m(const cubeacp_satellite_position_eci_t *message)
 {
     return message->z_position * INT32_C(250);
 }
 
-/** Sets Z position in thousandths of km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z position in m to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_position_eci_set_z_position_m(
     cubeacp_satellite_position_eci_t *message,
     int32_t value)

@@ -62,14 +62,14 @@ static inline icd_status_t cubeacp_satellite_velocity_eci_encode(
     return ICD_OK;
 }
 
-/** X Velocity in thousandths of m/s, exact: -8192000 to 8191750. */
+/** X Velocity in mm/s, exact: -8192000 to 8191750. */
 static inline int32_t cubeacp_satellite_velocity_eci_x_velocity_mm_per_s(
     const cubeacp_satellite_velocity_eci_t *message)
 {
     return message->x_velocity * INT32_C(250);
 }
 
-/** Sets X Velocity in thousandths of m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets X Velocity in mm/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_x_velocity_mm_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     int32_t value)
@@ -81,14 +81,14 @@ static inline icd_status_t cubeacp_satellite_velocity_eci_set_x_velocity_mm_per_
     return ICD_OK;
 }
 
-/** Y Velocity in thousandths of m/s, exact: -8192000 to 8191750. */
+/** Y Velocity in mm/s, exact: -8192000 to 8191750. */
 static inline int32_t cubeacp_satellite_velocity_eci_y_velocity_mm_per_s(
     const cubeacp_satellite_velocity_eci_t *message)
 {
     return message->y_velocity * INT32_C(250);
 }
 
-/** Sets Y Velocity in thousandths of m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Y Velocity in mm/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_y_velocity_mm_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     int32_t value)
@@ -100,14 +100,14 @@ static inline icd_status_t cubeacp_satellite_velocity_eci_set_y_velocity_mm_per_
     return ICD_OK;
 }
 
-/** Z Velocity in thousandths of m/s, exact: -8192000 to 8191750. */
+/** Z Velocity in mm/s, exact: -8192000 to 8191750. */
 static inline int32_t cubeacp_satellite_velocity_eci_z_velocity_mm_per_s(
     const cubeacp_satellite_velocity_eci_t *message)
 {
     return message->z_velocity * INT32_C(250);
 }
 
-/** Sets Z Velocity in thousandths of m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Z Velocity in mm/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_satellite_velocity_eci_set_z_velocity_mm_per_s(
     cubeacp_satellite_velocity_eci_t *message,
     int32_t value)

@@ -8,7 +8,8 @@
  * Star Performance2: telemetry 231, 6 bytes. Table 174.
  * Quality of the star measurement, frame 2.
  * Bit 64 of the log mask.
- * @note Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
+ * @note Note ACP-096 (certain): Star Performance2 has the description of Star Performance1. Both are described as
+ * performance parameters of the star measurement; the second holds flags, a period and confidences.
  */
 
 #include "../icdgen.h"
@@ -28,7 +29,8 @@ typedef struct {
     bool identification_success;
     /**
      * AttitudeSuccess: bit 3.
-     * @note Note ACP-115 (certain): AttitudeSuccess is written in one piece.
+     * @note Note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags before it have blanks, as
+     * its description has.
      */
     bool attitude_success;
     /** Processing Time Error: bit 4. */
@@ -41,22 +43,23 @@ typedef struct {
     bool comms_error;
     /**
      * Sample Period: bits 8 to 23, raw 0 to 65535.
-     * @note Note ACP-113 (open): Sample period of the star tracker has no unit.
+     * @note Note ACP-113 (open): Sample period of the star tracker has no unit. Other times of the star tracker are in
+     * ms.
      */
     uint16_t sample_period;
     /**
      * Star 1 confidence: bits 24 to 31, raw 0 to 255, in %.
-     * @note Erratum ACP-114 (certain): percentage is %.
+     * @note Erratum ACP-114 (certain): percentage is %. The unit is spelt out in two frames and a sign elsewhere.
      */
     uint8_t star_1_confidence;
     /**
      * Star 2 confidence: bits 32 to 39, raw 0 to 255, in %.
-     * @note Erratum ACP-114 (certain): percentage is %.
+     * @note Erratum ACP-114 (certain): see Star 1 confidence.
      */
     uint8_t star_2_confidence;
     /**
      * Star 3 confidence: bits 40 to 47, raw 0 to 255, in %.
-     * @note Erratum ACP-114 (certain): percentage is %.
+     * @note Erratum ACP-114 (certain): see Star 1 confidence.
      */
     uint8_t star_3_confidence;
 } cubeacp_star_performance2_t;

@@ -21,20 +21,23 @@
 typedef struct {
     /**
      * Wheel1Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): Wheel currents: by number, described by axis.
-     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+     * @note Note ACP-083 (open): Wheel currents: by number, described by axis. The frame is described as XYZ wheel
+     * currents, its fields are numbered, and names run together although their descriptions do not.
+     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of 0.01 mA sixteen bits
+     * reach 655.35 mA, which a wheel motor may well exceed. All other currents have steps of 0.1 mA and more. The
+     * factor is held as printed.
      */
     uint16_t wheel1_current;
     /**
      * Wheel2Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): Wheel currents: by number, described by axis.
-     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+     * @note Note ACP-083 (open): see Wheel1Current.
+     * @note Note ACP-084 (open): see Wheel1Current.
      */
     uint16_t wheel2_current;
     /**
      * Wheel3Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): Wheel currents: by number, described by axis.
-     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+     * @note Note ACP-083 (open): see Wheel1Current.
+     * @note Note ACP-084 (open): see Wheel1Current.
      */
     uint16_t wheel3_current;
 } cubeacp_wheel_currents_t;
@@ -75,13 +78,13 @@ static inline icd_status_t cubeacp_wheel_currents_encode(
     return ICD_OK;
 }
 
-/** Wheel1Current in thousandths of mA, exact: 0 to 655350. */
+/** Wheel1Current in uA, exact: 0 to 655350. */
 static inline int32_t cubeacp_wheel_currents_wheel1_current_ua(const cubeacp_wheel_currents_t *message)
 {
     return message->wheel1_current * INT32_C(10);
 }
 
-/** Sets Wheel1Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel1Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel1_current_ua(
     cubeacp_wheel_currents_t *message,
     int32_t value)
@@ -93,13 +96,13 @@ static inline icd_status_t cubeacp_wheel_currents_set_wheel1_current_ua(
     return ICD_OK;
 }
 
-/** Wheel2Current in thousandths of mA, exact: 0 to 655350. */
+/** Wheel2Current in uA, exact: 0 to 655350. */
 static inline int32_t cubeacp_wheel_currents_wheel2_current_ua(const cubeacp_wheel_currents_t *message)
 {
     return message->wheel2_current * INT32_C(10);
 }
 
-/** Sets Wheel2Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel2Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel2_current_ua(
     cubeacp_wheel_currents_t *message,
     int32_t value)
@@ -111,13 +114,13 @@ static inline icd_status_t cubeacp_wheel_currents_set_wheel2_current_ua(
     return ICD_OK;
 }
 
-/** Wheel3Current in thousandths of mA, exact: 0 to 655350. */
+/** Wheel3Current in uA, exact: 0 to 655350. */
 static inline int32_t cubeacp_wheel_currents_wheel3_current_ua(const cubeacp_wheel_currents_t *message)
 {
     return message->wheel3_current * INT32_C(10);
 }
 
-/** Sets Wheel3Current in thousandths of mA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
+/** Sets Wheel3Current in uA to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_wheel_currents_set_wheel3_current_ua(
     cubeacp_wheel_currents_t *message,
     int32_t value)

@@ -38,12 +38,6 @@ def assigned_byte(target: str, terms: Sequence[str]) -> str:
     return f"{target} = ICDGEN_U8(\n{STEP * 2}{rows});"
 
 
-def define(name: str, value: str) -> str:
-    """A macro, its value on a line of its own where the name is very long."""
-    line = f"#define {name} {value}"
-    return line if len(line) <= WIDTH else f"#define {name} \\\n{STEP}{value}"
-
-
 def head(returned: str, name: str, *parameters: str) -> str:
     """The head of a function."""
     return bracketed(f"static inline {returned}{name}(", parameters, ")", WIDTH, last="")

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from icdgen.backends import Identifier
 from icdgen.backends.python import names
-from icdgen.describe import Description, MessageDescription
+from icdgen.backends.python.fields import whole, whole_name
+from icdgen.describe import Description, FieldDescription, MessageDescription
 from icdgen.naming import DEVICES
 
 
@@ -32,9 +33,18 @@ def declared_names(description: Description, package: str) -> Iterator[Identifie
             yield from _message(one, f"members of {within}.{names.class_name(one)}")
 
 
+def _of_field(field: FieldDescription) -> Iterator[str]:
+    yield field.name
+    if field.has_physical:
+        yield field.physical_name
+    found = whole(field)
+    if found is not None:
+        yield whole_name(field, found)
+
+
 def _message(message: MessageDescription, scope: str) -> Iterator[Identifier]:
     for field in message.all_members:
-        for name in (field.name, field.physical_name) if field.has_physical else (field.name,):
+        for name in _of_field(field):
             yield field.identifier(scope, name)
             if name in names.IN_MESSAGE:
                 yield Identifier(scope, name, names.IN_MESSAGE[name].format(name), None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 from icdgen.describe.bounds import KEYS, bounds
 from icdgen.diff.context import Context
@@ -10,7 +11,7 @@ from icdgen.diff.pairs import FieldPair, differing
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.similar import same_sense
 from icdgen.diff.wording import formula, number
-from icdgen.icd.formula import RAW
+from icdgen.icd.formula import RAW, Scale
 from icdgen.icd.model import Field, Limits
 from icdgen.icd.rules.wording import quote
 
@@ -19,15 +20,22 @@ from icdgen.icd.rules.wording import quote
 @rule("DIF203", "field")
 def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old.scale or RAW, pair.new.scale or RAW
+    if old == new:
+        return
     was, now = formula(old), formula(new)
     if old.factor == -new.factor:
         text = f"the sign of {quote(pair.new.name)} is turned: {now}, was {was}"
         yield Found(text, ("formula",), was, now, code="DIF203")
-    elif old != new:
+    else:
         text = f"the value of {quote(pair.new.name)} is {now}, was {was}"
-        times = f"The same bits give {number(new.factor / old.factor)} times the value."
-        details = (times,) if old.offset == new.offset else ()
-        yield Found(text, ("formula", "unit"), was, now, details, code="DIF201")
+        yield Found(text, ("formula", "unit"), was, now, _times(old, new), code="DIF201")
+
+
+@lru_cache(maxsize=4096)
+def _times(old: Scale, new: Scale) -> tuple[str, ...]:
+    if old.offset != new.offset:
+        return ()
+    return (f"The same bits give {number(new.factor / old.factor)} times the value.",)
 
 
 @rule("DIF202", "field")

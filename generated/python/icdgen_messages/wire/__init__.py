@@ -3,7 +3,7 @@
 
 Nothing here opens a port, sleeps or looks at a clock: bytes go in, bytes and events
 come out, and the time is passed in. Only `Session` waits, by the functions that it is
-given. What there is to know of a node is in its ``LINK``.
+given, and `AsyncSession`, on streams. What there is to know of a node is in its ``LINK``.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from importlib import import_module
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from .async_session import AsyncSession as AsyncSession
     from .can import CanEvent as CanEvent
     from .can import CanJoiner as CanJoiner
     from .can import CanMessage as CanMessage
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from .events import LineError as LineError
     from .events import Log as Log
     from .events import Malformed as Malformed
+    from .events import OutcomeOf as OutcomeOf
     from .events import Packet as Packet
     from .events import Refused as Refused
     from .events import Stray as Stray
@@ -75,6 +77,7 @@ if TYPE_CHECKING:
     from .uart import uart_kind as uart_kind
 
 _HOMES = {
+    "async_session": ("AsyncSession",),
     "can": ("CanEvent", "CanJoiner", "CanMessage", "CanPacket", "can_split"),
     "client": ("Client", "Request"),
     "crc": ("Crc", "crc16", "crc8"),
@@ -90,6 +93,7 @@ _HOMES = {
         "LineError",
         "Log",
         "Malformed",
+        "OutcomeOf",
         "Packet",
         "Refused",
         "Stray",

@@ -4,17 +4,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional, Union
+from typing import Generic, Optional, TypeVar, Union, cast
 
 from .._base import Message
 from .logs import LogMessage
 
 MessageClass = type[Message]
+M = TypeVar("M", bound=Message)
+MessageClassOf = type[M]
+R_co = TypeVar("R_co", bound=Optional[Message], covariant=True)
 
 
 @dataclass(frozen=True)
-class Done:
-    """A request was executed: a telecommand, or telemetry with the frame in ``data``."""
+class Done(Generic[R_co]):
+    """A request was executed: a telecommand, or telemetry with the frame in ``data``.
+
+    ``Done[EstimatedAttitudeAngles]`` has such a message, ``Done[None]`` none.
+    """
 
     id: int
     attempts: int
@@ -22,9 +28,15 @@ class Done:
     type: Optional[MessageClass] = None
 
     @property
-    def message(self) -> Optional[Message]:
+    def message(self) -> R_co:
         """The frame as a message; None for a telecommand."""
-        return self.type.from_bytes(self.data) if self.type else None
+        found = self.type.from_bytes(self.data) if self.type else None
+        return cast(R_co, found)
+
+    def of(self, message: MessageClassOf[M]) -> Optional[M]:
+        """The message, if it is one of these."""
+        found: Optional[Message] = self.message
+        return found if isinstance(found, message) else None
 
 
 @dataclass(frozen=True)
@@ -88,5 +100,7 @@ class LineError:
     id: Optional[int] = None
 
 
-Outcome = Union[Done, Refused, Timeout]
-Event = Union[Done, Refused, Timeout, Malformed, Packet, Log, Stray, LineError]
+AnyDone = Done[Optional[Message]]
+Outcome = Union[AnyDone, Refused, Timeout]
+OutcomeOf = Union[Done[R_co], Refused, Timeout]
+Event = Union[Outcome, Malformed, Packet, Log, Stray, LineError]

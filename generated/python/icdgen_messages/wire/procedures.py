@@ -10,7 +10,7 @@ from typing import Any, Literal, NamedTuple, Optional, Union
 from .._base import Message
 from .client import Request
 from .errors import need
-from .events import Done, Event, Outcome, Packet, Refused, Timeout
+from .events import AnyDone, Done, Event, Outcome, Packet, Refused, Timeout
 from .link import Link, Step
 
 Result = Literal[
@@ -125,7 +125,7 @@ class Procedure:
             raise Ended("timeout")
         return outcome
 
-    def _must(self, request: Request) -> Generator[Wanted, Optional[Outcome], Done]:
+    def _must(self, request: Request) -> Generator[Wanted, Optional[Outcome], AnyDone]:
         """The outcome of a request without which there is no going on."""
         outcome = yield from self._ask(request)
         if isinstance(outcome, Done):

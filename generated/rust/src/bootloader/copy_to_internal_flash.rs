@@ -18,7 +18,8 @@ use crate::support::{Coded, Error};
 pub struct CopyToInternalFlash {
     /// Source Program Index: bits 0 to 7.
     ///
-    /// Note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense.
+    /// Note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense. The source
+    /// may be the internal program itself or the bootloader. The result is not described.
     pub source_program_index: Coded<enums::ProgramsList>,
     /// Bootloader overwrite flag: bits 8 to 15, raw 0 to 255.
     ///
@@ -26,7 +27,9 @@ pub struct CopyToInternalFlash {
     ///
     /// 90 (0x5A): overwrite the boot segment.
     ///
-    /// Note BOOT-012 (likely): Bootloader overwrite flag is a magic number.
+    /// Note BOOT-012 (likely): Bootloader overwrite flag is a magic number. A field of 8 bits is
+    /// called a flag and acts at one value. Which value to send otherwise is not said; anything
+    /// else is assumed to leave the boot segment alone.
     pub overwrite: u8,
 }
 

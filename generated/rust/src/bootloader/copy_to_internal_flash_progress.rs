@@ -6,9 +6,12 @@ use crate::support::Error;
 
 /// Copy To Internal Flash Progress: telemetry 233, 1 byte. Table 71.
 ///
-/// Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
+/// Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The
+/// two programs answer on the same buses and addresses. These ids are a different message in each,
+/// of another length in three cases, so who is answering must be known first.
 ///
-/// Note BOOT-020 (open): Progress frame without progress.
+/// Note BOOT-020 (open): Progress frame without progress. The frame tells busy and error, not how
+/// far the copy has come; and no time-out is suggested for it, although 2 s are for reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

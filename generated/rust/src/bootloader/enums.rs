@@ -6,7 +6,9 @@ use crate::support::Enumeration;
 
 /// BootSetProgramsList: an enumeration. Table 63.
 ///
-/// Note BOOT-009 (certain): Three enumerations of program places.
+/// Note BOOT-009 (certain): Three enumerations of program places. BootSetProgramsList, ProgramsList
+/// and BootProgramsList overlap. The internal program is 1 in all, the bootloader 0 in one and 2 in
+/// another, where 2 is EEPROM in the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -79,16 +81,20 @@ impl From<BootSetProgramsList> for u8 {
 pub enum ProgramsList {
     /// Bootloader (0).
     ///
-    /// Note BOOT-009 (certain): Three enumerations of program places.
+    /// Note BOOT-009 (certain): Three enumerations of program places. BootSetProgramsList,
+    /// ProgramsList and BootProgramsList overlap. The internal program is 1 in all, the bootloader
+    /// 0 in one and 2 in another, where 2 is EEPROM in the first.
     #[default]
     Bootloader,
     /// Internal Flash Program (1).
     InternalFlashProgram,
     /// EEPROM (2).
     ///
-    /// Note BOOT-009 (certain): Three enumerations of program places.
+    /// Note BOOT-009 (certain): see Bootloader.
     ///
-    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs. The text knows seven
+    /// areas of external flash and the internal one. EEPROM and eight files of the SD card are
+    /// listed too; whether they can be read or copied from is not said.
     Eeprom,
     /// External Flash Program 1 (3).
     ExternalFlashProgram1,
@@ -106,35 +112,35 @@ pub enum ProgramsList {
     ExternalFlashProgram7,
     /// SD User file 1 (10).
     ///
-    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): see EEPROM.
     SdUserFile1,
     /// SD User file 2 (11).
     ///
-    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): see EEPROM.
     SdUserFile2,
     /// SD User file 3 (12).
     ///
-    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): see EEPROM.
     SdUserFile3,
     /// SD User file 4 (13).
     ///
-    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): see EEPROM.
     SdUserFile4,
     /// SD User file 5 (14).
     ///
-    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): see EEPROM.
     SdUserFile5,
     /// SD User file 6 (15).
     ///
-    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): see EEPROM.
     SdUserFile6,
     /// SD User file 7 (16).
     ///
-    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): see EEPROM.
     SdUserFile7,
     /// SD User file 8 (17).
     ///
-    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): see EEPROM.
     SdUserFile8,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),

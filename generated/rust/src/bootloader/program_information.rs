@@ -9,7 +9,9 @@ use crate::support::{put, take, Coded, Error};
 ///
 /// Answer to Read Program Information, to be polled until it is not busy.
 ///
-/// Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
+/// Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The
+/// two programs answer on the same buses and addresses. These ids are a different message in each,
+/// of another length in three cases, so who is answering must be known first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,6 +20,8 @@ pub struct ProgramInformation {
     /// Program Index: bits 0 to 7.
     ///
     /// Note BOOT-018 (open): Read Program Information: whether the answer belongs to the request.
+    /// The request and the frame each have a program index. Whether the frame still shows the
+    /// previous one while busy, and how a wrong index shows, is not said.
     pub program_index: Coded<enums::ProgramsList>,
     /// Busy: bit 8.
     ///
@@ -25,15 +29,18 @@ pub struct ProgramInformation {
     pub busy: bool,
     /// File Size: bits 16 to 47, raw 0 to 4294967295, in byte.
     ///
-    /// Erratum BOOT-021 (certain): Size of a program has its unit in words only.
+    /// Erratum BOOT-021 (certain): Size of a program has its unit in words only. Bytes stand in the
+    /// description, not as a unit of measure.
     ///
-    /// Note BOOT-019 (open): Program Information: what the checksum covers.
+    /// Note BOOT-019 (open): Program Information: what the checksum covers. File size and checksum
+    /// are given for a place in flash, which has no file. Whether the checksum runs over the size
+    /// or over the whole area is not said.
     pub file_size: u32,
     /// Checksum: bits 48 to 63, raw 0 to 65535.
     ///
     /// CRC-16.
     ///
-    /// Note BOOT-019 (open): Program Information: what the checksum covers.
+    /// Note BOOT-019 (open): see File Size.
     pub checksum: u16,
 }
 

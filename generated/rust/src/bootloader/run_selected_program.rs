@@ -10,7 +10,9 @@ use crate::support::Error;
 ///
 /// The node restarts instead of acknowledging it.
 ///
-/// Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere.
+/// Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere. Its name
+/// refers to a selection, the text to the internal flash program. What it does to the boot status,
+/// and whether it is acknowledged before the program starts, is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -15,7 +15,9 @@ use crate::support::{Coded, Error};
 pub struct SetBootIndex {
     /// Program Index: bits 0 to 7.
     ///
-    /// Note BOOT-007 (certain): Set Boot Index selects among one.
+    /// Note BOOT-007 (certain): Set Boot Index selects among one. The telecommand is to choose a
+    /// program, but its enumeration has one member and the text forbids others. Its use is a side
+    /// effect that the table does not mention: it sets the boot status back.
     pub program_index: Coded<enums::BootSetProgramsList>,
 }
 

@@ -8,9 +8,12 @@ use crate::support::{flags, put, take, Error};
 ///
 /// Up-time, SRAM state and error flags. The error flags stay set until Clear Error Flags.
 ///
-/// Erratum BOOT-013 (open): Bootloader State: 6 bytes announced, 28 bits described.
+/// Erratum BOOT-013 (open): Bootloader State: 6 bytes announced, 28 bits described. The last 20
+/// bits of the frame are not explained. They are held as reserved.
 ///
-/// Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
+/// Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The
+/// two programs answer on the same buses and addresses. These ids are a different message in each,
+/// of another length in three cases, so who is answering must be known first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,7 +21,9 @@ use crate::support::{flags, put, take, Error};
 pub struct State {
     /// Up-time (s): bits 0 to 15, raw 0 to 65535, in s.
     ///
-    /// Note BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds.
+    /// Note BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds. Name and
+    /// description differ, and the name repeats the unit. The field ends at 65535 s, while the
+    /// bootloader may stay for ever; what it shows then is not said.
     pub uptime: u16,
     /// SRAM1 is enabled: bit 16.
     pub sram1_is_enabled: bool,
@@ -26,11 +31,12 @@ pub struct State {
     pub sram2_is_enabled: bool,
     /// SRAM Latch-up Error occurred and could not be recovered: bit 18.
     ///
-    /// Note BOOT-017 (certain): Latch-up has three spellings.
+    /// Note BOOT-017 (certain): Latch-up has three spellings. Latch-up in the flags of the
+    /// bootloader, latchups and Latchup in the common frames, latch-up in the text.
     pub sram_latchup_error: bool,
     /// SRAM Latch-up Occurred but recovered after power cycle: bit 19.
     ///
-    /// Note BOOT-017 (certain): Latch-up has three spellings.
+    /// Note BOOT-017 (certain): see SRAM Latch-up Error occurred and could not be recovered.
     pub sram_latchup_recovered: bool,
     /// SD card initialisation error: bit 20.
     pub sd_card_initialisation_error: bool,
@@ -56,7 +62,9 @@ pub struct State {
     pub boot_register_corrupt: bool,
     /// Communications Error with Radio: bit 27.
     ///
-    /// Note BOOT-016 (open): Bootloader State: a radio that the manual does not know.
+    /// Note BOOT-016 (open): Bootloader State: a radio that the manual does not know. A flag
+    /// reports communication errors with a radio. No radio, bus to it or setting for it is
+    /// mentioned anywhere.
     pub communications_error_with_radio: bool,
 }
 

@@ -8,7 +8,8 @@ use crate::support::Error;
 ///
 /// Makes File Information describe the next file.
 ///
-/// Note COM-040 (certain): A flow diagram is referred to without its number.
+/// Note COM-040 (certain): A flow diagram is referred to without its number. The process is
+/// described by the flow diagram in nothing; figure 14 is meant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

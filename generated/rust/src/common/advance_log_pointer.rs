@@ -8,9 +8,12 @@ use crate::support::Error;
 ///
 /// Moves the pointer of Last Logged Event forward.
 ///
-/// Note COM-030 (certain): Log pointer telecommands speak of a frame that is named otherwise.
+/// Note COM-030 (certain): Log pointer telecommands speak of a frame that is named otherwise. They
+/// move the pointer of LastLogEvent; the frame is called Last Logged Event.
 ///
-/// Note COM-031 (open): Log pointer: where it starts and which way it advances.
+/// Note COM-031 (open): Log pointer: where it starts and which way it advances. After a reset the
+/// pointer may stand at the oldest or at the newest event, and advancing may go either way. What is
+/// read past the end is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,7 +9,8 @@ use crate::support::{put, take, Coded, Error, Scale};
 ///
 /// Causes of the last reset and reboot, and the running program.
 ///
-/// Note COM-062 (certain): Capitals of the boot status frame differ in the text.
+/// Note COM-062 (certain): Capitals of the boot status frame differ in the text. Boot And Running
+/// Program Status is Boot and Running Program Status in the text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,19 +20,23 @@ pub struct BootAndRunningProgramStatus {
     ///
     /// From a hardware register of the MCU.
     ///
-    /// Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
+    /// Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap. Both are described as the
+    /// reason of the last reset. That the first comes from a hardware register and the second from
+    /// the software can be inferred only; which one holds when they disagree is not said.
     pub cause_of_mcu_reset: Coded<enums::ResetCause>,
     /// Boot Cause: bits 4 to 7.
     ///
     /// Why the CubeComputer last rebooted.
     ///
-    /// Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
+    /// Note COM-059 (open): see Cause of MCU Reset.
     pub boot_cause: Coded<enums::BootCause>,
     /// Boot Counter: bits 8 to 23, raw 0 to 65535.
     ///
     /// How often the CubeComputer has booted.
     ///
-    /// Note COM-058 (certain): Reset Counter and Boot Counter are the same field.
+    /// Note COM-058 (certain): Reset Counter and Boot Counter are the same field. The text calls
+    /// the counter Reset Counter and, a few paragraphs later, Boot Counter; the table has Boot
+    /// Counter only. The text counts starts of the bootloader, the table boots of the CubeComputer.
     pub boot_counter: u16,
     /// Boot Program Index: bits 24 to 31.
     ///
@@ -39,11 +44,13 @@ pub struct BootAndRunningProgramStatus {
     pub boot_program_index: Coded<enums::BootProgramsList>,
     /// Firmware version (Major): bits 32 to 39, raw 0 to 255.
     ///
-    /// Note COM-061 (open): Firmware version stands in two frames.
+    /// Note COM-061 (open): Firmware version stands in two frames. Both frames hold major and minor
+    /// version in bytes. Whether frame 129 gives that of the running program or of the one to be
+    /// booted is not said.
     pub firmware_version_major: u8,
     /// Firmware version (Minor): bits 40 to 47, raw 0 to 255.
     ///
-    /// Note COM-061 (open): Firmware version stands in two frames.
+    /// Note COM-061 (open): see Firmware version (Major).
     pub firmware_version_minor: u8,
 }
 

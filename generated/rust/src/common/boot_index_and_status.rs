@@ -15,7 +15,9 @@ use crate::support::{Coded, Error};
 pub struct BootIndexAndStatus {
     /// Program Index: bits 0 to 7.
     ///
-    /// Note COM-069 (open): Program Index of the boot status can be the bootloader.
+    /// Note COM-069 (open): Program Index of the boot status can be the bootloader. The frame shows
+    /// which program is selected to boot, with an enumeration that has the bootloader; only the
+    /// internal program can be selected.
     pub program_index: Coded<enums::BootProgramsList>,
     /// Boot Status: bits 8 to 15.
     pub boot_status: Coded<enums::BootStatus>,

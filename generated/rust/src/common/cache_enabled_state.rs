@@ -13,7 +13,8 @@ use crate::support::Error;
 pub struct CacheEnabledState {
     /// Enabled state: bit 0.
     ///
-    /// Note COM-108 (open): Cache enabled state: which cache, and the default.
+    /// Note COM-108 (open): Cache enabled state: which cache, and the default. The setting switches
+    /// a cache that the manual does not mention anywhere else.
     pub enabled_state: bool,
 }
 

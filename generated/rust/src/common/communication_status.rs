@@ -8,7 +8,9 @@ use crate::support::{flags, put, take, Error};
 ///
 /// Counts of messages received, and error flags of the interfaces.
 ///
-/// Erratum COM-084 (open): Communication Status: 6 bytes announced, 38 bits described.
+/// Erratum COM-084 (open): Communication Status: 6 bytes announced, 38 bits described. The last
+/// byte and two bits of the one before it are not explained. The frame may be filled up to the size
+/// of the loggable ones. They are held as reserved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,62 +20,73 @@ pub struct CommunicationStatus {
     ///
     /// Telecommands received.
     ///
-    /// Note COM-082 (open): Counters: served or received.
+    /// Note COM-082 (open): Counters: served or received. The text counts commands and requests
+    /// that have been served, the table those that have been received. Refused ones make the
+    /// difference.
     pub telecommand_counter: u16,
     /// Telemetry request counter: bits 16 to 31, raw 0 to 65535.
     ///
     /// Requests received.
     ///
-    /// Note COM-082 (open): Counters: served or received.
+    /// Note COM-082 (open): see Telecommand counter.
     pub telemetry_request_counter: u16,
     /// Telecommand buffer overrun: bit 32.
     ///
     /// The buffer overflowed while a telecommand came in.
     ///
-    /// Note COM-081 (open): Which telecommand clears the communication error flags.
+    /// Note COM-081 (open): Which telecommand clears the communication error flags. For the I2C
+    /// flag a Clear Errors telecommand is named. It exists in the control program only, and by its
+    /// table clears ADCS and HK flags. Of the other flags, and of the bootloader, nothing is said.
     pub telecommand_buffer_overrun: bool,
     /// UART protocol error: bit 33.
     ///
     /// Note COM-078 (open): UART: what a receiver does on an invalid escape or an unfinished
-    /// message.
+    /// message. An ESC followed by anything else should not occur, and a start without a preceding
+    /// end sets a flag. Whether the message begun is dropped or goes on, and after which pause, is
+    /// not said.
     ///
-    /// Note COM-081 (open): Which telecommand clears the communication error flags.
+    /// Note COM-081 (open): see Telecommand buffer overrun.
     pub uart_protocol_error: bool,
     /// UART incomplete message: bit 34.
     ///
     /// A message began before the one before it had ended.
     ///
-    /// Note COM-078 (open): UART: what a receiver does on an invalid escape or an unfinished
-    /// message.
+    /// Note COM-078 (open): see UART protocol error.
     ///
-    /// Note COM-081 (open): Which telecommand clears the communication error flags.
+    /// Note COM-081 (open): see Telecommand buffer overrun.
     pub uart_incomplete_message: bool,
     /// I2C telemetry error: bit 35.
     ///
     /// More bytes were read than the frame has. Stays set until Clear Errors.
     ///
-    /// Note COM-079 (open): I2C telemetry error: too many bytes, or any wrong number.
+    /// Note COM-079 (open): I2C telemetry error: too many bytes, or any wrong number. The text sets
+    /// the flag for an incorrect number of bytes, read past the end or incomplete. The table sets
+    /// it only for more bytes than the frame has.
     ///
     /// Note COM-080 (likely): I2C: reading one byte more is both an error and the way to get the
-    /// checksum.
+    /// checksum. An incorrect number of bytes sets an error flag, yet the control program allows
+    /// one more for the checksum. The flag must then be set from the second extra byte on; the text
+    /// does not say so.
     ///
-    /// Note COM-081 (open): Which telecommand clears the communication error flags.
+    /// Note COM-081 (open): see Telecommand buffer overrun.
     pub i2c_telemetry_error: bool,
     /// I2C telecommand buffer error: bit 36.
     ///
     /// A telecommand was longer than the buffer.
     ///
-    /// Note COM-081 (open): Which telecommand clears the communication error flags.
+    /// Note COM-081 (open): see Telecommand buffer overrun.
     ///
-    /// Note COM-083 (open): Two buffer errors have the same description.
+    /// Note COM-083 (open): Two buffer errors have the same description. The flags for I2C and CAN
+    /// are both explained as a telecommand larger than the buffer; the size of neither buffer is
+    /// given.
     pub i2c_telecommand_buffer_error: bool,
     /// CAN telecommand buffer error: bit 37.
     ///
     /// A telecommand was longer than the buffer.
     ///
-    /// Note COM-081 (open): Which telecommand clears the communication error flags.
+    /// Note COM-081 (open): see Telecommand buffer overrun.
     ///
-    /// Note COM-083 (open): Two buffer errors have the same description.
+    /// Note COM-083 (open): see I2C telecommand buffer error.
     pub can_telecommand_buffer_error: bool,
 }
 

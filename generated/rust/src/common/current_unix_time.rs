@@ -14,11 +14,14 @@ pub struct CurrentUnixTime {
     ///
     /// Since 1970-01-01 00:00.
     ///
-    /// Note COM-111 (open): Unix time: time zone and leap seconds are not given.
+    /// Note COM-111 (open): Unix time: time zone and leap seconds are not given. The epoch is
+    /// stated without UTC, and the offset against GPS time is not mentioned although GPS time is a
+    /// telemetry frame of its own.
     pub current_unix_time: u32,
     /// Milliseconds: bits 32 to 47, raw 0 to 65535, in ms.
     ///
-    /// Note COM-110 (open): Milliseconds: range is not given.
+    /// Note COM-110 (open): Milliseconds: range is not given. The field has 16 bits; values above
+    /// 999 are not excluded.
     pub milliseconds: u16,
 }
 

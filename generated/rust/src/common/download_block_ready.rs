@@ -8,7 +8,9 @@ use crate::support::{put, take, Error};
 ///
 /// Whether the block asked for by Load File Download Block is in the buffer.
 ///
-/// Note COM-093 (open): Polling has no interval and no time-out.
+/// Note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be
+/// polled, and when to give up, is not said. For files a time is suggested for two of the
+/// operations only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,13 +22,16 @@ pub struct DownloadBlockReady {
     ///
     /// Message length and hole map together led to invalid array lengths.
     ///
-    /// Note COM-097 (open): ParameterError refers to arrays that no message has.
+    /// Note COM-097 (open): ParameterError refers to arrays that no message has. The combination of
+    /// message length and hole map is said to have led to invalid array lengths. Which combinations
+    /// do is not said, and the download text does not mention the flag.
     pub parameter_error: bool,
     /// Block CRC16 Checksum: bits 8 to 23, raw 0 to 65535.
     pub block_crc16_checksum: u16,
     /// Block Length: bits 24 to 39, raw 0 to 65535, in byte.
     ///
-    /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    /// Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant
+    /// throughout, but of the tables of messages only that of the program information says so.
     pub block_length: u16,
 }
 

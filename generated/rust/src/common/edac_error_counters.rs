@@ -20,13 +20,15 @@ pub struct EdacErrorCounters {
     ///
     /// Counted per byte.
     ///
-    /// Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been.
+    /// Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been. The frame is
+    /// said to count errors that were detected and corrected. It has counters for double and
+    /// multiple upsets in a byte, which such a code detects at best.
     pub double_sram_upsets: u16,
     /// Multiple SRAM upsets: bits 32 to 47, raw 0 to 65535.
     ///
     /// Counted per byte.
     ///
-    /// Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been.
+    /// Note COM-077 (likely): see Double SRAM upsets.
     pub multiple_sram_upsets: u16,
 }
 

@@ -6,7 +6,8 @@ use crate::support::Enumeration;
 
 /// FileType: an enumeration. Table 16.
 ///
-/// Note COM-037 (open): FileType begins at 2 and jumps to 15.
+/// Note COM-037 (open): FileType begins at 2 and jumps to 15. Values 0, 1 and 5 to 14 are not
+/// explained. Value 0 ends the file list, since an entry of zeroes does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,7 +21,9 @@ pub enum FileType {
     BmpImage,
     /// Index (15).
     ///
-    /// Note COM-038 (open): Index file: neither length nor counter is given.
+    /// Note COM-038 (open): Index file: neither length nor counter is given. The index, Index in
+    /// the list and Index File in the text, is fetched like a file, but the number of entries is
+    /// known only once it has been read, and which counter to send with its type is not said.
     Index,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -92,7 +95,8 @@ impl From<FileType> for u8 {
 ///
 /// The SD card destinations are not supported.
 ///
-/// Note COM-045 (certain): Names of the flash areas differ between two lists.
+/// Note COM-045 (certain): Names of the flash areas differ between two lists. Flash program 1 of
+/// the upload is External Flash Program 1 of the bootloader, with the same number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -100,7 +104,9 @@ impl From<FileType> for u8 {
 pub enum FileUploadDestination {
     /// EEPROM (2).
     ///
-    /// Note COM-044 (open): FileUploadDestination: EEPROM is listed, the text knows flash only.
+    /// Note COM-044 (open): FileUploadDestination: EEPROM is listed, the text knows flash only. A
+    /// new firmware file can only go to the external flash, so value 2 is either unsupported too or
+    /// for something not described.
     Eeprom,
     /// Flash program 1 (3).
     FlashProgram1,
@@ -118,35 +124,36 @@ pub enum FileUploadDestination {
     FlashProgram7,
     /// SD User file 1 (10).
     ///
-    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported. The SD user
+    /// files are listed as destinations, and the text says that they are not supported.
     SdUserFile1,
     /// SD User file 2 (11).
     ///
-    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): see SD User file 1.
     SdUserFile2,
     /// SD User file 3 (12).
     ///
-    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): see SD User file 1.
     SdUserFile3,
     /// SD User file 4 (13).
     ///
-    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): see SD User file 1.
     SdUserFile4,
     /// SD User file 5 (14).
     ///
-    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): see SD User file 1.
     SdUserFile5,
     /// SD User file 6 (15).
     ///
-    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): see SD User file 1.
     SdUserFile6,
     /// SD User file 7 (16).
     ///
-    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): see SD User file 1.
     SdUserFile7,
     /// SD User file 8 (17).
     ///
-    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): see SD User file 1.
     SdUserFile8,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -281,23 +288,24 @@ pub enum ResetCause {
     BackupBrownOut,
     /// Backup Mode Reset (10).
     ///
-    /// Note COM-064 (certain): ResetCause: two spellings of one source.
+    /// Note COM-064 (certain): ResetCause: two spellings of one source. BackupModeRST stands beside
+    /// Backup Mode RST and Backup Mode Reset. Identifiers come out alike.
     BackupModeReset,
     /// Backup Mode RST and Backup Brown-Out Vdd Regulated (11).
     ///
     /// Backup mode reset together with a brown-out of the backup domain on regulated VDD.
     ///
-    /// Note COM-064 (certain): ResetCause: two spellings of one source.
+    /// Note COM-064 (certain): see Backup Mode Reset.
     BackupModeAndBackupBrownOut,
     /// BackupModeRST and Backup Brown-Out Vdd Regulated and Brown-Out Regulated (12).
     ///
     /// As 11, and a brown-out on regulated power.
     ///
-    /// Note COM-064 (certain): ResetCause: two spellings of one source.
+    /// Note COM-064 (certain): see Backup Mode Reset.
     BackupModeAndBothBrownOuts,
     /// Backup Mode RST and Watchdog Reset (13).
     ///
-    /// Note COM-064 (certain): ResetCause: two spellings of one source.
+    /// Note COM-064 (certain): see Backup Mode Reset.
     BackupModeAndWatchdogReset,
     /// Backup Brown-Out BuvIn and System Request Reset (14).
     ///
@@ -305,7 +313,8 @@ pub enum ResetCause {
     BackupBrownOutAndSystemRequestReset,
     /// Unkown Reset Cause (15).
     ///
-    /// Erratum COM-063 (certain): ResetCause: Unkown.
+    /// Erratum COM-063 (certain): ResetCause: Unkown. A letter is missing in Unknown, in name and
+    /// description. The identifier is held without the slip.
     UnknownResetCause,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -420,19 +429,23 @@ pub enum BootCause {
     Unexpected,
     /// Not Used (1).
     ///
-    /// Erratum COM-065 (certain): BootCause: first of two members called Not Used.
+    /// Erratum COM-065 (certain): BootCause: first of two members called Not Used. Two values share
+    /// a name. Each gets an identifier with its number.
     NotUsed1,
     /// Communications Timeout (2).
     ///
     /// Nothing was received for too long.
     ///
-    /// Note COM-067 (open): BootCause: a communications time-out that is described nowhere.
+    /// Note COM-067 (open): BootCause: a communications time-out that is described nowhere. A reset
+    /// for lack of communication needs a time-out. No setting, no figure and no program that
+    /// watches is named.
     CommunicationsTimeout,
     /// Commanded (3).
     Commanded,
     /// Not Used (4).
     ///
-    /// Erratum COM-066 (certain): BootCause: second of two members called Not Used.
+    /// Erratum COM-066 (certain): BootCause: second of two members called Not Used. Two values
+    /// share a name. Each gets an identifier with its number.
     NotUsed4,
     /// SRAM Latchup (5).
     SramLatchup,
@@ -512,7 +525,9 @@ pub enum BootProgramsList {
     InternalFlashProgram,
     /// Bootloader (2).
     ///
-    /// Note COM-068 (certain): BootProgramsList numbers the bootloader 2, ProgramsList 0.
+    /// Note COM-068 (certain): BootProgramsList numbers the bootloader 2, ProgramsList 0. Three
+    /// enumerations name program places, and two of them give different numbers to the bootloader.
+    /// The value 2 of this one is EEPROM in the other.
     Bootloader,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -579,7 +594,10 @@ impl From<BootProgramsList> for u8 {
 /// Kept in flash. The bootloader counts up before each attempt, the program sets Boot Success once
 /// it runs.
 ///
-/// Note COM-070 (open): Boot Status: whether the third attempt still takes place.
+/// Note COM-070 (open): Boot Status: whether the third attempt still takes place. After a first
+/// failure the bootloader is to try twice more, three attempts in all. But the status is raised
+/// before each start, so it reads 4 before the third attempt begins, and at 4 the application is
+/// said not to be started any more.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -592,15 +610,19 @@ pub enum BootStatus {
     BootSuccess,
     /// 1 Failed boot attempt (2).
     ///
-    /// Note COM-071 (certain): Boot Status values are named differently in the text.
+    /// Note COM-071 (certain): Boot Status values are named differently in the text. The text
+    /// speaks of 3x failed attempts and of a 1st failed boot attempt; the enumeration has 3 Failed
+    /// boot attempts and 1 Failed boot attempt. Same values, other words.
     ///
-    /// Note COM-072 (likely): Boot Status 2 is also written before the very first start.
+    /// Note COM-072 (likely): Boot Status 2 is also written before the very first start. While the
+    /// application has not yet confirmed, a healthy start reads 1 Failed boot attempt. Whoever
+    /// reads the status early takes a running start for a failed one.
     FailedBootAttempt1,
     /// 2 Failed boot attempts (3).
     FailedBootAttempts2,
     /// 3 Failed boot attempts (4).
     ///
-    /// Note COM-071 (certain): Boot Status values are named differently in the text.
+    /// Note COM-071 (certain): see 1 Failed boot attempt.
     FailedBootAttempts3,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -682,9 +704,13 @@ pub enum TcErrorReason {
     IncorrectParameter,
     /// CRC check failed (4).
     ///
-    /// Note COM-095 (certain): Reasons for a TC error: three in the text, four in the table.
+    /// Note COM-095 (certain): Reasons for a TC error: three in the text, four in the table. The
+    /// flag is said to be set for an invalid id, a wrong number of bytes or invalid data. The table
+    /// adds a failed checksum.
     ///
-    /// Note COM-096 (likely): CRC check failed is common, the checksum is not.
+    /// Note COM-096 (likely): CRC check failed is common, the checksum is not. The error code
+    /// stands in an enumeration of both programs, but the checksum exists in the control program
+    /// only. The bootloader cannot report it.
     CrcCheckFailed,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),

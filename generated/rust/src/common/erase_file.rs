@@ -12,7 +12,9 @@ use crate::support::{Coded, Error};
 ///
 /// Dangerous: The file is lost; all files are with Erase All.
 ///
-/// Note COM-034 (open): Erase File: what the other fields mean with Erase All.
+/// Note COM-034 (open): Erase File: what the other fields mean with Erase All. With the flag set
+/// all files go; whether type and counter must still be valid, or limit the erasing to one type, is
+/// not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -22,7 +24,8 @@ pub struct EraseFile {
     pub file_type: Coded<enums::FileType>,
     /// File Counter: bits 8 to 15, raw 0 to 255.
     ///
-    /// Note COM-035 (open): File counter of 8 bits.
+    /// Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with
+    /// the next one is not said.
     pub file_counter: u8,
     /// Erase All: bit 16.
     ///

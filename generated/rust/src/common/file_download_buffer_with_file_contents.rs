@@ -9,9 +9,14 @@ use crate::support::{array, put, put_array, take, Error};
 /// One packet of a download burst. On the UART the packets come unasked, with the id of Initiate
 /// Download Burst.
 ///
-/// Note COM-051 (certain): Messages of the download have other names in the text.
+/// Note COM-051 (certain): Messages of the download have other names in the text. Initiate File
+/// Download Burst and Download File Packet do not exist. Initiate Download Burst and File Download
+/// Buffer with File Contents are meant.
 ///
-/// Note COM-052 (open): Download packets: id of the telecommand or of the frame.
+/// Note COM-052 (open): Download packets: id of the telecommand or of the frame. On UART the
+/// packets are said to be headed by the id of the telecommand, 119. The frame with their format has
+/// the id 241. Which of the two the reads on I2C are headed by is not said; 241 is assumed. With
+/// 119 a packet and an acknowledge differ by length only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -21,13 +26,19 @@ pub struct FileDownloadBufferWithFileContents {
     ///
     /// Position of the packet in the burst.
     ///
-    /// Note COM-047 (likely): Packet numbers: from 0 or from 1.
+    /// Note COM-047 (likely): Packet numbers: from 0 or from 1. Neither the upload nor the download
+    /// says where the count begins. The code walks bits 0 to 1023 of the hole map, so 0 is likely.
     pub packet_counter: u16,
     /// File bytes: bytes 2 to 21.
     ///
-    /// Note COM-029 (certain): One field, several spellings.
+    /// Note COM-029 (certain): One field, several spellings. The same things are written Magic
+    /// number and Magic Number, BlockLength and Block Length, File bytes and File Bytes, File
+    /// Counter, Counter and File Ctr, and Checksum with and without CRC16. Names are held as
+    /// printed.
     ///
-    /// Note COM-048 (open): Last packet of a block: fill is not defined.
+    /// Note COM-048 (open): Last packet of a block: fill is not defined. Packets have always 20
+    /// bytes of data. What follows the end of the file in the last one, in either direction, is not
+    /// said, nor whether the checksum covers it.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub file_bytes: [u8; 20],
 }

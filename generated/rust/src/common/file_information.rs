@@ -9,9 +9,13 @@ use crate::support::{put, take, Coded, Error, Scale};
 ///
 /// The file at the list pointer. All zeros with Busy Updating clear: the end of the list.
 ///
-/// Note COM-093 (open): Polling has no interval and no time-out.
+/// Note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be
+/// polled, and when to give up, is not said. For files a time is suggested for two of the
+/// operations only.
 ///
-/// Note COM-102 (certain): File information and index entry order the same items differently.
+/// Note COM-102 (certain): File information and index entry order the same items differently. The
+/// frame has size, date and checksum; the index has checksum, size and date, and whole bytes. One
+/// layout cannot read the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -23,27 +27,36 @@ pub struct FileInformation {
     ///
     /// The other fields are valid once this is clear.
     ///
-    /// Note COM-101 (certain): Busy Updating has no description.
+    /// Note COM-101 (certain): Busy Updating has no description. What it means stands only in the
+    /// text: the rest of the frame is valid once it is clear.
     pub busy_updating: bool,
     /// File Ctr: bits 8 to 15, raw 0 to 255.
     ///
     /// With the type it identifies the file.
     ///
-    /// Note COM-029 (certain): One field, several spellings.
+    /// Note COM-029 (certain): One field, several spellings. The same things are written Magic
+    /// number and Magic Number, BlockLength and Block Length, File bytes and File Bytes, File
+    /// Counter, Counter and File Ctr, and Checksum with and without CRC16. Names are held as
+    /// printed.
     ///
-    /// Note COM-035 (open): File counter of 8 bits.
+    /// Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with
+    /// the next one is not said.
     pub file_ctr: u8,
     /// File Size: bits 16 to 47, raw 0 to 4294967295, in byte.
     ///
-    /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    /// Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant
+    /// throughout, but of the tables of messages only that of the program information says so.
     pub file_size: u32,
     /// File Date and Time: bits 48 to 79, raw 0 to 4294967295, in MS-DOS time.
     ///
     /// In MS-DOS format.
     ///
-    /// Erratum COM-099 (certain): File Date and Time: a packed date in seconds.
+    /// Erratum COM-099 (certain): File Date and Time: a packed date in seconds. The unit is given
+    /// as s, but the value is a date and time packed into bit fields, so it counts nothing. Held
+    /// with a unit of its own; the raw value is not converted.
     ///
-    /// Note COM-100 (open): Time zone of file times is not given.
+    /// Note COM-100 (open): Time zone of file times is not given. Whether UTC or something else
+    /// fills the packed date is not said; its resolution is 2 s.
     pub file_date_and_time: u32,
     /// File CRC16 Checksum: bits 80 to 95, raw 0 to 65535.
     pub file_crc16_checksum: u16,

@@ -10,11 +10,17 @@ use crate::support::{array, put, put_array, take, Error};
 ///
 /// The node does not acknowledge it.
 ///
-/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only. The
+/// messages of the upload are in the list common to both programs, the procedure belongs to the
+/// bootloader. Whether the ACP answers them, refuses them, or uploads somewhere is not said.
 ///
-/// Note COM-046 (likely): File Upload Packet is not acknowledged, against the rule.
+/// Note COM-046 (likely): File Upload Packet is not acknowledged, against the rule. Every
+/// telecommand is answered on UART and CAN, and a second one before the answer corrupts the buffer.
+/// This one is sent in a stream and never answered.
 ///
-/// Note COM-125 (certain): File Upload Packet: messages of 20 bytes, parameters of 22.
+/// Note COM-125 (certain): File Upload Packet: messages of 20 bytes, parameters of 22. The
+/// procedure sends messages with a size of 20 bytes each. 20 are the bytes of the file; with the
+/// packet number the telecommand has 22.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -22,11 +28,14 @@ use crate::support::{array, put, put_array, take, Error};
 pub struct FileUploadPacket {
     /// Packet Number: bits 0 to 15, raw 0 to 65535.
     ///
-    /// Note COM-047 (likely): Packet numbers: from 0 or from 1.
+    /// Note COM-047 (likely): Packet numbers: from 0 or from 1. Neither the upload nor the download
+    /// says where the count begins. The code walks bits 0 to 1023 of the hole map, so 0 is likely.
     pub packet_number: u16,
     /// File Bytes: bytes 2 to 21.
     ///
-    /// Note COM-048 (open): Last packet of a block: fill is not defined.
+    /// Note COM-048 (open): Last packet of a block: fill is not defined. Packets have always 20
+    /// bytes of data. What follows the end of the file in the last one, in either direction, is not
+    /// said, nor whether the checksum covers it.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub file_bytes: [u8; 20],
 }

@@ -9,9 +9,13 @@ use crate::support::{put, take, Coded, Error};
 ///
 /// Commits the received block to its destination.
 ///
-/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only. The
+/// messages of the upload are in the list common to both programs, the procedure belongs to the
+/// bootloader. Whether the ACP answers them, refuses them, or uploads somewhere is not said.
 ///
-/// Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
+/// Note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text ends with
+/// the checksum test before the block is committed. The telecommand that commits it and the frame
+/// that reports it are never named; both stood in a figure at best.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -23,11 +27,12 @@ pub struct FinalizeUploadBlock {
     ///
     /// Where in the file the block belongs.
     ///
-    /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    /// Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant
+    /// throughout, but of the tables of messages only that of the program information says so.
     pub offset: u32,
     /// Block Length: bits 40 to 55, raw 0 to 65535, in byte.
     ///
-    /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    /// Erratum COM-039 (likely): see Offset.
     pub block_length: u16,
 }
 

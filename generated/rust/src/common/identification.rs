@@ -8,7 +8,10 @@ use crate::support::{put, take, Error};
 ///
 /// Tells which program is running. Requesting it from the bootloader keeps it from booting on.
 ///
-/// Note COM-054 (likely): The identification request stops the boot that it is to check.
+/// Note COM-054 (likely): The identification request stops the boot that it is to check. A request
+/// that reaches the bootloader keeps it from booting: asked within the first 5 s, or after a reset
+/// that nobody planned, it prevents the start. Section 7.1 does not say how the boot is resumed;
+/// Run Selected Program would do it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,7 +23,9 @@ pub struct Identification {
     pub node_type: u8,
     /// Interface version: bits 8 to 15, raw 0 to 255.
     ///
-    /// Erratum COM-055 (certain): Interface version should be 1.
+    /// Erratum COM-055 (certain): Interface version should be 1. The identification frame is said
+    /// to carry 1. The programs that it identifies carry 7 and 3, so the constant would refuse
+    /// every real answer.
     pub interface_version: u8,
     /// Firmware version (Major): bits 16 to 23, raw 0 to 255.
     pub firmware_version_major: u8,
@@ -30,15 +35,18 @@ pub struct Identification {
     ///
     /// Since the processor started.
     ///
-    /// Erratum COM-057 (certain): Runtime has its unit in words only.
+    /// Erratum COM-057 (certain): Runtime has its unit in words only. Seconds stand in name and
+    /// description, not as a unit of measure.
     ///
-    /// Note COM-056 (open): Runtime ends after 18 hours.
+    /// Note COM-056 (open): Runtime ends after 18 hours. Seconds since start-up have 16 bits and
+    /// reach 65535 s, 18 h 12 min. What follows is not said.
     pub runtime_seconds: u16,
     /// Runtime (milliseconds): bits 48 to 63, raw 0 to 65535, in ms.
     ///
     /// Beyond the whole seconds.
     ///
     /// Erratum COM-127 (certain): Milliseconds of the runtime have their unit in words only.
+    /// Milliseconds stand in name and description, not as a unit of measure.
     pub runtime_milliseconds: u16,
 }
 

@@ -8,11 +8,17 @@ use crate::support::Error;
 ///
 /// Polled after Initiate File Upload.
 ///
-/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only. The
+/// messages of the upload are in the list common to both programs, the procedure belongs to the
+/// bootloader. Whether the ACP answers them, refuses them, or uploads somewhere is not said.
 ///
 /// Note COM-104 (certain): Upload is initiated, initialized and finalized under changing names.
+/// Initiate File Upload is followed by Initialize Upload Complete; Finalize Upload Block is
+/// described as finalizing the uploaded file block, and its frame Upload Block Complete as
+/// finalizing complete.
 ///
-/// Note COM-105 (open): Initialisation of an upload can fail silently.
+/// Note COM-105 (open): Initialisation of an upload can fail silently. The frame has a busy flag
+/// only; a failed erase of the flash shows nowhere until the checksum of a block is wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -22,7 +28,8 @@ pub struct InitializeUploadComplete {
     ///
     /// Still preparing, for instance erasing flash.
     ///
-    /// Note COM-103 (certain): Frames named complete report busy.
+    /// Note COM-103 (certain): Frames named complete report busy. Initialize Upload Complete and
+    /// Upload Block Complete hold a flag that is set while the operation is not complete.
     pub busy: bool,
 }
 

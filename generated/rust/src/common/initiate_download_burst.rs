@@ -9,11 +9,18 @@ use crate::support::Error;
 /// Starts the transfer of the loaded block. On the UART the packets come in rapid succession, on
 /// I2C the master reads them one by one.
 ///
-/// Note COM-051 (certain): Messages of the download have other names in the text.
+/// Note COM-051 (certain): Messages of the download have other names in the text. Initiate File
+/// Download Burst and Download File Packet do not exist. Initiate Download Burst and File Download
+/// Buffer with File Contents are meant.
 ///
-/// Note COM-052 (open): Download packets: id of the telecommand or of the frame.
+/// Note COM-052 (open): Download packets: id of the telecommand or of the frame. On UART the
+/// packets are said to be headed by the id of the telecommand, 119. The frame with their format has
+/// the id 241. Which of the two the reads on I2C are headed by is not said; 241 is assumed. With
+/// 119 a packet and an acknowledge differ by length only.
 ///
-/// Note COM-053 (open): Download over CAN is not described.
+/// Note COM-053 (open): Download over CAN is not described. Packets are pushed on UART and read on
+/// I2C. For CAN, which both programs support, nothing is said; a packet of 22 bytes would need an
+/// extended transaction of four.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -21,7 +28,9 @@ use crate::support::Error;
 pub struct InitiateDownloadBurst {
     /// Message Length: bits 0 to 7, raw 0 to 255.
     ///
-    /// Note COM-050 (open): Initiate Download Burst: Message Length is not explained.
+    /// Note COM-050 (open): Initiate Download Burst: Message Length is not explained. The length of
+    /// a message is fixed at 22 bytes by the frame and the text. Which value has to be sent, and
+    /// what others do, is not said; one error flag refers to it.
     pub message_length: u8,
     /// Ignore Hole Map: bit 8.
     ///

@@ -11,7 +11,9 @@ use crate::support::{Coded, Error};
 ///
 /// Dangerous: The program in the destination is lost.
 ///
-/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only. The
+/// messages of the upload are in the list common to both programs, the procedure belongs to the
+/// bootloader. Whether the ACP answers them, refuses them, or uploads somewhere is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -25,7 +27,8 @@ pub struct InitiateFileUpload {
     ///
     /// Ignored, may be 0.
     ///
-    /// Note COM-042 (certain): BlockSize is a byte and ignored.
+    /// Note COM-042 (certain): BlockSize is a byte and ignored. The field cannot hold the size of a
+    /// block, and the text says that it is ignored and may be 0.
     pub block_size: u8,
 }
 

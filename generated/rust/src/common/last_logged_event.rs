@@ -8,7 +8,9 @@ use crate::support::{put, take, Error};
 ///
 /// The event at the log pointer, which Reset Log Pointer and Advance Log Pointer move.
 ///
-/// Note COM-073 (certain): Last Logged Event: wrong telecommands, and a bracket left open.
+/// Note COM-073 (certain): Last Logged Event: wrong telecommands, and a bracket left open. The
+/// pointer is said to be adjusted with telecommands 3 and 4. Reset Log Pointer is 4 and Advance Log
+/// Pointer 5; 3 sets the cache.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -16,15 +18,17 @@ use crate::support::{put, take, Error};
 pub struct LastLoggedEvent {
     /// Time of Event: bits 0 to 31, raw 0 to 4294967295.
     ///
-    /// Note COM-074 (open): Time of Event has no description.
+    /// Note COM-074 (open): Time of Event has no description. Neither unit nor epoch is given; Unix
+    /// time in seconds is a guess from the width.
     pub time_of_event: u32,
     /// Event ID: bits 32 to 39, raw 0 to 255.
     ///
-    /// Note COM-075 (open): Events are not listed.
+    /// Note COM-075 (open): Events are not listed. Event ID and parameter are numbers without a
+    /// key.
     pub event_id: u8,
     /// Event Parameter: bits 40 to 47, raw 0 to 255.
     ///
-    /// Note COM-075 (open): Events are not listed.
+    /// Note COM-075 (open): see Event ID.
     pub event_parameter: u8,
 }
 

@@ -19,15 +19,20 @@ pub struct LoadFileDownloadBlock {
     ///
     /// Of the file: with the type it identifies the file.
     ///
-    /// Note COM-029 (certain): One field, several spellings.
+    /// Note COM-029 (certain): One field, several spellings. The same things are written Magic
+    /// number and Magic Number, BlockLength and Block Length, File bytes and File Bytes, File
+    /// Counter, Counter and File Ctr, and Checksum with and without CRC16. Names are held as
+    /// printed.
     ///
-    /// Note COM-035 (open): File counter of 8 bits.
+    /// Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with
+    /// the next one is not said.
     pub counter: u8,
     /// Offset: bits 16 to 47, raw 0 to 4294967295, in byte.
     ///
     /// Where in the file the block begins.
     ///
-    /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    /// Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant
+    /// throughout, but of the tables of messages only that of the program information says so.
     pub offset: u32,
     /// BlockLength: bits 48 to 63, raw 0 to 65535, in byte.
     ///
@@ -35,9 +40,9 @@ pub struct LoadFileDownloadBlock {
     ///
     /// Must be at most 20480 byte.
     ///
-    /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    /// Erratum COM-039 (likely): see Offset.
     ///
-    /// Note COM-029 (certain): One field, several spellings.
+    /// Note COM-029 (certain): see Counter.
     pub block_length: u16,
 }
 

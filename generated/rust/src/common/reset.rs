@@ -11,7 +11,9 @@ use crate::support::Error;
 /// Dangerous: The program that runs is stopped, and what it has not saved is lost. The node
 /// restarts instead of acknowledging it.
 ///
-/// Note COM-028 (open): The Reset telecommand: acknowledged or not.
+/// Note COM-028 (open): The Reset telecommand: acknowledged or not. Every telecommand is
+/// acknowledged, but this one restarts the program that would do it. Whether the reply comes first
+/// is not said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -23,7 +25,10 @@ pub struct Reset {
     ///
     /// Always 90 (0x5A).
     ///
-    /// Note COM-029 (certain): One field, several spellings.
+    /// Note COM-029 (certain): One field, several spellings. The same things are written Magic
+    /// number and Magic Number, BlockLength and Block Length, File bytes and File Bytes, File
+    /// Counter, Counter and File Ctr, and Checksum with and without CRC16. Names are held as
+    /// printed.
     pub magic_number: u8,
 }
 

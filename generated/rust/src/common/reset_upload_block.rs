@@ -8,9 +8,13 @@ use crate::support::Error;
 ///
 /// Announces a new block by clearing the hole map.
 ///
-/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only. The
+/// messages of the upload are in the list common to both programs, the procedure belongs to the
+/// bootloader. Whether the ACP answers them, refuses them, or uploads somewhere is not said.
 ///
 /// Note COM-126 (certain): Reset Upload Block tells the node of a block, and does not say which.
+/// The telecommand is said to notify the node of the block that is to be uploaded. It has no
+/// parameter; the place and the length of the block are first sent when it is committed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -8,7 +8,8 @@ use crate::support::Error;
 ///
 /// Whether the SD card is still being formatted or erased.
 ///
-/// Note COM-085 (open): Erase File: progress and failure.
+/// Note COM-085 (open): Erase File: progress and failure. Only Erase All can be followed. A single
+/// file, or an erase or format that fails, leaves no trace in any frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,7 +21,8 @@ pub struct SdCardFormatEraseProgress {
     ///
     /// All files are being erased.
     ///
-    /// Note COM-086 (certain): Erase All Busy: two verbs for one.
+    /// Note COM-086 (certain): Erase All Busy: two verbs for one. The description reads formatting
+    /// erasing, left over from the row above. Erasing is meant.
     pub erase_all_busy: bool,
 }
 

@@ -6,7 +6,9 @@ use crate::support::{put, take, Error};
 
 /// SRAM Latchup counters: telemetry 142, 6 bytes. Table 35.
 ///
-/// Erratum COM-076 (open): SRAM Latchup counters: 6 bytes announced, 4 described.
+/// Erratum COM-076 (open): SRAM Latchup counters: 6 bytes announced, 4 described. Two counters of
+/// 16 bits fill four of the six bytes. A third field is missing, or the frame is filled up to the
+/// size of the loggable ones. The last two bytes are held as reserved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -13,7 +13,9 @@ use crate::support::{put, take, Error};
 pub struct SramScrubParameters {
     /// Scrub Size: bits 0 to 15, raw 0 to 65535.
     ///
-    /// Note COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit.
+    /// Note COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit. The message has one
+    /// field, described as a size. Bytes, words or blocks per cycle are all possible, and the cycle
+    /// is not given.
     pub scrub_size: u16,
 }
 

@@ -9,7 +9,8 @@ use crate::support::Error;
 ///
 /// When the Unix time is kept in flash, so that it survives a power cycle.
 ///
-/// Note COM-112 (certain): Unix Time Save to Flash is described in two spellings.
+/// Note COM-112 (certain): Unix Time Save to Flash is described in two spellings. The list has Unix
+/// time, the table unixtime.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,7 +20,9 @@ pub struct UnixTimeSaveToFlash {
     ///
     /// Saves once.
     ///
-    /// Note COM-113 (open): Save Now is an action among settings.
+    /// Note COM-113 (open): Save Now is an action among settings. The message is a setting that can
+    /// be read back. What the action bit reads as, and whether a set with it changes the other
+    /// bits, is not said.
     pub save_now: bool,
     /// Save On Update: bit 1.
     ///
@@ -31,7 +34,8 @@ pub struct UnixTimeSaveToFlash {
     pub save_periodic: bool,
     /// Period: bits 8 to 15, raw 0 to 255, in s.
     ///
-    /// Note COM-114 (open): Saving period: meaning of 0.
+    /// Note COM-114 (open): Saving period: meaning of 0. The period has 8 bits of seconds, 255 s at
+    /// most. What 0 does is not said.
     pub period: u8,
 }
 

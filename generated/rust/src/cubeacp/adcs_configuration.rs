@@ -20,9 +20,13 @@ use crate::support::{array, flags, put, put_array, take, Coded, Error, Scale};
 /// byte 323. Repeats Estimation Parameters from byte 347. Repeats Augmented-SGP4 Parameters from
 /// byte 378. Repeats User-coded Controller and Estimator Parameters from byte 408.
 ///
-/// Note ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
+/// They are written 0 and ignored.
 ///
-/// Note ACP-159 (open): The current configuration is not all of it.
+/// Note ACP-159 (open): The current configuration is not all of it. The message is described as the
+/// current configuration. It joins 16 of the 25 others; orbit, target, attitude command, power,
+/// logs, inertial vector and system configuration are not in it. Save Configuration uses the same
+/// words.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -63,7 +67,8 @@ pub struct AdcsConfiguration {
     ///
     /// Factor on the rate sensor measurements.
     ///
-    /// Note ACP-130 (open): RateSensorMult has no scale and no blanks.
+    /// Note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8 bits;
+    /// whether it is a whole factor, and of which quantity, is not said.
     pub rate_sensor_mult: u8,
     /// CSS1 Configuration: bits 136 to 143.
     pub css1_configuration: Coded<enums::AxisSelect>,
@@ -107,7 +112,8 @@ pub struct AdcsConfiguration {
     pub css10_relative_scale: u8,
     /// CSS Threshold: bits 296 to 303, raw 0 to 255.
     ///
-    /// Note ACP-133 (open): CSS threshold has no description.
+    /// Note ACP-133 (open): CSS threshold has no description. The name is repeated; neither unit
+    /// nor what lies below it is said. The message is described as directions and scale factors.
     pub css_threshold: u8,
     /// Cam1 Sensor Mounting Transform Alpha Angle: bits 304 to 319, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
@@ -163,7 +169,8 @@ pub struct AdcsConfiguration {
     ///
     /// Largest deviation of an edge, of the measured angular radius.
     ///
-    /// Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
+    /// Erratum ACP-151 (certain): Deviation percentage has its unit in words only. A percentage of
+    /// the measured angular radius by name and description, without the unit of measure.
     pub nadir_max_deviation_percentage: u8,
     /// Nadir Max Bad Edges: bits 536 to 543, raw 0 to 255.
     ///
@@ -171,11 +178,12 @@ pub struct AdcsConfiguration {
     pub nadir_max_bad_edges: u8,
     /// Nadir Max Radius: bits 544 to 551, raw 0 to 255, in deg.
     ///
-    /// Erratum ACP-148 (certain): Degree sign is deg.
+    /// Erratum ACP-148 (certain): Degree sign is deg. Two fields have the sign, all other angles
+    /// deg.
     pub nadir_max_radius: u8,
     /// Nadir Min Radius: bits 552 to 559, raw 0 to 255, in deg.
     ///
-    /// Erratum ACP-148 (certain): Degree sign is deg.
+    /// Erratum ACP-148 (certain): see Nadir Max Radius.
     pub nadir_min_radius: u8,
     /// Cam 1 Minimum X of area 1: bits 560 to 575, raw 0 to 65535.
     pub cam_1_minimum_x_of_area_1: u16,
@@ -360,31 +368,34 @@ pub struct AdcsConfiguration {
     ///
     /// Register value.
     ///
-    /// Note ACP-145 (open): Exposure and gain are register values.
+    /// Note ACP-145 (open): Exposure and gain are register values. Neither the register nor its
+    /// scale is given, so times and gains cannot be told from them.
     pub star_tracker_exposure_time: u16,
     /// StarTracker analog gain: bits 1744 to 1759, raw 0 to 65535.
     ///
     /// Register value.
     ///
-    /// Note ACP-145 (open): Exposure and gain are register values.
+    /// Note ACP-145 (open): see StarTracker exposure time.
     pub star_tracker_analog_gain: u16,
     /// StarTracker detection threshold: bits 1760 to 1767, raw 0 to 255.
     ///
-    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description. Names
+    /// are repeated or a noun is missing, as in maximum of stars.
     pub star_tracker_detection_threshold: u8,
     /// StarTracker star threshold: bits 1768 to 1775, raw 0 to 255.
     ///
-    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): see StarTracker detection threshold.
     pub star_tracker_star_threshold: u8,
     /// Maximum Star Matched: bits 1776 to 1783, raw 0 to 255.
     ///
     /// Most stars that are matched.
     ///
-    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): see StarTracker detection threshold.
     pub maximum_star_matched: u8,
     /// Detection Timeout duration: bits 1784 to 1799, raw 0 to 65535.
     ///
-    /// Note ACP-141 (open): Detection timeout has no unit.
+    /// Note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in
+    /// milliseconds; registers and pixels stand in between.
     pub detection_timeout_duration: u16,
     /// Maximum Star Pixel: bits 1800 to 1807, raw 0 to 255.
     ///
@@ -399,49 +410,55 @@ pub struct AdcsConfiguration {
     ///
     /// Of the star identification.
     ///
-    /// Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
+    /// Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit % and a
+    /// factor of 0.01 give steps of 0.01 % in 8 bits. If the factor already makes a fraction, as in
+    /// the margins that follow without a unit, the range is 255 %.
     pub star_tracker_error_margin: u8,
     /// Star Tracker Delay Time: bits 1824 to 1839, raw 0 to 65535, in ms.
     ///
-    /// Erratum ACP-140 (certain): milliseconds is ms.
+    /// Erratum ACP-140 (certain): milliseconds is ms. The unit is spelt out in one field.
     pub star_tracker_delay_time: u16,
     /// Star Tracker Centroid X: bits 1840 to 1871, 32-bit float, in pixels.
     ///
-    /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
+    /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only. The
+    /// fields are described as pixel centroids, without the unit of measure that the boresights of
+    /// the cameras have.
     pub star_tracker_centroid_x: f32,
     /// Star Tracker Centroid Y: bits 1872 to 1903, 32-bit float, in pixels.
     ///
-    /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
+    /// Erratum ACP-202 (likely): see Star Tracker Centroid X.
     pub star_tracker_centroid_y: f32,
     /// Star Tracker Focal Length: bits 1904 to 1935, 32-bit float, in mm.
     pub star_tracker_focal_length: f32,
     /// K1 radial distortion coefficient: bits 1936 to 1967, 32-bit float, in gain.
     ///
-    /// Note ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain. It is
+    /// kept as a plain factor; which lens model and which normalisation they belong to is not said.
     pub k1_radial_distortion_coefficient: f32,
     /// K2 radial distortion coefficient: bits 1968 to 1999, 32-bit float, in gain.
     ///
-    /// Note ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): see K1 radial distortion coefficient.
     pub k2_radial_distortion_coefficient: f32,
     /// P1 tangential distortion coefficient: bits 2000 to 2031, 32-bit float, in gain.
     ///
-    /// Note ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): see K1 radial distortion coefficient.
     pub p1_tangential_distortion_coefficient: f32,
     /// P2 tangential distortion coefficient: bits 2032 to 2063, 32-bit float, in gain.
     ///
-    /// Note ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): see K1 radial distortion coefficient.
     pub p2_tangential_distortion_coefficient: f32,
     /// Star tracking window width: bits 2064 to 2071, raw 0 to 255.
     ///
-    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): see StarTracker detection threshold.
     pub star_tracking_window_width: u8,
     /// Star Tracking Margin: bits 2072 to 2079, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
     ///
-    /// Note ACP-143 (open): Margins and search width have no unit.
+    /// Note ACP-143 (open): Margins and search width have no unit. Factors are given, units are
+    /// not; pixels, fractions and degrees are all possible.
     pub star_tracking_margin: u8,
     /// Star Validation Margin: bits 2080 to 2087, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
     ///
-    /// Note ACP-143 (open): Margins and search width have no unit.
+    /// Note ACP-143 (open): see Star Tracking Margin.
     pub star_validation_margin: u8,
     /// Star Tracking Module Enable: bit 2088.
     pub star_tracking_module_enable: bool,
@@ -449,7 +466,7 @@ pub struct AdcsConfiguration {
     pub star_tracking_location_prediction_enable: bool,
     /// Star Tracking Search Width: bits 2096 to 2103, raw 0 to 255; physical `raw/5.0`, 0 to 51.
     ///
-    /// Note ACP-143 (open): Margins and search width have no unit.
+    /// Note ACP-143 (open): see Star Tracking Margin.
     pub star_tracking_search_width: u8,
     /// Detumbling Spin Gain: bits 2104 to 2135, 32-bit float.
     ///
@@ -466,7 +483,8 @@ pub struct AdcsConfiguration {
     ///
     /// Must be below 0 deg/s.
     ///
-    /// Note ACP-162 (certain): Limits of a sign in words only.
+    /// Note ACP-162 (certain): Limits of a sign in words only. Two references must always be
+    /// smaller than 0; the types allow the opposite, and what the program does with it is not said.
     pub reference_spin_rate: i16,
     /// Fast BDot Detumbling Gain: bits 2184 to 2215, 32-bit float.
     ///
@@ -494,7 +512,7 @@ pub struct AdcsConfiguration {
     ///
     /// Must be below 0 Nms.
     ///
-    /// Note ACP-162 (certain): Limits of a sign in words only.
+    /// Note ACP-162 (certain): see Reference spin rate.
     pub reference_wheel_momentum: f32,
     /// RWheel Proportional Gain: bits 2376 to 2407, 32-bit float.
     ///
@@ -534,33 +552,36 @@ pub struct AdcsConfiguration {
     pub target_tracking_facet: Coded<enums::AxisSelect>,
     /// Moment Of Inertia - Ixx: bits 2584 to 2615, 32-bit float, in kg.m^2.
     ///
-    /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2. The same fields have the
+    /// unit in two spellings. Held as kg.m^2.
     pub moment_of_inertia_ixx: f32,
     /// Moment Of Inertia - Iyy: bits 2616 to 2647, 32-bit float, in kg.m^2.
     ///
-    /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    /// Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
     pub moment_of_inertia_iyy: f32,
     /// Moment Of Inertia - Izz: bits 2648 to 2679, 32-bit float, in kg.m^2.
     ///
-    /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    /// Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
     pub moment_of_inertia_izz: f32,
     /// Product Of Inertia - Ixy: bits 2680 to 2711, 32-bit float, in kg.m^2.
     ///
-    /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    /// Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
     ///
-    /// Note ACP-201 (open): Products of inertia: the sign is not given.
+    /// Note ACP-201 (open): Products of inertia: the sign is not given. The products are elements
+    /// of a matrix by the message and products of inertia by their names, which differ in sign by
+    /// the usual definitions. Neither is defined.
     pub product_of_inertia_ixy: f32,
     /// Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
     ///
-    /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    /// Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
     ///
-    /// Note ACP-201 (open): Products of inertia: the sign is not given.
+    /// Note ACP-201 (open): see Product Of Inertia - Ixy.
     pub product_of_inertia_ixz: f32,
     /// Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
     ///
-    /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    /// Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
     ///
-    /// Note ACP-201 (open): Products of inertia: the sign is not given.
+    /// Note ACP-201 (open): see Product Of Inertia - Ixy.
     pub product_of_inertia_iyz: f32,
     /// Magnetometer Rate Filter System Noise: bits 2776 to 2807, 32-bit float.
     pub magnetometer_rate_filter_system_noise: f32,
@@ -604,7 +625,9 @@ pub struct AdcsConfiguration {
     ///
     /// The magnetometer that estimation and control use.
     ///
-    /// Note ACP-049 (open): Magnetometer mode can be set in two places.
+    /// Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a
+    /// configuration message set the same mode. Which wins after a restart, and whether the
+    /// telecommand changes what the configuration returns, is not said.
     pub magnetometer_mode: Coded<enums::MagModeVal>,
     /// Magnetometer Selection for RAW MTM TLM: bits 3008 to 3009.
     ///
@@ -619,14 +642,16 @@ pub struct AdcsConfiguration {
     /// Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
     /// camera.
     ///
-    /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit. Two periods of
+    /// four bits share a byte that has the unit s. The value of the byte is no time; each half is,
+    /// up to 15 s, and is held as a field of its own.
     pub cam1_period: u8,
     /// Cam2 period: bits 3020 to 3023, raw 0 to 15, in s.
     ///
     /// Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
     /// camera.
     ///
-    /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    /// Erratum ACP-169 (certain): see Cam1 period.
     pub cam2_period: u8,
     /// Incl. coefficient: bits 3024 to 3039, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
@@ -696,12 +721,13 @@ pub struct AdcsConfiguration {
     pub min_samples: u16,
     /// User Coded Controller Settings: bytes 408 to 455.
     ///
-    /// Note ACP-178 (open): User coded settings: content of the arrays.
+    /// Note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes without
+    /// types; what they hold depends on code that the user supplies.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub user_coded_controller_settings: [u8; 48],
     /// User Coded Estimator Settings: bytes 456 to 503.
     ///
-    /// Note ACP-178 (open): User coded settings: content of the arrays.
+    /// Note ACP-178 (open): see User Coded Controller Settings.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub user_coded_estimator_settings: [u8; 48],
 }

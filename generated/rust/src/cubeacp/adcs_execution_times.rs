@@ -8,7 +8,9 @@ use crate::support::{put, take, Error};
 ///
 /// How long the parts of the control program take.
 ///
-/// Note ACP-107 (certain): ADCS is Adcs in one message, a model a computation.
+/// Note ACP-107 (certain): ADCS is Adcs in one message, a model a computation. Adcs Execution Times
+/// stands alone in its spelling, and its last field names a model where the description has a
+/// computation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -10,7 +10,8 @@ use crate::support::{Coded, Error, Scale};
 ///
 /// Switches components on and off.
 ///
-/// Note ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
+/// They are written 0 and ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,13 +21,14 @@ pub struct AdcsPowerControl {
     ///
     /// Electronics of the signal PIC.
     ///
-    /// Note ACP-136 (certain): Power control calls the controllers PIC.
+    /// Note ACP-136 (certain): Power control calls the controllers PIC. Elsewhere the same two are
+    /// MCUs or microcontrollers.
     pub cubecontrol_signal_power_selection: Coded<enums::PowerSelect>,
     /// CubeControl Motor Power Selection: bits 2 to 3.
     ///
     /// Electronics of the motor PIC.
     ///
-    /// Note ACP-136 (certain): Power control calls the controllers PIC.
+    /// Note ACP-136 (certain): see CubeControl Signal Power Selection.
     pub cubecontrol_motor_power_selection: Coded<enums::PowerSelect>,
     /// CubeSense1 Power Selection: bits 4 to 5.
     pub cubesense1_power_selection: Coded<enums::PowerSelect>,
@@ -34,35 +36,40 @@ pub struct AdcsPowerControl {
     pub cubesense2_power_selection: Coded<enums::PowerSelect>,
     /// CubeStarPower Power Selection: bits 8 to 9.
     ///
-    /// Note ACP-134 (certain): Power is doubled in four names.
+    /// Note ACP-134 (certain): Power is doubled in four names. CubeStarPower Power Selection and
+    /// three like it say power twice; the other units have it once. Identifiers are built without
+    /// the first.
     pub cubestar_power_selection: Coded<enums::PowerSelect>,
     /// CubeWheel1Power Power Selection: bits 10 to 11.
     ///
-    /// Note ACP-134 (certain): Power is doubled in four names.
+    /// Note ACP-134 (certain): see CubeStarPower Power Selection.
     pub cubewheel1_power_selection: Coded<enums::PowerSelect>,
     /// CubeWheel2Power Power Selection: bits 12 to 13.
     ///
-    /// Note ACP-134 (certain): Power is doubled in four names.
+    /// Note ACP-134 (certain): see CubeStarPower Power Selection.
     pub cubewheel2_power_selection: Coded<enums::PowerSelect>,
     /// CubeWheel3Power Power Selection: bits 14 to 15.
     ///
-    /// Note ACP-134 (certain): Power is doubled in four names.
+    /// Note ACP-134 (certain): see CubeStarPower Power Selection.
     pub cubewheel3_power_selection: Coded<enums::PowerSelect>,
     /// Motor Power: bits 16 to 17.
     ///
     /// Motor electronics.
     ///
-    /// Note ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is reported
+    /// as Motor Driver Enabled, GPS Power switches the antenna amplifier and is reported as GPS LNA
+    /// Power Enabled. GPS Receiver Enabled has no switch.
     ///
-    /// Note ACP-135 (certain): Motor Power and GPS Power are not called selections.
+    /// Note ACP-135 (certain): Motor Power and GPS Power are not called selections. Two of ten
+    /// fields with the same enumeration lack the word.
     pub motor_power: Coded<enums::PowerSelect>,
     /// GPS Power: bits 18 to 19.
     ///
     /// LNA of the GPS.
     ///
-    /// Note ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): see Motor Power.
     ///
-    /// Note ACP-135 (certain): Motor Power and GPS Power are not called selections.
+    /// Note ACP-135 (certain): see Motor Power.
     pub gps_power: Coded<enums::PowerSelect>,
 }
 

@@ -15,9 +15,12 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 /// Satellite Velocity (ECI) from byte 36. Repeats Satellite Position (LLH) from byte 42. Repeats
 /// ECEF Position from byte 48.
 ///
-/// Note ACP-059 (certain): Current ADCS State and ADCS State.
+/// Note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called Current ADCS
+/// State, and frame 190, which holds it and much more, ADCS State with the description current ADCS
+/// state.
 ///
-/// Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles.
+/// Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles. Bits 66 to 95 are
+/// not described. They are the unused end of frame 224, which the frame repeats.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -31,7 +34,8 @@ pub struct AdcsState {
     pub adcs_run_mode: Coded<enums::AdcsRunMode>,
     /// ASGP4 Mode: bits 10 to 11.
     ///
-    /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode
+    /// with four values; the description has an enabled state.
     pub asgp4_mode: Coded<enums::Asgp4ModeSelect>,
     /// CubeControl Signal Enabled: bit 12.
     pub cubecontrol_signal_enabled: bool,
@@ -81,7 +85,8 @@ pub struct AdcsState {
     ///
     /// About a measured field of 65 uT. Whether above or below is not printed.
     ///
-    /// Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
+    /// Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is set when
+    /// the field has a size 65 uT. Above is likely, since the field of the earth hardly reaches it.
     pub magnetometer_range_error: bool,
     /// Cam1 SRAM Overcurrent Detected: bit 33.
     pub cam1_sram_overcurrent_detected: bool,
@@ -99,7 +104,9 @@ pub struct AdcsState {
     ///
     /// A detected sun angle was beyond +/-90 deg.
     ///
-    /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag each is
+    /// for the sun and the nadir sensor; the cameras are numbered, and which of them is which is a
+    /// setting. With two sun sensors one flag serves both.
     pub sun_sensor_range_error: bool,
     /// Cam2 SRAM Overcurrent Detected: bit 38.
     pub cam2_sram_overcurrent_detected: bool,
@@ -117,7 +124,7 @@ pub struct AdcsState {
     ///
     /// A detected nadir angle was beyond +/-60 deg.
     ///
-    /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    /// Note ACP-061 (open): see Sun Sensor Range Error.
     pub nadir_sensor_range_error: bool,
     /// Rate Sensor Range Error: bit 43.
     ///
@@ -141,16 +148,20 @@ pub struct AdcsState {
     ///
     /// A parameter is out of bounds, or the SGP4 propagator could not start from them.
     ///
-    /// Note ACP-104 (open): Orbit parameter flag has two reasons.
+    /// Note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds, or a
+    /// propagator that failed to start, are told as two sentences for one bit.
     pub orbit_parameters_are_invalid: bool,
     /// Configuration is Invalid: bit 49.
     ///
     /// Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at least one
     /// CSS.
     ///
-    /// Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
+    /// Note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames differ by
+    /// a letter in the description, and principle stands for principal twice in each.
     ///
-    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output. Each axis is
+    /// said to need a torquer output 1, 2 or 3. The configuration works the other way round and
+    /// gives an axis to each torquer, or Not Used.
     pub configuration_is_invalid: bool,
     /// Control Mode Change is not allowed: bit 50.
     ///
@@ -204,15 +215,17 @@ pub struct AdcsState {
     pub estimated_yaw_angle: i16,
     /// Estimated q1: bits 144 to 159, raw -32768 to 32767.
     ///
-    /// Note ACP-100 (open): Estimated quaternion has no formula.
+    /// Note ACP-100 (open): Estimated quaternion has no formula. Components of a unit quaternion in
+    /// 16 bits need a factor; all other quaternions have one of 1/10000. It is likely here too, but
+    /// not printed, so the raw value is all that is offered.
     pub estimated_q1: i16,
     /// Estimated q2: bits 160 to 175, raw -32768 to 32767.
     ///
-    /// Note ACP-100 (open): Estimated quaternion has no formula.
+    /// Note ACP-100 (open): see Estimated q1.
     pub estimated_q2: i16,
     /// Estimated q3: bits 176 to 191, raw -32768 to 32767.
     ///
-    /// Note ACP-100 (open): Estimated quaternion has no formula.
+    /// Note ACP-100 (open): see Estimated q1.
     pub estimated_q3: i16,
     /// Estimated X Angular Rate: bits 192 to 207, raw -32768 to 32767; physical `raw*0.01`, -327.68
     /// to 327.67 deg/s.
@@ -239,29 +252,37 @@ pub struct AdcsState {
     pub latitude: i16,
     /// Longitude: bits 352 to 367, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
+    /// Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The datum is
+    /// missing in one of three rows; the frame is called LLH by name and WGS-84 frame by
+    /// description.
     pub longitude: i16,
     /// Altitude: bits 368 to 383, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
     ///
-    /// Note ACP-067 (open): Position and altitude do not reach equally far.
+    /// Note ACP-067 (open): Position and altitude do not reach equally far. The inertial position
+    /// fits orbits up to 1800 km, the altitude of 16 bits ends at 655.35 km. Above that it wraps or
+    /// sticks; which is not said.
     pub altitude: u16,
     /// ECEF Position X: bits 384 to 399, raw -32768 to 32767.
     ///
-    /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres. In metres the field reaches
+    /// 32.767 km, a position some 7000 km. A factor is missing; 0.25 km as in the inertial position
+    /// is one possibility, km another. No unit is held, so nothing is converted.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16
+    /// bits in the state frames and 32 bits in the GPS frames and the simulated data, with the same
+    /// name, description and unit.
     pub ecef_position_x: i16,
     /// ECEF Position Y: bits 400 to 415, raw -32768 to 32767.
     ///
-    /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    /// Erratum ACP-098 (likely): see ECEF Position X.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): see ECEF Position X.
     pub ecef_position_y: i16,
     /// ECEF Position Z: bits 416 to 431, raw -32768 to 32767.
     ///
-    /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    /// Erratum ACP-098 (likely): see ECEF Position X.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): see ECEF Position X.
     pub ecef_position_z: i16,
 }
 

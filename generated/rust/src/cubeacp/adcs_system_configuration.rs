@@ -10,9 +10,12 @@ use crate::support::{put, take, Coded, Error, Scale};
 ///
 /// What is hard-coded: versions, ratings, calibration and pins.
 ///
-/// Note ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
+/// They are written 0 and ignored.
 ///
-/// Note ACP-170 (open): System configuration is hard-coded and can be set.
+/// Note ACP-170 (open): System configuration is hard-coded and can be set. The description says
+/// hard-coded, the message has a set id, and a load error exists for it. Whether a set is refused,
+/// or lost with the next start, is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -24,19 +27,20 @@ pub struct AdcsSystemConfiguration {
     pub special_control_selection: Coded<enums::SpecialConSelect>,
     /// CubeControl Signal Version: bits 8 to 15, raw 0 to 255.
     ///
-    /// Note ACP-171 (open): Versions of the units: format of the number.
+    /// Note ACP-171 (open): Versions of the units: format of the number. Versions of hardware or
+    /// firmware, as whole numbers or packed digits, are all possible in a byte.
     pub cubecontrol_signal_version: u8,
     /// CubeControl Motor Version: bits 16 to 23, raw 0 to 255.
     ///
-    /// Note ACP-171 (open): Versions of the units: format of the number.
+    /// Note ACP-171 (open): see CubeControl Signal Version.
     pub cubecontrol_motor_version: u8,
     /// CubeSense1 Version: bits 24 to 31, raw 0 to 255.
     ///
-    /// Note ACP-171 (open): Versions of the units: format of the number.
+    /// Note ACP-171 (open): see CubeControl Signal Version.
     pub cubesense1_version: u8,
     /// CubeSense2 Version: bits 32 to 39, raw 0 to 255.
     ///
-    /// Note ACP-171 (open): Versions of the units: format of the number.
+    /// Note ACP-171 (open): see CubeControl Signal Version.
     pub cubesense2_version: u8,
     /// CubeSense1 Camera Type: bits 40 to 43.
     pub cubesense1_camera_type: Coded<enums::CsCamType>,
@@ -44,7 +48,7 @@ pub struct AdcsSystemConfiguration {
     pub cubesense2_camera_type: Coded<enums::CsCamType>,
     /// CubeStar Version: bits 48 to 55, raw 0 to 255.
     ///
-    /// Note ACP-171 (open): Versions of the units: format of the number.
+    /// Note ACP-171 (open): see CubeControl Signal Version.
     pub cubestar_version: u8,
     /// GPS Type: bits 56 to 59.
     pub gps_type: Coded<enums::GpsSelect>,
@@ -52,15 +56,16 @@ pub struct AdcsSystemConfiguration {
     pub redundant_mtm_included: bool,
     /// Magnetorquer-X Max Dipole: bits 64 to 95, 32-bit float, in A.m^2.
     ///
-    /// Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2.
+    /// Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2. The square is written as a digit above
+    /// the line here and with a caret for the inertia. Held with a caret.
     pub magnetorquer_x_max_dipole: f32,
     /// Magnetorquer-Y Max Dipole: bits 96 to 127, 32-bit float, in A.m^2.
     ///
-    /// Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2.
+    /// Erratum ACP-172 (certain): see Magnetorquer-X Max Dipole.
     pub magnetorquer_y_max_dipole: f32,
     /// Magnetorquer-Z Max Dipole: bits 128 to 159, 32-bit float, in A.m^2.
     ///
-    /// Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2.
+    /// Erratum ACP-172 (certain): see Magnetorquer-X Max Dipole.
     pub magnetorquer_z_max_dipole: f32,
     /// Magnetorquer On-time Resolution: bits 160 to 191, 32-bit float, in s.
     pub magnetorquer_on_time_resolution: f32,
@@ -68,151 +73,157 @@ pub struct AdcsSystemConfiguration {
     pub magnetorquer_maximum_on_time: f32,
     /// RW-X Maximum Torque: bits 224 to 255, 32-bit float, in N.m.
     ///
-    /// Note ACP-173 (certain): N.m and Nms.
+    /// Note ACP-173 (certain): N.m and Nms. Torque is written with a dot, angular momentum without.
+    /// Both are held as printed.
     pub rw_x_maximum_torque: f32,
     /// RW-Y Maximum Torque: bits 256 to 287, 32-bit float, in N.m.
     ///
-    /// Note ACP-173 (certain): N.m and Nms.
+    /// Note ACP-173 (certain): see RW-X Maximum Torque.
     pub rw_y_maximum_torque: f32,
     /// RW-Z Maximum Torque: bits 288 to 319, 32-bit float, in N.m.
     ///
-    /// Note ACP-173 (certain): N.m and Nms.
+    /// Note ACP-173 (certain): see RW-X Maximum Torque.
     pub rw_z_maximum_torque: f32,
     /// RW-X Maximum Momentum: bits 320 to 351, 32-bit float, in Nms.
     ///
-    /// Note ACP-173 (certain): N.m and Nms.
+    /// Note ACP-173 (certain): see RW-X Maximum Torque.
     pub rw_x_maximum_momentum: f32,
     /// RW-Y Maximum Momentum: bits 352 to 383, 32-bit float, in Nms.
     ///
-    /// Note ACP-173 (certain): N.m and Nms.
+    /// Note ACP-173 (certain): see RW-X Maximum Torque.
     pub rw_y_maximum_momentum: f32,
     /// RW-Z Maximum Momentum: bits 384 to 415, 32-bit float, in Nms.
     ///
-    /// Note ACP-173 (certain): N.m and Nms.
+    /// Note ACP-173 (certain): see RW-X Maximum Torque.
     pub rw_z_maximum_momentum: f32,
     /// RW-X Inertia: bits 416 to 447, 32-bit float, in kg.m^2.
     ///
-    /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2. The same fields have the
+    /// unit in two spellings. Held as kg.m^2.
     ///
-    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X. Numbers in one message, axes in the
+    /// other. The two agree only after the wheel configuration has been applied.
     pub rw_x_inertia: f32,
     /// RW-Y Inertia: bits 448 to 479, 32-bit float, in kg.m^2.
     ///
-    /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    /// Erratum ACP-006 (certain): see RW-X Inertia.
     ///
-    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    /// Note ACP-129 (open): see RW-X Inertia.
     pub rw_y_inertia: f32,
     /// RW-Z Inertia: bits 480 to 511, 32-bit float, in kg.m^2.
     ///
-    /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    /// Erratum ACP-006 (certain): see RW-X Inertia.
     ///
-    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    /// Note ACP-129 (open): see RW-X Inertia.
     pub rw_z_inertia: f32,
     /// RW Torque Increment: bits 512 to 543, 32-bit float, in N.m.
     pub rw_torque_increment: f32,
     /// Primary MTM X-Bias d1: bits 544 to 575, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2. Twenty-four coefficients
+    /// have neither description nor unit. How they work together with the offsets and the
+    /// sensitivity matrix of the configuration is not said.
     pub primary_mtm_x_bias_d1: f32,
     /// Primary MTM Y-Bias d1: bits 576 to 607, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub primary_mtm_y_bias_d1: f32,
     /// Primary MTM Z-Bias d1: bits 608 to 639, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub primary_mtm_z_bias_d1: f32,
     /// Primary MTM X-Bias d2: bits 640 to 671, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub primary_mtm_x_bias_d2: f32,
     /// Primary MTM Y-Bias d2: bits 672 to 703, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub primary_mtm_y_bias_d2: f32,
     /// Primary MTM Z-Bias d2: bits 704 to 735, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub primary_mtm_z_bias_d2: f32,
     /// Primary MTM X-Sens s1: bits 736 to 767, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub primary_mtm_x_sens_s1: f32,
     /// Primary MTM Y-Sens s1: bits 768 to 799, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub primary_mtm_y_sens_s1: f32,
     /// Primary MTM Z-Sens s1: bits 800 to 831, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub primary_mtm_z_sens_s1: f32,
     /// Primary MTM X-Sens s2: bits 832 to 863, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub primary_mtm_x_sens_s2: f32,
     /// Primary MTM Y-Sens s2: bits 864 to 895, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub primary_mtm_y_sens_s2: f32,
     /// Primary MTM Z-Sens s2: bits 896 to 927, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub primary_mtm_z_sens_s2: f32,
     /// Redundant MTM X-Bias d1: bits 928 to 959, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub redundant_mtm_x_bias_d1: f32,
     /// Redundant MTM Y-Bias d1: bits 960 to 991, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub redundant_mtm_y_bias_d1: f32,
     /// Redundant MTM Z-Bias d1: bits 992 to 1023, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub redundant_mtm_z_bias_d1: f32,
     /// Redundant MTM X-Bias d2: bits 1024 to 1055, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub redundant_mtm_x_bias_d2: f32,
     /// Redundant MTM Y-Bias d2: bits 1056 to 1087, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub redundant_mtm_y_bias_d2: f32,
     /// Redundant MTM Z-Bias d2: bits 1088 to 1119, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub redundant_mtm_z_bias_d2: f32,
     /// Redundant MTM X-Sens s1: bits 1120 to 1151, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub redundant_mtm_x_sens_s1: f32,
     /// Redundant MTM Y-Sens s1: bits 1152 to 1183, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub redundant_mtm_y_sens_s1: f32,
     /// Redundant MTM Z-Sens s1: bits 1184 to 1215, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub redundant_mtm_z_sens_s1: f32,
     /// Redundant MTM X-Sens s2: bits 1216 to 1247, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub redundant_mtm_x_sens_s2: f32,
     /// Redundant MTM Y-Sens s2: bits 1248 to 1279, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub redundant_mtm_y_sens_s2: f32,
     /// Redundant MTM Z-Sens s2: bits 1280 to 1311, 32-bit float.
     ///
-    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): see Primary MTM X-Bias d1.
     pub redundant_mtm_z_sens_s2: f32,
     /// CC Signal Enable Port: bits 1312 to 1315.
     ///
-    /// Note ACP-175 (likely): CC is not explained.
+    /// Note ACP-175 (likely): CC is not explained. It stands for CubeControl by the order of the
+    /// fields. A third, common enable line appears nowhere else.
     pub cc_signal_enable_port: Coded<enums::GpioPort>,
     /// CC Signal Enable Pin: bits 1316 to 1319.
     ///
-    /// Note ACP-175 (likely): CC is not explained.
+    /// Note ACP-175 (likely): see CC Signal Enable Port.
     pub cc_signal_enable_pin: Coded<enums::GpioPortPin>,
     /// CC Motor Enable Port: bits 1320 to 1323.
     pub cc_motor_enable_port: Coded<enums::GpioPort>,
@@ -220,11 +231,11 @@ pub struct AdcsSystemConfiguration {
     pub cc_motor_enable_pin: Coded<enums::GpioPortPin>,
     /// CC Common Enable Port: bits 1328 to 1331.
     ///
-    /// Note ACP-175 (likely): CC is not explained.
+    /// Note ACP-175 (likely): see CC Signal Enable Port.
     pub cc_common_enable_port: Coded<enums::GpioPort>,
     /// CC Common Enable Pin: bits 1332 to 1335.
     ///
-    /// Note ACP-175 (likely): CC is not explained.
+    /// Note ACP-175 (likely): see CC Signal Enable Port.
     pub cc_common_enable_pin: Coded<enums::GpioPortPin>,
     /// CubeSense1 Enable Port: bits 1336 to 1339.
     pub cubesense1_enable_port: Coded<enums::GpioPort>,

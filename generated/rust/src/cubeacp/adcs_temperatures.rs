@@ -16,22 +16,25 @@ use crate::support::{put, take, Error, Scale};
 pub struct AdcsTemperatures {
     /// MCU Temperature: bits 0 to 15, raw -32768 to 32767, in C.
     ///
-    /// Note ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a degree
+    /// sign. Degrees Celsius are meant.
     ///
-    /// Note ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and hundredths
+    /// stand side by side, in one frame even. That the controllers and rate sensors report whole
+    /// degrees in 16 bits may be a lost factor.
     pub mcu_temperature: i16,
     /// Magnetometer Temperature: bits 16 to 31, raw -32768 to 32767; physical `raw/10.0`, -3276.8
     /// to 3276.7 C.
     ///
-    /// Note ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): see MCU Temperature.
     pub magnetometer_temperature: i16,
     /// Redundant Magnetometer Temperature: bits 32 to 47, raw -32768 to 32767; physical `raw/10.0`,
     /// -3276.8 to 3276.7 C.
     ///
-    /// Note ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): see MCU Temperature.
     ///
     /// Note ACP-086 (certain): ADCS Temperatures: the redundant magnetometer is left out of the
-    /// description.
+    /// description. Magnetometer and MCU are named, the third field is not.
     pub redundant_mag_temperature: i16,
 }
 

@@ -15,17 +15,18 @@ pub struct AngularRateCovariance {
     /// X Angular Rate Covariance: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767.
     ///
-    /// Note ACP-077 (open): Angular rate covariance: unit and sign.
+    /// Note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for the square
+    /// of a rate, and the type is signed.
     pub x_angular_rate_covariance: i16,
     /// Y Angular Rate Covariance: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767.
     ///
-    /// Note ACP-077 (open): Angular rate covariance: unit and sign.
+    /// Note ACP-077 (open): see X Angular Rate Covariance.
     pub y_angular_rate_covariance: i16,
     /// Z Angular Rate Covariance: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767.
     ///
-    /// Note ACP-077 (open): Angular rate covariance: unit and sign.
+    /// Note ACP-077 (open): see X Angular Rate Covariance.
     pub z_angular_rate_covariance: i16,
 }
 

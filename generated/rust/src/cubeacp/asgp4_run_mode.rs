@@ -7,7 +7,8 @@ use crate::support::{Coded, Error};
 
 /// ASGP4 Run Mode: telecommand 31, 1 byte. Table 86.
 ///
-/// Note ACP-046 (certain): Telecommand 31 has the id of the escape byte.
+/// Note ACP-046 (certain): Telecommand 31 has the id of the escape byte. On UART its id is doubled
+/// like data. That follows from the decoding table; the text does not mention the case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -15,7 +16,8 @@ use crate::support::{Coded, Error};
 pub struct Asgp4RunMode {
     /// ASGP4 Mode: bits 0 to 7.
     ///
-    /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode
+    /// with four values; the description has an enabled state.
     pub asgp4_mode: Coded<enums::Asgp4ModeSelect>,
 }
 

@@ -21,63 +21,66 @@ pub struct Asgp4Tles {
     pub asgp4_error: Coded<enums::AsgpError>,
     /// ASGP4 Epoch: bits 8 to 39, 32-bit float.
     ///
-    /// Note ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): ASGP4 elements have no units. The same elements have units as a
+    /// setting. AOP, MA and MM are abbreviations that the manual does not explain.
     ///
-    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order. Elements are
+    /// returned as floats and set as doubles. An epoch of year and day in a float has a step of
+    /// minutes. Order differs too: epoch first against last, mean anomaly before mean motion.
     pub asgp4_epoch: f32,
     /// ASGP4 inclination: bits 40 to 71, 32-bit float.
     ///
-    /// Note ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): see ASGP4 Epoch.
     ///
-    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): see ASGP4 Epoch.
     pub asgp4_inclination: f32,
     /// ASGP4 RAAN: bits 72 to 103, 32-bit float.
     ///
     /// Right ascension of the ascending node.
     ///
-    /// Note ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): see ASGP4 Epoch.
     ///
-    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): see ASGP4 Epoch.
     pub asgp4_raan: f32,
     /// ASGP4 ECC: bits 104 to 135, 32-bit float.
     ///
     /// Eccentricity.
     ///
-    /// Note ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): see ASGP4 Epoch.
     ///
-    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): see ASGP4 Epoch.
     pub asgp4_ecc: f32,
     /// ASGP4 AOP: bits 136 to 167, 32-bit float.
     ///
     /// Argument of perigee.
     ///
-    /// Note ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): see ASGP4 Epoch.
     ///
-    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): see ASGP4 Epoch.
     pub asgp4_aop: f32,
     /// ASGP4 MA: bits 168 to 199, 32-bit float.
     ///
     /// Mean anomaly.
     ///
-    /// Note ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): see ASGP4 Epoch.
     ///
-    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): see ASGP4 Epoch.
     pub asgp4_ma: f32,
     /// ASGP4 MM: bits 200 to 231, 32-bit float.
     ///
     /// Mean motion.
     ///
-    /// Note ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): see ASGP4 Epoch.
     ///
-    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): see ASGP4 Epoch.
     pub asgp4_mm: f32,
     /// ASGP4 Bstar: bits 232 to 263, 32-bit float.
     ///
     /// Drag term.
     ///
-    /// Note ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): see ASGP4 Epoch.
     ///
-    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): see ASGP4 Epoch.
     pub asgp4_bstar: f32,
 }
 

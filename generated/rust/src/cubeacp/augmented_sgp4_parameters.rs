@@ -18,51 +18,55 @@ pub struct AugmentedSgp4Parameters {
     ///
     /// Of the filter of the inclination.
     ///
-    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    /// Note ACP-181 (certain): Augmented SGP4: names are cut short. Incl., Ecc, Aop, Pos, sd, Min.
+    /// and Max. stand in names that are written out in the descriptions.
     ///
-    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients. Factors without
+    /// range; whether coefficients are weights from 0 to 1 is not said.
     pub incl_coefficient: u16,
     /// Raan coefficient: bits 16 to 31, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the RAAN.
     ///
-    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): see Incl. coefficient.
     pub raan_coefficient: u16,
     /// Ecc coefficient: bits 32 to 47, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the eccentricity.
     ///
-    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    /// Note ACP-181 (certain): see Incl. coefficient.
     ///
-    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): see Incl. coefficient.
     pub ecc_coefficient: u16,
     /// Aop coefficient: bits 48 to 63, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the argument of perigee.
     ///
-    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    /// Note ACP-181 (certain): see Incl. coefficient.
     ///
-    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): see Incl. coefficient.
     pub aop_coefficient: u16,
     /// Time coefficient: bits 64 to 79, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the time.
     ///
-    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): see Incl. coefficient.
     pub time_coefficient: u16,
     /// Pos coefficient: bits 80 to 95, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the position.
     ///
-    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    /// Note ACP-181 (certain): see Incl. coefficient.
     ///
-    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): see Incl. coefficient.
     pub pos_coefficient: u16,
     /// Maximum position error: bits 96 to 103, raw 0 to 255; physical `raw*0.1`, 0 to 25.5.
     ///
     /// ASGP4 stops working beyond it.
     ///
-    /// Note ACP-179 (open): Augmented SGP4: limits have no units.
+    /// Note ACP-179 (open): Augmented SGP4: limits have no units. Position, velocity and time
+    /// limits have factors and no units. Maximum position error with 0.1 reaches 25.5 of something;
+    /// km and m are both possible.
     pub maximum_position_error: u8,
     /// ASGP4 filter: bits 104 to 111.
     pub asgp4_filter: Coded<enums::AsgpFilter>,
@@ -71,14 +75,15 @@ pub struct AugmentedSgp4Parameters {
     ///
     /// Polar coefficient.
     ///
-    /// Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
+    /// Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit. Polar motion is
+    /// published in seconds of arc, the factor is 0.0000001. Radians fit the range as well.
     pub xp_coefficient: i32,
     /// yp coefficient: bits 144 to 175, raw -2147483648 to 2147483647; physical `raw*0.0000001`,
     /// -214.7483648 to 214.7483647.
     ///
     /// Polar coefficient.
     ///
-    /// Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
+    /// Note ACP-180 (open): see xp coefficient.
     pub yp_coefficient: i32,
     /// GPS roll over: bits 176 to 183, raw 0 to 255.
     pub gps_roll_over: u8,
@@ -86,35 +91,35 @@ pub struct AugmentedSgp4Parameters {
     ///
     /// Largest standard deviation with which ASGP4 works.
     ///
-    /// Note ACP-179 (open): Augmented SGP4: limits have no units.
+    /// Note ACP-179 (open): see Maximum position error.
     ///
-    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    /// Note ACP-181 (certain): see Incl. coefficient.
     pub position_sd: u8,
     /// Velocity sd: bits 192 to 199, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Largest standard deviation with which ASGP4 works.
     ///
-    /// Note ACP-179 (open): Augmented SGP4: limits have no units.
+    /// Note ACP-179 (open): see Maximum position error.
     pub velocity_sd: u8,
     /// Min. satellites: bits 200 to 207, raw 0 to 255.
     ///
     /// Fewest satellites with which ASGP4 works.
     ///
-    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    /// Note ACP-181 (certain): see Incl. coefficient.
     pub min_satellites: u8,
     /// Time gain: bits 208 to 215, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Of the compensation of the time offset.
     ///
-    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): see Incl. coefficient.
     pub time_gain: u8,
     /// Max. lag: bits 216 to 223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Largest lag of the time stamps that are still used.
     ///
-    /// Note ACP-179 (open): Augmented SGP4: limits have no units.
+    /// Note ACP-179 (open): see Maximum position error.
     ///
-    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    /// Note ACP-181 (certain): see Incl. coefficient.
     pub max_lag: u8,
     /// Min. samples: bits 224 to 239, raw 0 to 65535.
     ///

@@ -8,7 +8,8 @@ use crate::support::Error;
 ///
 /// Clears the latched error flags that are selected.
 ///
-/// Note ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
+/// They are written 0 and ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -16,13 +17,15 @@ use crate::support::Error;
 pub struct ClearErrors {
     /// ADCS Error Flags: bit 0.
     ///
-    /// Note ACP-021 (open): Clear Errors: which flags.
+    /// Note ACP-021 (open): Clear Errors: which flags. The two bits clear ADCS and HK errors. HK is
+    /// not explained, and no frame says to which of the two its flags belong; those of frame 144
+    /// are cleared by this telecommand by the text, by neither bit by the table.
     pub adcs_error_flags: bool,
     /// HK Error Flags: bit 1.
     ///
     /// Housekeeping errors.
     ///
-    /// Note ACP-021 (open): Clear Errors: which flags.
+    /// Note ACP-021 (open): see ADCS Error Flags.
     pub hk_error_flags: bool,
 }
 

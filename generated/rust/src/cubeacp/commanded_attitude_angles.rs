@@ -7,7 +7,8 @@ use crate::support::{put, take, Error, Scale};
 /// Commanded Attitude Angles: configuration, set by telecommand 15, got by telemetry 199, 6 bytes.
 /// Table 186.
 ///
-/// Note ACP-066 (open): Attitude angles: order of rotation and frame.
+/// Note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and yaw need a
+/// sequence and a reference. Neither is given, for estimated or for commanded angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -14,15 +14,17 @@ use crate::support::Error;
 pub struct ConvertToJpgFile {
     /// Source File Counter: bits 0 to 7, raw 0 to 255.
     ///
-    /// Note ACP-052 (open): Convert to JPG: which file.
+    /// Note ACP-052 (open): Convert to JPG: which file. The source is given by a counter without a
+    /// type. Raw and BMP files are named, and the file types have no raw one.
     pub source_file_counter: u8,
     /// Quality Factor: bits 8 to 15, raw 0 to 255.
     ///
-    /// Note ACP-053 (open): Convert to JPG: quality and white balance have no scale.
+    /// Note ACP-053 (open): Convert to JPG: quality and white balance have no scale. Neither range
+    /// nor meaning of the two parameters is given.
     pub quality_factor: u8,
     /// White Balance: bits 16 to 23, raw 0 to 255.
     ///
-    /// Note ACP-053 (open): Convert to JPG: quality and white balance have no scale.
+    /// Note ACP-053 (open): see Quality Factor.
     pub white_balance: u8,
 }
 

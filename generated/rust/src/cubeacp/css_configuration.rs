@@ -56,7 +56,8 @@ pub struct CssConfiguration {
     pub css10_relative_scale: u8,
     /// CSS Threshold: bits 160 to 167, raw 0 to 255.
     ///
-    /// Note ACP-133 (open): CSS threshold has no description.
+    /// Note ACP-133 (open): CSS threshold has no description. The name is repeated; neither unit
+    /// nor what lies below it is said. The message is described as directions and scale factors.
     pub css_threshold: u8,
 }
 

@@ -8,7 +8,9 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// Bit 21 of the log mask.
 ///
-/// Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
+/// Note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to have
+/// 10+6\*(N+1)\*M bytes, and the UART message 11+6\*N. With a frame of 4 bytes in the mask both
+/// hold only if it is filled up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -8,7 +8,8 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// Bit 63 of the log mask.
 ///
-/// Note ACP-075 (open): Quaternions: the fourth component.
+/// Note ACP-075 (open): Quaternions: the fourth component. Three of four components are sent. The
+/// fourth follows up to its sign only, and which component is the scalar is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,19 +19,21 @@ pub struct CubestarEstimatedQuaternion {
     ///
     /// Of the attitude estimated by CubeStar, described as Q1.
     ///
-    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names and
+    /// descriptions count differently. Q1 to Q3 agree with the other quaternions; if Q0 were the
+    /// scalar, the third vector component would be missing.
     pub q0: i16,
     /// Q1: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q2.
     ///
-    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): see Q0.
     pub q1: i16,
     /// Q2: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q3.
     ///
-    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): see Q0.
     pub q2: i16,
 }
 

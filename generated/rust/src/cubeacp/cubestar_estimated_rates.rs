@@ -16,19 +16,20 @@ pub struct CubestarEstimatedRates {
     ///
     /// Estimated by CubeStar, about its own X axis.
     ///
-    /// Note ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given without a
+    /// unit. The other rates are in deg/s; rad/s would fit the range as well.
     pub x_axis_rate: i16,
     /// y-Axis rate: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Estimated by CubeStar, about its own Y axis.
     ///
-    /// Note ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): see x-Axis rate.
     pub y_axis_rate: i16,
     /// z-Axis rate: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Estimated by CubeStar, about its own Z axis.
     ///
-    /// Note ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): see x-Axis rate.
     pub z_axis_rate: i16,
 }
 

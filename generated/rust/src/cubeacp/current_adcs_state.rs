@@ -11,13 +11,18 @@ use crate::support::{flags, Coded, Error, Scale};
 ///
 /// Bit 27 of the log mask.
 ///
-/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
+/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A
+/// telecommand or request sent to the wrong program is taken for another one.
 ///
-/// Note ACP-057 (certain): ACP stands for two things.
+/// Note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS Control
+/// Program, the state frames have Attitude Control Processor.
 ///
-/// Note ACP-059 (certain): Current ADCS State and ADCS State.
+/// Note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called Current ADCS
+/// State, and frame 190, which holds it and much more, ADCS State with the description current ADCS
+/// state.
 ///
-/// Note ACP-064 (open): Which flags are latched.
+/// Note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but the state
+/// frames do not tell latched flags from present states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -31,7 +36,8 @@ pub struct CurrentAdcsState {
     pub adcs_run_mode: Coded<enums::AdcsRunMode>,
     /// ASGP4 Mode: bits 10 to 11.
     ///
-    /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode
+    /// with four values; the description has an enabled state.
     pub asgp4_mode: Coded<enums::Asgp4ModeSelect>,
     /// CubeControl Signal Enabled: bit 12.
     pub cubecontrol_signal_enabled: bool,
@@ -49,21 +55,24 @@ pub struct CurrentAdcsState {
     pub cubewheel3_enabled: bool,
     /// CubeStar Enabled: bit 19.
     ///
-    /// Note ACP-063 (certain): Star tracker has four spellings.
+    /// Note ACP-063 (certain): Star tracker has four spellings. StarTracker Match Error stands
+    /// beside Star Tracker Overcurrent Detected; elsewhere CubeStar and star tracking.
     pub cubestar_enabled: bool,
     /// GPS Receiver Enabled: bit 20.
     ///
-    /// Note ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is reported
+    /// as Motor Driver Enabled, GPS Power switches the antenna amplifier and is reported as GPS LNA
+    /// Power Enabled. GPS Receiver Enabled has no switch.
     pub gps_receiver_enabled: bool,
     /// GPS LNA Power Enabled: bit 21.
     ///
     /// Amplifier of the GPS antenna.
     ///
-    /// Note ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): see GPS Receiver Enabled.
     pub gps_lna_power_enabled: bool,
     /// Motor Driver Enabled: bit 22.
     ///
-    /// Note ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): see GPS Receiver Enabled.
     pub motor_driver_enabled: bool,
     /// Sun is Above Local Horizon: bit 23.
     ///
@@ -89,7 +98,8 @@ pub struct CurrentAdcsState {
     ///
     /// About a measured field of 65 uT. Whether above or below is not printed.
     ///
-    /// Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
+    /// Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is set when
+    /// the field has a size 65 uT. Above is likely, since the field of the earth hardly reaches it.
     pub magnetometer_range_error: bool,
     /// Cam1 SRAM Overcurrent Detected: bit 33.
     pub cam1_sram_overcurrent_detected: bool,
@@ -107,7 +117,9 @@ pub struct CurrentAdcsState {
     ///
     /// A detected sun angle was beyond +/-90 deg.
     ///
-    /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag each is
+    /// for the sun and the nadir sensor; the cameras are numbered, and which of them is which is a
+    /// setting. With two sun sensors one flag serves both.
     pub sun_sensor_range_error: bool,
     /// Cam2 SRAM Overcurrent Detected: bit 38.
     pub cam2_sram_overcurrent_detected: bool,
@@ -125,7 +137,7 @@ pub struct CurrentAdcsState {
     ///
     /// A detected nadir angle was beyond +/-60 deg.
     ///
-    /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    /// Note ACP-061 (open): see Sun Sensor Range Error.
     pub nadir_sensor_range_error: bool,
     /// Rate Sensor Range Error: bit 43.
     ///
@@ -143,11 +155,11 @@ pub struct CurrentAdcsState {
     ///
     /// Too few stars were matched.
     ///
-    /// Note ACP-063 (certain): Star tracker has four spellings.
+    /// Note ACP-063 (certain): see CubeStar Enabled.
     pub star_tracker_match_error: bool,
     /// Star Tracker Overcurrent Detected: bit 47.
     ///
-    /// Note ACP-063 (certain): Star tracker has four spellings.
+    /// Note ACP-063 (certain): see CubeStar Enabled.
     pub star_tracker_overcurrent_detected: bool,
 }
 

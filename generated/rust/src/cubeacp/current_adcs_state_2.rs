@@ -11,11 +11,14 @@ use crate::support::{flags, Coded, Error, Scale};
 ///
 /// Bit 61 of the log mask.
 ///
-/// Erratum ACP-120 (open): Current ADCS State 2: 6 bytes announced, 18 bits described.
+/// Erratum ACP-120 (open): Current ADCS State 2: 6 bytes announced, 18 bits described. More than
+/// half of the frame is not explained. It is held as reserved, here and where frame 190 repeats it.
 ///
-/// Note ACP-057 (certain): ACP stands for two things.
+/// Note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS Control
+/// Program, the state frames have Attitude Control Processor.
 ///
-/// Note ACP-064 (open): Which flags are latched.
+/// Note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but the state
+/// frames do not tell latched flags from present states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -25,14 +28,16 @@ pub struct CurrentAdcsState2 {
     ///
     /// A parameter is out of bounds, or the SGP4 propagator could not start from them.
     ///
-    /// Note ACP-104 (open): Orbit parameter flag has two reasons.
+    /// Note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds, or a
+    /// propagator that failed to start, are told as two sentences for one bit.
     pub orbit_parameters_are_invalid: bool,
     /// Configuration is Invalid: bit 1.
     ///
     /// Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at least one
     /// CSS.
     ///
-    /// Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
+    /// Note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames differ by
+    /// a letter in the description, and principle stands for principal twice in each.
     pub configuration_is_invalid: bool,
     /// Control Mode Change is not allowed: bit 2.
     ///

@@ -8,7 +8,8 @@ use crate::support::Error;
 ///
 /// Dangerous: The boom stays deployed.
 ///
-/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
+/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A
+/// telecommand or request sent to the wrong program is taken for another one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,7 +19,9 @@ pub struct DeployMagnetometerBoom {
     ///
     /// Of the deployment actuation.
     ///
-    /// Note ACP-016 (open): Deployment timeout: range and default.
+    /// Note ACP-016 (open): Deployment timeout: range and default. The field has 8 bits of seconds;
+    /// whether 0 means none, for ever or a default is not said. The telecommand has no magic
+    /// number, unlike a reset.
     pub timeout: u8,
 }
 

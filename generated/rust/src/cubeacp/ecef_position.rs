@@ -14,21 +14,25 @@ use crate::support::{put, take, Error};
 pub struct EcefPosition {
     /// ECEF Position X: bits 0 to 15, raw -32768 to 32767.
     ///
-    /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres. In metres the field reaches
+    /// 32.767 km, a position some 7000 km. A factor is missing; 0.25 km as in the inertial position
+    /// is one possibility, km another. No unit is held, so nothing is converted.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16
+    /// bits in the state frames and 32 bits in the GPS frames and the simulated data, with the same
+    /// name, description and unit.
     pub ecef_position_x: i16,
     /// ECEF Position Y: bits 16 to 31, raw -32768 to 32767.
     ///
-    /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    /// Erratum ACP-098 (likely): see ECEF Position X.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): see ECEF Position X.
     pub ecef_position_y: i16,
     /// ECEF Position Z: bits 32 to 47, raw -32768 to 32767.
     ///
-    /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    /// Erratum ACP-098 (likely): see ECEF Position X.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): see ECEF Position X.
     pub ecef_position_z: i16,
 }
 

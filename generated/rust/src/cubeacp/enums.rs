@@ -14,7 +14,8 @@ pub enum AdcsRunMode {
     ///
     /// The loop does not run.
     ///
-    /// Note ACP-019 (certain): Disabled is Off.
+    /// Note ACP-019 (certain): Disabled is Off. The text says what happens when the ADCS is
+    /// disabled; no member has that name.
     #[default]
     Off,
     /// Enabled (1).
@@ -27,7 +28,10 @@ pub enum AdcsRunMode {
     Triggered,
     /// Simulation (3).
     ///
-    /// Note ACP-032 (open): Simulated data are accepted while triggered, not while simulating.
+    /// Note ACP-032 (open): Simulated data are accepted while triggered, not while simulating. The
+    /// telecommand with simulated measurements is valid only in mode Triggered, and there is a mode
+    /// Simulation that no other text mentions. The sentence was probably taken over from the
+    /// telecommand before it.
     Simulation,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -91,7 +95,9 @@ impl From<AdcsRunMode> for u8 {
 
 /// ConModeSelect: an enumeration. Table 78.
 ///
-/// Note ACP-024 (open): Control modes that are named and not listed.
+/// Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control
+/// mode has a reference vector, and GEO tracking, inertial and two sun pointing modes are special
+/// selections. The list of control modes has none of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -99,74 +105,83 @@ impl From<AdcsRunMode> for u8 {
 pub enum ConModeSelect {
     /// No control (0).
     ///
-    /// Note ACP-023 (certain): Control mode None does not exist.
+    /// Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the
+    /// mode falls back, when the control mode is None. The member with value 0 is called No
+    /// control.
     #[default]
     NoControl,
     /// Detumbling control (1).
     DetumblingControl,
     /// Y-Thomson spin (2).
     ///
-    /// Note ACP-028 (certain): Y-Thomson is a spin or a mode.
+    /// Note ACP-028 (certain): Y-Thomson is a spin or a mode. The mode is called Y-Thomson spin in
+    /// the list, Y-Thomson mode and steady-state Y-Thomson elsewhere; and Y-momentum mode is one of
+    /// the two Y-Wheel modes.
     YThomsonSpin,
     /// Y-Wheel momentum stabilized - Initial Pitch Acquisition (3).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): Wheel control modes are written in five ways. Y-Wheel, XYZ-Wheel,
+    /// Rwheel, R-wheels and wheel stand side by side, capital and small; elsewhere RWheel and RW.
     YWheelInitialPitchAcquisition,
     /// Y-Wheel momentum stabilized - Steady State (4).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     YWheelSteadyState,
     /// XYZ-Wheel control (5).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     XyzWheelControl,
     /// Rwheel sun tracking control (6).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     RwheelSunTrackingControl,
     /// Rwheel target tracking control (7).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     RwheelTargetTrackingControl,
     /// Very Fast-spin Detumbling control (8).
     ///
     /// At 10 Hz, within CubeControl.
     ///
-    /// Note ACP-026 (certain): Control modes 8 and 9 have other names in their descriptions.
+    /// Note ACP-026 (certain): Control modes 8 and 9 have other names in their descriptions. Very
+    /// Fast-spin Detumbling is described as 10 Hz detumbling within CubeControl, Fast-spin as fast.
+    /// The loop itself runs at 1 Hz.
     VeryFastSpinDetumblingControl,
     /// Fast-spin Detumbling control (9).
     ///
-    /// Note ACP-026 (certain): Control modes 8 and 9 have other names in their descriptions.
+    /// Note ACP-026 (certain): see Very Fast-spin Detumbling control.
     FastSpinDetumblingControl,
     /// User Specific Control Mode 1 (10).
     ///
     /// User-defined or custom.
     ///
-    /// Note ACP-025 (open): Control modes: specific, defined, custom and coded.
+    /// Note ACP-025 (open): Control modes: specific, defined, custom and coded. Two modes are User
+    /// Specific and described as user defined or custom, a third is User Coded. Which of them use
+    /// the user coded settings is open.
     UserSpecificControlMode1,
     /// User Specific Control Mode 2 (11).
     ///
     /// User-defined or custom.
     ///
-    /// Note ACP-025 (open): Control modes: specific, defined, custom and coded.
+    /// Note ACP-025 (open): see User Specific Control Mode 1.
     UserSpecificControlMode2,
     /// Stop R-wheels (12).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     StopRWheels,
     /// User Coded Control Mode (13).
     ///
-    /// Note ACP-025 (open): Control modes: specific, defined, custom and coded.
+    /// Note ACP-025 (open): see User Specific Control Mode 1.
     UserCodedControlMode,
     /// Sun-tracking yaw- or roll-only wheel control mode (14).
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     SunTrackingYawOrRollOnly,
     /// Target-tracking yaw-only wheel control Mode (15).
     ///
     /// Turns the selected facet towards a ground target.
     ///
-    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     TargetTrackingYawOnly,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -277,11 +292,13 @@ pub enum EstimModeSelect {
     NoAttitudeEstimation,
     /// MEMS rate sensing (1).
     ///
-    /// Note ACP-029 (certain): Estimation modes have other names in settings.
+    /// Note ACP-029 (certain): Estimation modes have other names in settings. MEMS rate estimation
+    /// mode and RKF appear in the description of a flag; the list has MEMS rate sensing and
+    /// Magnetometer rate filter.
     MemsRateSensing,
     /// Magnetometer rate filter (2).
     ///
-    /// Note ACP-029 (certain): Estimation modes have other names in settings.
+    /// Note ACP-029 (certain): see MEMS rate sensing.
     MagnetometerRateFilter,
     /// Magnetometer rate filter with pitch estimation (3).
     MagnetometerRateFilterWithPitch,
@@ -369,7 +386,9 @@ impl From<EstimModeSelect> for u8 {
 
 /// GpsSolutionStatus: an enumeration. Table 85.
 ///
-/// Note ACP-045 (open): One GPS status for different receivers.
+/// Note ACP-045 (open): One GPS status for different receivers. The enumeration is used whatever
+/// receiver is fitted; three types are listed, among them none. Whether the values are those of the
+/// receiver or of the control program is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -486,7 +505,8 @@ impl From<GpsSolutionStatus> for u8 {
 
 /// Asgp4ModeSelect: an enumeration. Table 87.
 ///
-/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
+/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
+/// module are spelt in four ways.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -571,9 +591,12 @@ impl From<Asgp4ModeSelect> for u8 {
 ///
 /// MTM is the magnetometer, Signal and Motor are the microcontrollers that sample it.
 ///
-/// Note ACP-050 (open): MagModeVal: one combination is missing, and None is not explained.
+/// Note ACP-050 (open): MagModeVal: one combination is missing, and None is not explained. The
+/// redundant magnetometer cannot be sampled through the motor controller, the main one can. What
+/// None does to estimation and control is not said.
 ///
-/// Note ACP-051 (certain): Magnetometers have four names for two.
+/// Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for
+/// one; redundant, secondary and 2nd for the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -588,7 +611,7 @@ pub enum MagModeVal {
     MainMtmSampledThroughMotor,
     /// None (3).
     ///
-    /// Note ACP-050 (open): MagModeVal: one combination is missing, and None is not explained.
+    /// Note ACP-050 (open): see MagModeVal.
     None,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -652,7 +675,9 @@ impl From<MagModeVal> for u8 {
 
 /// CamSelect: an enumeration. Table 95.
 ///
-/// Note ACP-056 (likely): Cameras: Cam, CubeSense, and star.
+/// Note ACP-056 (likely): Cameras: Cam, CubeSense, and star. Cam1 and Cam2 appear beside CubeSense1
+/// and CubeSense2, once as Cam 1; the third camera is Star, CubeStar or star tracker. That CamN is
+/// the camera of CubeSenseN is only likely.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1083,7 +1108,8 @@ impl From<DetectResult> for u8 {
 
 /// StarIDModeVal: an enumeration. Table 147.
 ///
-/// Note ACP-097 (open): StarIDModeVal is not described.
+/// Note ACP-097 (open): StarIDModeVal is not described. The members of the identification mode have
+/// no descriptions; Lost Mode may be the lost-in-space search or a lost track.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1179,7 +1205,9 @@ pub enum ExecutionWaypoints {
     Logging,
     /// Log File Compression (10).
     ///
-    /// Note ACP-119 (open): Loop waypoints: logs are compressed.
+    /// Note ACP-119 (open): Loop waypoints: logs are compressed. The loop has a step that
+    /// compresses the log file, while the log format is described without compression and its size
+    /// by a plain formula.
     LogFileCompression,
     /// Saving Log to SD Card (11).
     SavingLogToSdCard,
@@ -1274,7 +1302,8 @@ impl From<ExecutionWaypoints> for u8 {
 
 /// AsgpError: an enumeration. Table 171.
 ///
-/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
+/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
+/// module are spelt in four ways.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1284,7 +1313,8 @@ pub enum AsgpError {
     ///
     /// No error.
     ///
-    /// Note ACP-123 (certain): AsgpError: no error is called Off.
+    /// Note ACP-123 (certain): AsgpError: no error is called Off. The member for no error has the
+    /// name of the inactive mode.
     #[default]
     Off,
     /// Unix Time (1).
@@ -1460,7 +1490,9 @@ pub enum AxisSelect {
     NegativeZ,
     /// Not Used (6).
     ///
-    /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
+    /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration serves
+    /// actuators, sensors and facets. A facet that points to the sun or to a target as Not Used is
+    /// allowed by its table and not explained.
     NotUsed,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -1544,7 +1576,8 @@ pub enum PowerSelect {
     On,
     /// Power state kept the same (2).
     ///
-    /// Note ACP-137 (open): Power state kept the same, when read.
+    /// Note ACP-137 (open): Power state kept the same, when read. The value is a request not to
+    /// change. What a unit left alone reads as, and what the unassigned value 3 does, is not said.
     PowerStateKeptTheSame,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -1605,7 +1638,8 @@ impl From<PowerSelect> for u8 {
 
 /// AsgpFilter: an enumeration. Table 193.
 ///
-/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
+/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
+/// module are spelt in four ways.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1739,7 +1773,9 @@ impl From<AcpProgramType> for u8 {
 
 /// SpecialConSelect: an enumeration. Table 203.
 ///
-/// Note ACP-024 (open): Control modes that are named and not listed.
+/// Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control
+/// mode has a reference vector, and GEO tracking, inertial and two sun pointing modes are special
+/// selections. The list of control modes has none of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1750,17 +1786,21 @@ pub enum SpecialConSelect {
     None,
     /// Z-axis Sun pointing (1).
     ///
-    /// Note ACP-177 (open): Sun-pointing facet and special control selection.
+    /// Note ACP-177 (open): Sun-pointing facet and special control selection. Facets can be chosen
+    /// by a setting, and sun pointing with Z or Y by the system configuration. Which one counts is
+    /// not said.
     ZAxisSunPointing,
     /// GEO Tracking (2).
     ///
-    /// Note ACP-176 (open): Satellite position: range against GEO tracking.
+    /// Note ACP-176 (open): Satellite position: range against GEO tracking. Neither position frame
+    /// can hold a geostationary orbit, while a GEO tracking control exists. It may mean a target on
+    /// the ground.
     GeoTracking,
     /// Inertial pointing (3).
     InertialPointing,
     /// Y-axis Sun pointing (4).
     ///
-    /// Note ACP-177 (open): Sun-pointing facet and special control selection.
+    /// Note ACP-177 (open): see Z-axis Sun pointing.
     YAxisSunPointing,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -2193,7 +2233,8 @@ pub enum SdLogSelect {
     PrimarySdCard,
     /// Secondary SD Card (1).
     ///
-    /// Note ACP-187 (open): A secondary SD card.
+    /// Note ACP-187 (open): A secondary SD card. Logs can go to a second card. Download, erase,
+    /// format and the error flags know one card and do not say which.
     SecondarySdCard,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),

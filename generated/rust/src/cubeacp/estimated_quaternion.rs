@@ -8,7 +8,8 @@ use crate::support::{put, take, Error};
 ///
 /// Bit 29 of the log mask.
 ///
-/// Note ACP-075 (open): Quaternions: the fourth component.
+/// Note ACP-075 (open): Quaternions: the fourth component. Three of four components are sent. The
+/// fourth follows up to its sign only, and which component is the scalar is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -16,15 +17,17 @@ use crate::support::{put, take, Error};
 pub struct EstimatedQuaternion {
     /// Estimated q1: bits 0 to 15, raw -32768 to 32767.
     ///
-    /// Note ACP-100 (open): Estimated quaternion has no formula.
+    /// Note ACP-100 (open): Estimated quaternion has no formula. Components of a unit quaternion in
+    /// 16 bits need a factor; all other quaternions have one of 1/10000. It is likely here too, but
+    /// not printed, so the raw value is all that is offered.
     pub estimated_q1: i16,
     /// Estimated q2: bits 16 to 31, raw -32768 to 32767.
     ///
-    /// Note ACP-100 (open): Estimated quaternion has no formula.
+    /// Note ACP-100 (open): see Estimated q1.
     pub estimated_q2: i16,
     /// Estimated q3: bits 32 to 47, raw -32768 to 32767.
     ///
-    /// Note ACP-100 (open): Estimated quaternion has no formula.
+    /// Note ACP-100 (open): see Estimated q1.
     pub estimated_q3: i16,
 }
 

@@ -47,17 +47,18 @@ pub struct EstimationData {
     /// Innovation Vector X: bits 144 to 159, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
     /// 3.2767.
     ///
-    /// Note ACP-074 (open): Innovation has no unit.
+    /// Note ACP-074 (open): Innovation has no unit. What the innovation vector is a difference of,
+    /// and hence its unit, is not said.
     pub innovation_vector_x: i16,
     /// Innovation Vector Y: bits 160 to 175, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
     /// 3.2767.
     ///
-    /// Note ACP-074 (open): Innovation has no unit.
+    /// Note ACP-074 (open): see Innovation Vector X.
     pub innovation_vector_y: i16,
     /// Innovation Vector Z: bits 176 to 191, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
     /// 3.2767.
     ///
-    /// Note ACP-074 (open): Innovation has no unit.
+    /// Note ACP-074 (open): see Innovation Vector X.
     pub innovation_vector_z: i16,
     /// Quaternion Error - Q1: bits 192 to 207, raw -32768 to 32767; physical `raw*0.0001`, -3.2768
     /// to 3.2767.
@@ -71,32 +72,35 @@ pub struct EstimationData {
     /// Quaternion Covariance - Q1 RMS: bits 240 to 255, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign. The field is a covariance by
+    /// its frame, an RMS by its name and signed by its type. Neither quantity, on the diagonal, is
+    /// negative.
     pub quaternion_covariance_q1_rms: i16,
     /// Quaternion Covariance - Q2 RMS: bits 256 to 271, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    /// Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
     pub quaternion_covariance_q2_rms: i16,
     /// Quaternion Covariance - Q3 RMS: bits 272 to 287, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    /// Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
     pub quaternion_covariance_q3_rms: i16,
     /// X Angular Rate Covariance: bits 288 to 303, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Note ACP-077 (open): Angular rate covariance: unit and sign.
+    /// Note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for the square
+    /// of a rate, and the type is signed.
     pub x_angular_rate_covariance: i16,
     /// Y Angular Rate Covariance: bits 304 to 319, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Note ACP-077 (open): Angular rate covariance: unit and sign.
+    /// Note ACP-077 (open): see X Angular Rate Covariance.
     pub y_angular_rate_covariance: i16,
     /// Z Angular Rate Covariance: bits 320 to 335, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Note ACP-077 (open): Angular rate covariance: unit and sign.
+    /// Note ACP-077 (open): see X Angular Rate Covariance.
     pub z_angular_rate_covariance: i16,
 }
 

@@ -15,17 +15,18 @@ pub struct EstimationInnovationVector {
     /// Innovation Vector X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
     /// 3.2767.
     ///
-    /// Note ACP-074 (open): Innovation has no unit.
+    /// Note ACP-074 (open): Innovation has no unit. What the innovation vector is a difference of,
+    /// and hence its unit, is not said.
     pub innovation_vector_x: i16,
     /// Innovation Vector Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
     /// 3.2767.
     ///
-    /// Note ACP-074 (open): Innovation has no unit.
+    /// Note ACP-074 (open): see Innovation Vector X.
     pub innovation_vector_y: i16,
     /// Innovation Vector Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
     /// 3.2767.
     ///
-    /// Note ACP-074 (open): Innovation has no unit.
+    /// Note ACP-074 (open): see Innovation Vector X.
     pub innovation_vector_z: i16,
 }
 

@@ -10,9 +10,12 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 ///
 /// Noise covariances, and which sensors the estimator uses.
 ///
-/// Note ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
+/// They are written 0 and ignored.
 ///
-/// Note ACP-167 (certain): Estimation Parameters: more than its description.
+/// Note ACP-167 (certain): Estimation Parameters: more than its description. Noise covariance and
+/// sensor mask are promised; magnetometer modes, recovery and sampling periods are in the message
+/// as well.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,31 +23,32 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 pub struct EstimationParameters {
     /// Magnetometer Rate Filter System Noise: bits 0 to 31, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit. The message calls them
+    /// covariances, the fields noise. Units are missing.
     pub magnetometer_rate_filter_system_noise: f32,
     /// EKF System Noise: bits 32 to 63, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     pub ekf_system_noise: f32,
     /// CSS Measurement Noise: bits 64 to 95, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     pub css_measurement_noise: f32,
     /// Sun Sensor Measurement Noise: bits 96 to 127, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     pub sun_sensor_measurement_noise: f32,
     /// Nadir Sensor Measurement Noise: bits 128 to 159, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     pub nadir_sensor_measurement_noise: f32,
     /// Magnetometer Measurement Noise: bits 160 to 191, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     pub magnetometer_measurement_noise: f32,
     /// Star Tracker Measurement Noise: bits 192 to 223, 32-bit float.
     ///
-    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     pub star_tracker_measurement_noise: f32,
     /// Use Sun Sensor: bit 224.
     ///
@@ -74,13 +78,17 @@ pub struct EstimationParameters {
     ///
     /// The magnetometer that estimation and control use.
     ///
-    /// Note ACP-049 (open): Magnetometer mode can be set in two places.
+    /// Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a
+    /// configuration message set the same mode. Which wins after a restart, and whether the
+    /// telecommand changes what the configuration returns, is not said.
     pub magnetometer_mode: Coded<enums::MagModeVal>,
     /// Magnetometer Selection for RAW MTM TLM: bits 232 to 233.
     ///
     /// Magnetometer and sampling path for the second raw magnetometer frame.
     ///
-    /// Note ACP-118 (likely): Secondary magnetometer: fixed or selected.
+    /// Note ACP-118 (likely): Secondary magnetometer: fixed or selected. The frame is named for the
+    /// secondary magnetometer, with the field names of the primary one. A setting selects which
+    /// magnetometer, sampled how, it shows.
     pub raw_magnetometer_selection: Coded<enums::MagModeVal>,
     /// Automatic Estimation Transition due to Rate Sensor Errors: bit 234.
     ///
@@ -91,14 +99,16 @@ pub struct EstimationParameters {
     /// Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
     /// camera.
     ///
-    /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit. Two periods of
+    /// four bits share a byte that has the unit s. The value of the byte is no time; each half is,
+    /// up to 15 s, and is held as a field of its own.
     pub cam1_period: u8,
     /// Cam2 period: bits 244 to 247, raw 0 to 15, in s.
     ///
     /// Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
     /// camera.
     ///
-    /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    /// Erratum ACP-169 (certain): see Cam1 period.
     pub cam2_period: u8,
 }
 

@@ -17,23 +17,26 @@ pub struct FineAngularRates {
     /// Estimated X Angular Rate: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767 deg/s.
     ///
-    /// Note ACP-109 (certain): Fine and normal rates have the same field names.
+    /// Note ACP-109 (certain): Fine and normal rates have the same field names. Estimated X Angular
+    /// Rate has a factor of 0.01 in one frame and of 0.001 in another. A value copied by its name
+    /// is wrong by ten.
     ///
-    /// Note ACP-110 (open): Fine rates end at 32 deg/s.
+    /// Note ACP-110 (open): Fine rates end at 32 deg/s. The range is +/-32.767 deg/s; whether
+    /// faster rates saturate or wrap is not said. The rate error flag starts at 20 deg/s.
     pub estimated_x_angular_rate: i16,
     /// Estimated Y Angular Rate: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767 deg/s.
     ///
-    /// Note ACP-109 (certain): Fine and normal rates have the same field names.
+    /// Note ACP-109 (certain): see Estimated X Angular Rate.
     ///
-    /// Note ACP-110 (open): Fine rates end at 32 deg/s.
+    /// Note ACP-110 (open): see Estimated X Angular Rate.
     pub estimated_y_angular_rate: i16,
     /// Estimated Z Angular Rate: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767 deg/s.
     ///
-    /// Note ACP-109 (certain): Fine and normal rates have the same field names.
+    /// Note ACP-109 (certain): see Estimated X Angular Rate.
     ///
-    /// Note ACP-110 (open): Fine rates end at 32 deg/s.
+    /// Note ACP-110 (open): see Estimated X Angular Rate.
     pub estimated_z_angular_rate: i16,
 }
 

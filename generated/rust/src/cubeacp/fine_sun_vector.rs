@@ -10,7 +10,9 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// Bit 11 of the log mask.
 ///
-/// Note ACP-069 (open): Reference frames of measured vectors are not named.
+/// Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled vectors are in
+/// the orbit frame, estimated rates relative to it. Of the measured field, sun, nadir and rate
+/// vectors nothing is said; SBC for the body frame is in the list of acronyms and used nowhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,7 +9,9 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// Unit vector for the inertial pointing mode.
 ///
-/// Note ACP-024 (open): Control modes that are named and not listed.
+/// Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control
+/// mode has a reference vector, and GEO tracking, inertial and two sun pointing modes are special
+/// selections. The list of control modes has none of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,17 +20,19 @@ pub struct InertialPointingReferenceVector {
     /// Inertial Reference X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
-    /// Note ACP-188 (open): Inertial reference: unit vector without a frame.
+    /// Note ACP-188 (open): Inertial reference: unit vector without a frame. The vector is for an
+    /// inertial pointing mode; which inertial frame, and which body axis points along it, is not
+    /// said.
     pub reference_x: i16,
     /// Inertial Reference Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
-    /// Note ACP-188 (open): Inertial reference: unit vector without a frame.
+    /// Note ACP-188 (open): see Inertial Reference X.
     pub reference_y: i16,
     /// Inertial Reference Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
-    /// Note ACP-188 (open): Inertial reference: unit vector without a frame.
+    /// Note ACP-188 (open): see Inertial Reference X.
     pub reference_z: i16,
 }
 

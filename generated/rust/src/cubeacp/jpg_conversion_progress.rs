@@ -13,7 +13,8 @@ use crate::support::{Coded, Error};
 pub struct JpgConversionProgress {
     /// Progress Percentage: bits 0 to 7, raw 0 to 255, in %.
     ///
-    /// Erratum ACP-065 (certain): JPG progress has its unit in words only.
+    /// Erratum ACP-065 (certain): JPG progress has its unit in words only. Name and description are
+    /// of a percentage; the unit of measure is missing, which the frame for images has.
     pub progress_percentage: u8,
     /// Conversion Result: bits 8 to 15.
     pub conversion_result: Coded<enums::JpgConvertResult>,

@@ -17,24 +17,27 @@ pub struct MagnetorquerCommand {
     /// On-time.
     ///
     /// Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
+    /// The telecommand takes thousandths of a duty cycle, the frames give an on-time in units of 10
+    /// ms. The conversion depends on the loop period and on a resolution that is a setting.
     ///
-    /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    /// Note ACP-071 (likely): 10ms units is a factor, not a unit. The unit holds the scale that a
+    /// formula should. It is kept as a unit of counts; nothing is converted.
     pub x_magnetorquer_command: i16,
     /// Y Magnetorquer Command: bits 16 to 31, raw -32768 to 32767, in 10ms units.
     ///
     /// On-time.
     ///
-    /// Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
+    /// Note ACP-070 (open): see X Magnetorquer Command.
     ///
-    /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    /// Note ACP-071 (likely): see X Magnetorquer Command.
     pub y_magnetorquer_command: i16,
     /// Z Magnetorquer Command: bits 32 to 47, raw -32768 to 32767, in 10ms units.
     ///
     /// On-time.
     ///
-    /// Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
+    /// Note ACP-070 (open): see X Magnetorquer Command.
     ///
-    /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    /// Note ACP-071 (likely): see X Magnetorquer Command.
     pub z_magnetorquer_command: i16,
 }
 

@@ -21,15 +21,17 @@ pub struct MomentOfInertiaMatrix {
     pub moment_of_inertia_izz: f32,
     /// Product Of Inertia - Ixy: bits 96 to 127, 32-bit float, in kg.m^2.
     ///
-    /// Note ACP-201 (open): Products of inertia: the sign is not given.
+    /// Note ACP-201 (open): Products of inertia: the sign is not given. The products are elements
+    /// of a matrix by the message and products of inertia by their names, which differ in sign by
+    /// the usual definitions. Neither is defined.
     pub product_of_inertia_ixy: f32,
     /// Product Of Inertia - Ixz: bits 128 to 159, 32-bit float, in kg.m^2.
     ///
-    /// Note ACP-201 (open): Products of inertia: the sign is not given.
+    /// Note ACP-201 (open): see Product Of Inertia - Ixy.
     pub product_of_inertia_ixz: f32,
     /// Product Of Inertia - Iyz: bits 160 to 191, 32-bit float, in kg.m^2.
     ///
-    /// Note ACP-201 (open): Products of inertia: the sign is not given.
+    /// Note ACP-201 (open): see Product Of Inertia - Ixy.
     pub product_of_inertia_iyz: f32,
 }
 

@@ -36,66 +36,73 @@ pub struct PowerAndTemperature {
     pub cubecontrol_vbat_current: u16,
     /// Wheel1Current: bits 112 to 127, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Note ACP-083 (open): Wheel currents: by number, described by axis.
+    /// Note ACP-083 (open): Wheel currents: by number, described by axis. The frame is described as
+    /// XYZ wheel currents, its fields are numbered, and names run together although their
+    /// descriptions do not.
     ///
-    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of 0.01 mA
+    /// sixteen bits reach 655.35 mA, which a wheel motor may well exceed. All other currents have
+    /// steps of 0.1 mA and more. The factor is held as printed.
     pub wheel1_current: u16,
     /// Wheel2Current: bits 128 to 143, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Note ACP-083 (open): Wheel currents: by number, described by axis.
+    /// Note ACP-083 (open): see Wheel1Current.
     ///
-    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): see Wheel1Current.
     pub wheel2_current: u16,
     /// Wheel3Current: bits 144 to 159, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Note ACP-083 (open): Wheel currents: by number, described by axis.
+    /// Note ACP-083 (open): see Wheel1Current.
     ///
-    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): see Wheel1Current.
     pub wheel3_current: u16,
     /// CubeStarCurrent: bits 160 to 175, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): see Wheel1Current.
     pub cubestar_current: u16,
     /// Magnetorquer Current: bits 176 to 191, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
     pub magnetorquer_current: u16,
     /// CubeStar MCU temperature: bits 192 to 207, raw -32768 to 32767; physical `raw/100.0`,
     /// -327.68 to 327.67 C.
     ///
-    /// Note ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a degree
+    /// sign. Degrees Celsius are meant.
     pub cubestar_mcu_temperature: i16,
     /// MCU Temperature: bits 208 to 223, raw -32768 to 32767, in C.
     ///
-    /// Note ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): see CubeStar MCU temperature.
     ///
-    /// Note ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and hundredths
+    /// stand side by side, in one frame even. That the controllers and rate sensors report whole
+    /// degrees in 16 bits may be a lost factor.
     pub mcu_temperature: i16,
     /// Magnetometer Temperature: bits 224 to 239, raw -32768 to 32767; physical `raw/10.0`, -3276.8
     /// to 3276.7 C.
     ///
-    /// Note ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): see CubeStar MCU temperature.
     pub magnetometer_temperature: i16,
     /// Redundant Magnetometer Temperature: bits 240 to 255, raw -32768 to 32767; physical
     /// `raw/10.0`, -3276.8 to 3276.7 C.
     ///
-    /// Note ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): see CubeStar MCU temperature.
     pub redundant_mag_temperature: i16,
     /// X-Rate Sensor Temperature: bits 256 to 271, raw -32768 to 32767, in C.
     ///
-    /// Note ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): see CubeStar MCU temperature.
     ///
-    /// Note ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): see MCU Temperature.
     pub x_rate_sensor_temperature: i16,
     /// Y-Rate Sensor Temperature: bits 272 to 287, raw -32768 to 32767, in C.
     ///
-    /// Note ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): see CubeStar MCU temperature.
     ///
-    /// Note ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): see MCU Temperature.
     pub y_rate_sensor_temperature: i16,
     /// Z-Rate Sensor Temperature: bits 288 to 303, raw -32768 to 32767, in C.
     ///
-    /// Note ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): see CubeStar MCU temperature.
     ///
-    /// Note ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): see MCU Temperature.
     pub z_rate_sensor_temperature: i16,
 }
 

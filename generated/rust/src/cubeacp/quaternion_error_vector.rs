@@ -8,7 +8,8 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// Bit 39 of the log mask.
 ///
-/// Note ACP-075 (open): Quaternions: the fourth component.
+/// Note ACP-075 (open): Quaternions: the fourth component. Three of four components are sent. The
+/// fourth follows up to its sign only, and which component is the scalar is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

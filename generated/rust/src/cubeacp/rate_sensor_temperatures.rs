@@ -14,21 +14,24 @@ use crate::support::{put, take, Error};
 pub struct RateSensorTemperatures {
     /// X-Rate Sensor Temperature: bits 0 to 15, raw -32768 to 32767, in C.
     ///
-    /// Note ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a degree
+    /// sign. Degrees Celsius are meant.
     ///
-    /// Note ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and hundredths
+    /// stand side by side, in one frame even. That the controllers and rate sensors report whole
+    /// degrees in 16 bits may be a lost factor.
     pub x_rate_sensor_temperature: i16,
     /// Y-Rate Sensor Temperature: bits 16 to 31, raw -32768 to 32767, in C.
     ///
-    /// Note ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): see X-Rate Sensor Temperature.
     ///
-    /// Note ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): see X-Rate Sensor Temperature.
     pub y_rate_sensor_temperature: i16,
     /// Z-Rate Sensor Temperature: bits 32 to 47, raw -32768 to 32767, in C.
     ///
-    /// Note ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): see X-Rate Sensor Temperature.
     ///
-    /// Note ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): see X-Rate Sensor Temperature.
     pub z_rate_sensor_temperature: i16,
 }
 

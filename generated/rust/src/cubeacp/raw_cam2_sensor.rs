@@ -11,7 +11,8 @@ use crate::support::{put, take, Coded, Error};
 ///
 /// Bit 47 of the log mask.
 ///
-/// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+/// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The telecommand
+/// begins with Cam1. Frame 194 and the ids 166 and 167 have Cam2 before Cam1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -21,13 +22,14 @@ pub struct RawCam2Sensor {
     ///
     /// Azimuth angle.
     ///
-    /// Note ACP-078 (open): Camera results: centroid or angle.
+    /// Note ACP-078 (open): Camera results: centroid or angle. The names say centroid X and Y, the
+    /// descriptions azimuth and elevation angle. Neither pixel nor degree nor a factor is given.
     pub cam2_centroid_x: i16,
     /// Cam2 centroid Y: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Elevation angle.
     ///
-    /// Note ACP-078 (open): Camera results: centroid or angle.
+    /// Note ACP-078 (open): see Cam2 centroid X.
     pub cam2_centroid_y: i16,
     /// Cam2 Capture status: bits 32 to 39.
     pub cam2_capture_status: Coded<enums::CaptureResult>,

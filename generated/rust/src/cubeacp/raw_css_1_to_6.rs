@@ -16,37 +16,39 @@ pub struct RawCss1To6 {
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of the sun
+    /// angle, without full scale, offset or what a sensor in the dark reads. The relative scale and
+    /// the threshold of the configuration refer to them.
     pub css1: u8,
     /// CSS2: bits 8 to 15, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS1.
     pub css2: u8,
     /// CSS3: bits 16 to 23, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS1.
     pub css3: u8,
     /// CSS4: bits 24 to 31, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS1.
     pub css4: u8,
     /// CSS5: bits 32 to 39, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS1.
     pub css5: u8,
     /// CSS6: bits 40 to 47, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS1.
     pub css6: u8,
 }
 

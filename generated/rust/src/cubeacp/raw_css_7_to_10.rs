@@ -8,7 +8,9 @@ use crate::support::Error;
 ///
 /// Bit 50 of the log mask.
 ///
-/// Erratum ACP-081 (likely): Raw CSS 7 to 10: 6 bytes announced, 4 described.
+/// Erratum ACP-081 (likely): Raw CSS 7 to 10: 6 bytes announced, 4 described. Four sensors fill
+/// four of six bytes. The last two are held as reserved; the frame is probably filled up to the
+/// size of the loggable ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,25 +20,27 @@ pub struct RawCss7To10 {
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of the sun
+    /// angle, without full scale, offset or what a sensor in the dark reads. The relative scale and
+    /// the threshold of the configuration refer to them.
     pub css7: u8,
     /// CSS8: bits 8 to 15, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS7.
     pub css8: u8,
     /// CSS9: bits 16 to 23, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS7.
     pub css9: u8,
     /// CSS10: bits 24 to 31, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Note ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): see CSS7.
     pub css10: u8,
 }
 

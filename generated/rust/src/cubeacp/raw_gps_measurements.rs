@@ -16,7 +16,8 @@ use crate::support::{put, take, Coded, Error, Scale};
 pub struct RawGpsMeasurements {
     /// Gps Solution Status: bits 0 to 7.
     ///
-    /// Note ACP-042 (certain): GPS is spelt Gps in one field.
+    /// Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands among
+    /// fields with GPS, and the sun sensors are Css in the same telecommand.
     pub gps_solution_status: Coded<enums::GpsSolutionStatus>,
     /// Number of tracked GPS satellites: bits 8 to 15, raw 0 to 255.
     pub number_of_tracked_gps_satellites: u8,
@@ -24,7 +25,8 @@ pub struct RawGpsMeasurements {
     pub number_of_gps_satellites_used_in_solution: u8,
     /// Counter for XYZ Lof from GPS: bits 24 to 31, raw 0 to 255.
     ///
-    /// Erratum ACP-087 (certain): GPS counter: Lof is Log.
+    /// Erratum ACP-087 (certain): GPS counter: Lof is Log. A letter is wrong in name and
+    /// description. The identifier is held without the slip.
     pub counter_for_xyz_log_from_gps: u8,
     /// Counter for RANGE log from GPS: bits 32 to 39, raw 0 to 255.
     pub counter_for_range_log_from_gps: u8,
@@ -32,37 +34,45 @@ pub struct RawGpsMeasurements {
     ///
     /// Explained on page 656 of the OEMV615 reference manual.
     ///
-    /// Note ACP-088 (open): GPS response: explained in another manual.
+    /// Note ACP-088 (open): GPS response: explained in another manual. The meaning is on page 656
+    /// of a reference manual of the receiver, which is not among the documents named at the front.
+    /// Other receivers have other manuals.
     pub response_message_for_gps_log_setup: u8,
     /// GPS Reference Week: bits 48 to 63, raw 0 to 65535.
     ///
-    /// Note ACP-089 (open): GPS week: with or without roll-overs.
+    /// Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full
+    /// week, ten of which a receiver sends. A number of roll-overs is a setting, so it is open
+    /// which of the two this is.
     pub gps_reference_week: u16,
     /// GPS Time Milliseconds: bits 64 to 95, raw 0 to 4294967295, in ms.
     pub gps_time_milliseconds: u32,
     /// ECEF Position X: bits 96 to 127, raw -2147483648 to 2147483647, in m.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16
+    /// bits in the state frames and 32 bits in the GPS frames and the simulated data, with the same
+    /// name, description and unit.
     pub ecef_position_x: i32,
     /// ECEF Velocity X: bits 128 to 143, raw -32768 to 32767, in m/s.
     ///
-    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity from the
+    /// receiver has a step of 1 m/s, that of the propagator 0.25 m/s. A factor may have been lost;
+    /// none is made up.
     pub ecef_velocity_x: i16,
     /// ECEF Position Y: bits 144 to 175, raw -2147483648 to 2147483647, in m.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): see ECEF Position X.
     pub ecef_position_y: i32,
     /// ECEF Velocity Y: bits 176 to 191, raw -32768 to 32767, in m/s.
     ///
-    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): see ECEF Velocity X.
     pub ecef_velocity_y: i16,
     /// ECEF Position Z: bits 192 to 223, raw -2147483648 to 2147483647, in m.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): see ECEF Position X.
     pub ecef_position_z: i32,
     /// ECEF Velocity Z: bits 224 to 239, raw -32768 to 32767, in m/s.
     ///
-    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): see ECEF Velocity X.
     pub ecef_velocity_z: i16,
     /// X-pos Standard Deviation: bits 240 to 247, raw 0 to 255; physical `raw*0.1`, 0 to 25.5 m.
     pub x_pos_standard_deviation: u8,
@@ -72,15 +82,17 @@ pub struct RawGpsMeasurements {
     pub z_pos_standard_deviation: u8,
     /// X-vel Standard Deviation: bits 264 to 271, raw 0 to 255, in m/s.
     ///
-    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second. Deviations of the
+    /// position have a factor of 0.1, those of the velocity none. A whole 1 m/s is coarse for a GPS
+    /// velocity, and the limit that is compared with it is set in hundredths.
     pub x_vel_standard_deviation: u8,
     /// Y-vel Standard Deviation: bits 272 to 279, raw 0 to 255, in m/s.
     ///
-    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): see X-vel Standard Deviation.
     pub y_vel_standard_deviation: u8,
     /// Z-vel Standard Deviation: bits 280 to 287, raw 0 to 255, in m/s.
     ///
-    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): see X-vel Standard Deviation.
     pub z_vel_standard_deviation: u8,
 }
 

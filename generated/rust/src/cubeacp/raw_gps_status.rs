@@ -15,7 +15,8 @@ use crate::support::{Coded, Error};
 pub struct RawGpsStatus {
     /// Gps Solution Status: bits 0 to 7.
     ///
-    /// Note ACP-042 (certain): GPS is spelt Gps in one field.
+    /// Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands among
+    /// fields with GPS, and the sun sensors are Css in the same telecommand.
     pub gps_solution_status: Coded<enums::GpsSolutionStatus>,
     /// Number of tracked GPS satellites: bits 8 to 15, raw 0 to 255.
     pub number_of_tracked_gps_satellites: u8,
@@ -23,7 +24,8 @@ pub struct RawGpsStatus {
     pub number_of_gps_satellites_used_in_solution: u8,
     /// Counter for XYZ Lof from GPS: bits 24 to 31, raw 0 to 255.
     ///
-    /// Erratum ACP-087 (certain): GPS counter: Lof is Log.
+    /// Erratum ACP-087 (certain): GPS counter: Lof is Log. A letter is wrong in name and
+    /// description. The identifier is held without the slip.
     pub counter_for_xyz_log_from_gps: u8,
     /// Counter for RANGE log from GPS: bits 32 to 39, raw 0 to 255.
     pub counter_for_range_log_from_gps: u8,
@@ -31,7 +33,9 @@ pub struct RawGpsStatus {
     ///
     /// Explained on page 656 of the OEMV615 reference manual.
     ///
-    /// Note ACP-088 (open): GPS response: explained in another manual.
+    /// Note ACP-088 (open): GPS response: explained in another manual. The meaning is on page 656
+    /// of a reference manual of the receiver, which is not among the documents named at the front.
+    /// Other receivers have other manuals.
     pub response_message_for_gps_log_setup: u8,
 }
 

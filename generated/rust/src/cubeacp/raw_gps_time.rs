@@ -14,7 +14,9 @@ use crate::support::{put, take, Error};
 pub struct RawGpsTime {
     /// GPS Reference Week: bits 0 to 15, raw 0 to 65535.
     ///
-    /// Note ACP-089 (open): GPS week: with or without roll-overs.
+    /// Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full
+    /// week, ten of which a receiver sends. A number of roll-overs is a setting, so it is open
+    /// which of the two this is.
     pub gps_reference_week: u16,
     /// GPS Time Milliseconds: bits 16 to 47, raw 0 to 4294967295, in ms.
     pub gps_time_milliseconds: u32,

@@ -17,18 +17,19 @@ pub struct RawMagnetometer {
     /// Sampled A/D value.
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Neither resolution nor unit of the sampled values is given.
     pub mag_x: i16,
     /// MagY: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): see MagX.
     pub mag_y: i16,
     /// MagZ: bits 32 to 47, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): see MagX.
     pub mag_z: i16,
 }
 

@@ -17,18 +17,19 @@ pub struct RawRateSensor {
     /// Sampled A/D value.
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Neither resolution nor unit of the sampled values is given.
     pub rate_x: i16,
     /// RateY: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): see RateX.
     pub rate_y: i16,
     /// RateZ: bits 32 to 47, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): see RateX.
     pub rate_z: i16,
 }
 

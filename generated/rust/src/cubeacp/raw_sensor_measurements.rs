@@ -11,7 +11,8 @@ use crate::support::{put, take, Coded, Error};
 /// from byte 12. Repeats Raw CSS 7 to 10 from byte 18. Repeats Raw Magnetometer from byte 22.
 /// Repeats Raw Rate Sensor from byte 28.
 ///
-/// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+/// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The telecommand
+/// begins with Cam1. Frame 194 and the ids 166 and 167 have Cam2 before Cam1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -21,13 +22,14 @@ pub struct RawSensorMeasurements {
     ///
     /// Azimuth angle.
     ///
-    /// Note ACP-078 (open): Camera results: centroid or angle.
+    /// Note ACP-078 (open): Camera results: centroid or angle. The names say centroid X and Y, the
+    /// descriptions azimuth and elevation angle. Neither pixel nor degree nor a factor is given.
     pub cam2_centroid_x: i16,
     /// Cam2 centroid Y: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Elevation angle.
     ///
-    /// Note ACP-078 (open): Camera results: centroid or angle.
+    /// Note ACP-078 (open): see Cam2 centroid X.
     pub cam2_centroid_y: i16,
     /// Cam2 Capture status: bits 32 to 39.
     pub cam2_capture_status: Coded<enums::CaptureResult>,
@@ -37,13 +39,13 @@ pub struct RawSensorMeasurements {
     ///
     /// Azimuth angle.
     ///
-    /// Note ACP-078 (open): Camera results: centroid or angle.
+    /// Note ACP-078 (open): see Cam2 centroid X.
     pub cam1_centroid_x: i16,
     /// Cam1 centroid Y: bits 64 to 79, raw -32768 to 32767.
     ///
     /// Elevation angle.
     ///
-    /// Note ACP-078 (open): Camera results: centroid or angle.
+    /// Note ACP-078 (open): see Cam2 centroid X.
     pub cam1_centroid_y: i16,
     /// Cam1 Capture status: bits 80 to 87.
     pub cam1_capture_status: Coded<enums::CaptureResult>,
@@ -94,38 +96,41 @@ pub struct RawSensorMeasurements {
     /// Sampled A/D value.
     ///
     /// Erratum ACP-105 (certain): Raw Sensor Measurements repeats four of six bytes of one part.
+    /// Frame 194 holds the frame of the sensors 7 to 10 without its last two bytes: the
+    /// magnetometer begins where they would stand. The whole has 34 bytes, its parts have 36.
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Neither resolution nor unit of the sampled values is given.
     pub mag_x: i16,
     /// MagY: bits 192 to 207, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): see MagX.
     pub mag_y: i16,
     /// MagZ: bits 208 to 223, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): see MagX.
     pub mag_z: i16,
     /// RateX: bits 224 to 239, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): see MagX.
     pub rate_x: i16,
     /// RateY: bits 240 to 255, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): see MagX.
     pub rate_y: i16,
     /// RateZ: bits 256 to 271, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): see MagX.
     pub rate_z: i16,
 }
 

@@ -19,24 +19,22 @@ pub struct RawStarTracker {
     /// Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// value. What is counted stands in place of a unit; noise repeats the name. They are kept as
+    /// units of counts.
     pub number_of_stars_detected: u8,
     /// Star image noise: bits 8 to 15, raw 0 to 255, in noise.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub star_image_noise: u8,
     /// Invalid Stars: bits 16 to 23, raw 0 to 255, in Invalid stars.
     ///
     /// How many of the detected stars are invalid.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub invalid_stars: u8,
     /// Number of stars identified: bits 24 to 31, raw 0 to 255, in stars.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub number_of_stars_identified: u8,
     /// Identification mode: bits 32 to 39.
     pub identification_mode: Coded<enums::StarIdModeVal>,
@@ -44,8 +42,7 @@ pub struct RawStarTracker {
     ///
     /// Mean of the centre line of the image.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub image_dark_value: u8,
     /// Image Capture Success: bit 48.
     pub image_capture_success: bool,
@@ -55,7 +52,8 @@ pub struct RawStarTracker {
     pub identification_success: bool,
     /// AttitudeSuccess: bit 51.
     ///
-    /// Note ACP-115 (certain): AttitudeSuccess is written in one piece.
+    /// Note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags before it
+    /// have blanks, as its description has.
     pub attitude_success: bool,
     /// Processing Time Error: bit 52.
     pub processing_time_error: bool,
@@ -67,37 +65,40 @@ pub struct RawStarTracker {
     pub comms_error: bool,
     /// Sample Period: bits 56 to 71, raw 0 to 65535.
     ///
-    /// Note ACP-113 (open): Sample period of the star tracker has no unit.
+    /// Note ACP-113 (open): Sample period of the star tracker has no unit. Other times of the star
+    /// tracker are in ms.
     pub sample_period: u16,
     /// Star 1 confidence: bits 72 to 79, raw 0 to 255, in %.
     ///
-    /// Erratum ACP-114 (certain): percentage is %.
+    /// Erratum ACP-114 (certain): percentage is %. The unit is spelt out in two frames and a sign
+    /// elsewhere.
     pub star_1_confidence: u8,
     /// Star 2 confidence: bits 80 to 87, raw 0 to 255, in %.
     ///
-    /// Erratum ACP-114 (certain): percentage is %.
+    /// Erratum ACP-114 (certain): see Star 1 confidence.
     pub star_2_confidence: u8,
     /// Star 3 confidence: bits 88 to 95, raw 0 to 255, in %.
     ///
-    /// Erratum ACP-114 (certain): percentage is %.
+    /// Erratum ACP-114 (certain): see Star 1 confidence.
     pub star_3_confidence: u8,
     /// Magnitude Star 1: bits 96 to 111, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Note ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16 bits
+    /// without a factor can be neither fractional nor negative.
     pub magnitude_star_1: u16,
     /// Magnitude Star 2: bits 112 to 127, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Note ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): see Magnitude Star 1.
     pub magnitude_star_2: u16,
     /// Magnitude Star 3: bits 128 to 143, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Note ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): see Magnitude Star 1.
     pub magnitude_star_3: u16,
     /// Catalogue Star 1: bits 144 to 159, raw 0 to 65535.
     ///
@@ -134,39 +135,42 @@ pub struct RawStarTracker {
     ///
     /// Estimated by CubeStar, about its own X axis.
     ///
-    /// Note ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given without a
+    /// unit. The other rates are in deg/s; rad/s would fit the range as well.
     pub x_axis_rate: i16,
     /// y-Axis rate: bits 352 to 367, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
     /// Estimated by CubeStar, about its own Y axis.
     ///
-    /// Note ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): see x-Axis rate.
     pub y_axis_rate: i16,
     /// z-Axis rate: bits 368 to 383, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
     /// Estimated by CubeStar, about its own Z axis.
     ///
-    /// Note ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): see x-Axis rate.
     pub z_axis_rate: i16,
     /// Q0: bits 384 to 399, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q1.
     ///
-    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names and
+    /// descriptions count differently. Q1 to Q3 agree with the other quaternions; if Q0 were the
+    /// scalar, the third vector component would be missing.
     pub q0: i16,
     /// Q1: bits 400 to 415, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q2.
     ///
-    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): see Q0.
     pub q1: i16,
     /// Q2: bits 416 to 431, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q3.
     ///
-    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): see Q0.
     pub q2: i16,
 }
 

@@ -7,7 +7,8 @@ use crate::support::{put, take, Error, Scale};
 /// Redundant Magnetometer Configuration: configuration, set by telecommand 36, got by telemetry
 /// 205, 30 bytes. Table 191.
 ///
-/// Note ACP-051 (certain): Magnetometers have four names for two.
+/// Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for
+/// one; redundant, secondary and 2nd for the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -16,32 +17,34 @@ pub struct RedundantMagConfiguration {
     /// Redundant Magnetometer Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Note ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need a
+    /// sequence of axes and a direction. None is given.
     pub mounting_alpha: i16,
     /// Redundant Magnetometer Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Note ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): see Redundant Magnetometer Mounting Transform Alpha Angle.
     pub mounting_beta: i16,
     /// Redundant Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Note ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): see Redundant Magnetometer Mounting Transform Alpha Angle.
     pub mounting_gamma: i16,
     /// Redundant Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Note ACP-155 (open): Magnetometer offsets have no unit.
+    /// Note ACP-155 (open): Magnetometer offsets have no unit. Channel offsets have a factor and no
+    /// unit. The field itself is in uT; the sensitivity that would convert has no unit either.
     pub channel_1_offset: i16,
     /// Redundant Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Note ACP-155 (open): Magnetometer offsets have no unit.
+    /// Note ACP-155 (open): see Redundant Magnetometer Channel 1 Offset.
     pub channel_2_offset: i16,
     /// Redundant Magnetometer Channel 3 Offset: bits 80 to 95, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Note ACP-155 (open): Magnetometer offsets have no unit.
+    /// Note ACP-155 (open): see Redundant Magnetometer Channel 1 Offset.
     pub channel_3_offset: i16,
     /// Redundant Magnetometer Sensitivity Matrix S11: bits 96 to 111, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.

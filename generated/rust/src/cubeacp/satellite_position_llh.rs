@@ -18,11 +18,15 @@ pub struct SatellitePositionLlh {
     pub latitude: i16,
     /// Longitude: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
+    /// Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The datum is
+    /// missing in one of three rows; the frame is called LLH by name and WGS-84 frame by
+    /// description.
     pub longitude: i16,
     /// Altitude: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
     ///
-    /// Note ACP-067 (open): Position and altitude do not reach equally far.
+    /// Note ACP-067 (open): Position and altitude do not reach equally far. The inertial position
+    /// fits orbits up to 1800 km, the altitude of 16 bits ends at 655.35 km. Above that it wraps or
+    /// sticks; which is not said.
     pub altitude: u16,
 }
 

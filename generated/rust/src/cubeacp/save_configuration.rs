@@ -8,7 +8,9 @@ use crate::support::Error;
 ///
 /// Keeps the current configuration in flash.
 ///
-/// Note ACP-054 (open): Two saves for three stored sets.
+/// Note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS
+/// configuration, the orbit parameters and the system configuration. Telecommands save the current
+/// configuration and the orbit parameters; which the first covers is not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

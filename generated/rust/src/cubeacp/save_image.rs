@@ -9,7 +9,8 @@ use crate::support::{Coded, Error};
 ///
 /// Takes a picture with a CubeSense or the CubeStar camera and saves it to the SD card.
 ///
-/// Note ACP-055 (certain): Save Image saves before it captures.
+/// Note ACP-055 (certain): Save Image saves before it captures. The description has the steps in
+/// the wrong order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -10,9 +10,12 @@ use crate::support::{array, put, put_array, take, Coded, Error};
 ///
 /// Which frames go into log 2, how often, and to which card.
 ///
-/// Note ACP-185 (certain): Log1 is LOG1 in its description.
+/// Note ACP-185 (certain): Log1 is LOG1 in its description. Names have Log1 and Log2, descriptions
+/// LOG1 and LOG2.
 ///
-/// Note ACP-186 (open): A log that is reconfigured while it runs.
+/// Note ACP-186 (open): A log that is reconfigured while it runs. The mask in the file header is
+/// that of the start. Whether a new selection starts a new file, and which counter it gets, is not
+/// said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -22,14 +25,17 @@ pub struct SdLog2Configuration {
     ///
     /// Mask of up to 80 telemetry frames.
     ///
-    /// Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
+    /// Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned. Seventeen bits
+    /// of the mask have no frame: 2, 5, 6 and 66 to 79. What a log with one of them set holds is
+    /// not said.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub log_selection: [u8; 10],
     /// Log Period: bits 80 to 95, raw 0 to 65535.
     ///
     /// 0: logging disabled.
     ///
-    /// Note ACP-183 (open): Log period has no unit.
+    /// Note ACP-183 (open): Log period has no unit. Zero switches logging off; seconds or
+    /// iterations of the loop are both possible, and equal only while the loop runs at 1 Hz.
     pub log_period: u16,
     /// Log Destination: bits 96 to 103.
     pub log_destination: Coded<enums::SdLogSelect>,

@@ -8,9 +8,12 @@ use crate::support::{put, take, Error};
 ///
 /// Bit 58 of the log mask.
 ///
-/// Note ACP-051 (certain): Magnetometers have four names for two.
+/// Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for
+/// one; redundant, secondary and 2nd for the other.
 ///
-/// Note ACP-118 (likely): Secondary magnetometer: fixed or selected.
+/// Note ACP-118 (likely): Secondary magnetometer: fixed or selected. The frame is named for the
+/// secondary magnetometer, with the field names of the primary one. A setting selects which
+/// magnetometer, sampled how, it shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -21,18 +24,19 @@ pub struct SecondaryMagnetometerRawMeasurements {
     /// Sampled A/D value.
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Neither resolution nor unit of the sampled values is given.
     pub mag_x: i16,
     /// MagY: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): see MagX.
     pub mag_y: i16,
     /// MagZ: bits 32 to 47, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): see MagX.
     pub mag_z: i16,
 }
 

@@ -17,7 +17,8 @@ pub struct SetAdcsRunMode {
     ///
     /// While off, the control program leaves the ADCS I2C bus alone.
     ///
-    /// Note ACP-017 (certain): A run mode called Enabled.
+    /// Note ACP-017 (certain): A run mode called Enabled. The parameter is an enumeration of four
+    /// modes, its name that of one of them. The frames call it ADCS Run Mode.
     pub enabled: Coded<enums::AdcsRunMode>,
 }
 

@@ -19,9 +19,12 @@ pub struct SetAttitudeControlMode {
     ///
     /// 65535 (0xFFFF): no timeout.
     ///
-    /// Note ACP-022 (open): Timeout of a control mode: 0.
+    /// Note ACP-022 (open): Timeout of a control mode: 0. 0xFFFF is for ever; what 0 does is not
+    /// said. No frame returns the time left.
     ///
-    /// Note ACP-023 (certain): Control mode None does not exist.
+    /// Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the
+    /// mode falls back, when the control mode is None. The member with value 0 is called No
+    /// control.
     pub timeout: u16,
 }
 

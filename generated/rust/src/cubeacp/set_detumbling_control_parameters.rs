@@ -9,7 +9,8 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// Gains and references of the detumbling mode.
 ///
-/// Note ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
+/// get id have neutral names, but for eight. Names and identifiers are held as printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,13 +20,14 @@ pub struct SetDetumblingControlParameters {
     ///
     /// Ks.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the
+    /// control laws are in another document.
     pub detumbling_spin_gain: f32,
     /// Detumbling Damping Gain: bits 32 to 63, 32-bit float.
     ///
     /// Kd.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): see Detumbling Spin Gain.
     pub detumbling_damping_gain: f32,
     /// Reference spin rate: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
@@ -34,13 +36,14 @@ pub struct SetDetumblingControlParameters {
     ///
     /// Must be below 0 deg/s.
     ///
-    /// Note ACP-162 (certain): Limits of a sign in words only.
+    /// Note ACP-162 (certain): Limits of a sign in words only. Two references must always be
+    /// smaller than 0; the types allow the opposite, and what the program does with it is not said.
     pub spin_rate: i16,
     /// Fast BDot Detumbling Gain: bits 80 to 111, 32-bit float.
     ///
     /// Kdf.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): see Detumbling Spin Gain.
     pub fast_bdot_detumbling_gain: f32,
 }
 

@@ -8,7 +8,8 @@ use crate::support::{Coded, Error};
 /// Set Magnetorquer Configuration: configuration, set by telecommand 21, got by telemetry 136, 3
 /// bytes. Table 179.
 ///
-/// Note ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
+/// get id have neutral names, but for eight. Names and identifiers are held as printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -16,15 +17,17 @@ use crate::support::{Coded, Error};
 pub struct SetMagnetorquerConfiguration {
     /// Magnetorquer 1 Configuration: bits 0 to 7.
     ///
-    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output. Each axis is
+    /// said to need a torquer output 1, 2 or 3. The configuration works the other way round and
+    /// gives an axis to each torquer, or Not Used.
     pub magnetorquer_1_configuration: Coded<enums::AxisSelect>,
     /// Magnetorquer 2 Configuration: bits 8 to 15.
     ///
-    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    /// Note ACP-103 (open): see Magnetorquer 1 Configuration.
     pub magnetorquer_2_configuration: Coded<enums::AxisSelect>,
     /// Magnetorquer 3 Configuration: bits 16 to 23.
     ///
-    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    /// Note ACP-103 (open): see Magnetorquer 1 Configuration.
     pub magnetorquer_3_configuration: Coded<enums::AxisSelect>,
 }
 

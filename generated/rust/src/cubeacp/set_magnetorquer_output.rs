@@ -8,7 +8,8 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// Only valid while the control mode is None.
 ///
-/// Note ACP-023 (certain): Control mode None does not exist.
+/// Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode
+/// falls back, when the control mode is None. The member with value 0 is called No control.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -17,23 +18,26 @@ pub struct SetMagnetorquerOutput {
     /// Commanded X Magnetorquer duty cycle: bits 0 to 15, raw -32768 to 32767; physical `raw =
     /// value*1000.0`, -32.768 to 32.767.
     ///
-    /// Note ACP-030 (certain): Formulas are written in two directions.
+    /// Note ACP-030 (certain): Formulas are written in two directions. Two telecommands give the
+    /// raw value as a multiple of the physical one, everything else the physical value from the raw
+    /// one. Both are held as printed.
     ///
-    /// Note ACP-031 (likely): Duty cycle: unit and range are not given.
+    /// Note ACP-031 (likely): Duty cycle: unit and range are not given. The factor of 1000 suggests
+    /// a fraction of one, so that raw values run from -1000 to 1000. The type allows 32 times that.
     pub x_duty_cycle: i16,
     /// Commanded Y Magnetorquer duty cycle: bits 16 to 31, raw -32768 to 32767; physical `raw =
     /// value*1000.0`, -32.768 to 32.767.
     ///
-    /// Note ACP-030 (certain): Formulas are written in two directions.
+    /// Note ACP-030 (certain): see Commanded X Magnetorquer duty cycle.
     ///
-    /// Note ACP-031 (likely): Duty cycle: unit and range are not given.
+    /// Note ACP-031 (likely): see Commanded X Magnetorquer duty cycle.
     pub y_duty_cycle: i16,
     /// Commanded Z Magnetorquer duty cycle: bits 32 to 47, raw -32768 to 32767; physical `raw =
     /// value*1000.0`, -32.768 to 32.767.
     ///
-    /// Note ACP-030 (certain): Formulas are written in two directions.
+    /// Note ACP-030 (certain): see Commanded X Magnetorquer duty cycle.
     ///
-    /// Note ACP-031 (likely): Duty cycle: unit and range are not given.
+    /// Note ACP-031 (likely): see Commanded X Magnetorquer duty cycle.
     pub z_duty_cycle: i16,
 }
 

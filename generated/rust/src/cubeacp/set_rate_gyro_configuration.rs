@@ -8,9 +8,11 @@ use crate::support::{put, take, Coded, Error, Scale};
 /// Set Rate Gyro Configuration: configuration, set by telecommand 23, got by telemetry 138, 10
 /// bytes. Table 182.
 ///
-/// Note ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
+/// get id have neutral names, but for eight. Names and identifiers are held as printed.
 ///
-/// Note ACP-131 (certain): Gyro, rate sensor and MEMS.
+/// Note ACP-131 (certain): Gyro, rate sensor and MEMS. One sensor has three names, two of them in
+/// one message.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -25,23 +27,26 @@ pub struct SetRateGyroConfiguration {
     /// X-Rate Sensor Offset: bits 24 to 39, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
-    /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias. Whether the offset is added
+    /// or subtracted, and hence whether the estimated bias can be copied into it, is not said. Both
+    /// have the same factor.
     pub x_rate_sensor_offset: i16,
     /// Y-Rate Sensor Offset: bits 40 to 55, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
-    /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    /// Note ACP-132 (open): see X-Rate Sensor Offset.
     pub y_rate_sensor_offset: i16,
     /// Z-Rate Sensor Offset: bits 56 to 71, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
-    /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    /// Note ACP-132 (open): see X-Rate Sensor Offset.
     pub z_rate_sensor_offset: i16,
     /// RateSensorMult: bits 72 to 79, raw 0 to 255.
     ///
     /// Factor on the rate sensor measurements.
     ///
-    /// Note ACP-130 (open): RateSensorMult has no scale and no blanks.
+    /// Note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8 bits;
+    /// whether it is a whole factor, and of which quantity, is not said.
     pub rate_sensor_mult: u8,
 }
 

@@ -10,7 +10,8 @@ use crate::support::{put, take, Coded, Error, Scale};
 ///
 /// Gains and reference of the reaction-wheel mode.
 ///
-/// Note ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
+/// get id have neutral names, but for eight. Names and identifiers are held as printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,27 +21,34 @@ pub struct SetReactionWheelControlParameters {
     ///
     /// Kp2.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the
+    /// control laws are in another document.
     pub rwheel_proportional_gain: f32,
     /// RWheel Derivative Gain: bits 32 to 63, 32-bit float.
     ///
     /// Kd2.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): see RWheel Proportional Gain.
     pub rwheel_derivative_gain: f32,
     /// Y-Wheel Bias Momentum: bits 64 to 95, 32-bit float, in Nms.
     ///
     /// H-bias.
     ///
-    /// Note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels.
+    /// Note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels. The description
+    /// promises gains and a reference value for the reaction wheels; the reference is a bias of the
+    /// Y-wheel.
     pub y_wheel_bias_momentum: f32,
     /// Sun-pointing Facet: bits 96 to 102.
     ///
     /// Body axis that is turned towards the sun.
     ///
-    /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
+    /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration serves
+    /// actuators, sensors and facets. A facet that points to the sun or to a target as Not Used is
+    /// allowed by its table and not explained.
     ///
-    /// Note ACP-177 (open): Sun-pointing facet and special control selection.
+    /// Note ACP-177 (open): Sun-pointing facet and special control selection. Facets can be chosen
+    /// by a setting, and sun pointing with Z or Y by the system configuration. Which one counts is
+    /// not said.
     pub sun_pointing_facet: Coded<enums::AxisSelect>,
     /// Automatic Control Transition due to Wheel Errors: bit 103.
     ///

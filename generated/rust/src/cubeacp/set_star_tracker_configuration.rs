@@ -9,9 +9,11 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// Of CubeStar.
 ///
-/// Note ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
+/// They are written 0 and ignored.
 ///
-/// Note ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
+/// get id have neutral names, but for eight. Names and identifiers are held as printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,49 +22,54 @@ pub struct SetStarTrackerConfiguration {
     /// StarTracker Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Note ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need a
+    /// sequence of axes and a direction. None is given.
     pub mounting_alpha: i16,
     /// StarTracker Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Note ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): see StarTracker Mounting Transform Alpha Angle.
     pub mounting_beta: i16,
     /// StarTracker Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Note ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): see StarTracker Mounting Transform Alpha Angle.
     pub mounting_gamma: i16,
     /// StarTracker exposure time: bits 48 to 63, raw 0 to 65535.
     ///
     /// Register value.
     ///
-    /// Note ACP-145 (open): Exposure and gain are register values.
+    /// Note ACP-145 (open): Exposure and gain are register values. Neither the register nor its
+    /// scale is given, so times and gains cannot be told from them.
     ///
-    /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking. Three
+    /// spellings stand in one message, and one description is a variable name.
     pub star_tracker_exposure_time: u16,
     /// StarTracker analog gain: bits 64 to 79, raw 0 to 65535.
     ///
     /// Register value.
     ///
-    /// Note ACP-145 (open): Exposure and gain are register values.
+    /// Note ACP-145 (open): see StarTracker exposure time.
     pub star_tracker_analog_gain: u16,
     /// StarTracker detection threshold: bits 80 to 87, raw 0 to 255.
     ///
-    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description. Names
+    /// are repeated or a noun is missing, as in maximum of stars.
     pub star_tracker_detection_threshold: u8,
     /// StarTracker star threshold: bits 88 to 95, raw 0 to 255.
     ///
-    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): see StarTracker detection threshold.
     pub star_tracker_star_threshold: u8,
     /// Maximum Star Matched: bits 96 to 103, raw 0 to 255.
     ///
     /// Most stars that are matched.
     ///
-    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): see StarTracker detection threshold.
     pub maximum_star_matched: u8,
     /// Detection Timeout duration: bits 104 to 119, raw 0 to 65535.
     ///
-    /// Note ACP-141 (open): Detection timeout has no unit.
+    /// Note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in
+    /// milliseconds; registers and pixels stand in between.
     pub detection_timeout_duration: u16,
     /// Maximum Star Pixel: bits 120 to 127, raw 0 to 255.
     ///
@@ -76,65 +83,71 @@ pub struct SetStarTrackerConfiguration {
     ///
     /// Of the star identification.
     ///
-    /// Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
+    /// Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit % and a
+    /// factor of 0.01 give steps of 0.01 % in 8 bits. If the factor already makes a fraction, as in
+    /// the margins that follow without a unit, the range is 255 %.
     pub error_margin: u8,
     /// Star Tracker Delay Time: bits 144 to 159, raw 0 to 65535, in ms.
     ///
-    /// Erratum ACP-140 (certain): milliseconds is ms.
+    /// Erratum ACP-140 (certain): milliseconds is ms. The unit is spelt out in one field.
     ///
-    /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    /// Note ACP-147 (certain): see StarTracker exposure time.
     pub star_tracker_delay_time: u16,
     /// Star Tracker Centroid X: bits 160 to 191, 32-bit float, in pixels.
     ///
-    /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
+    /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only. The
+    /// fields are described as pixel centroids, without the unit of measure that the boresights of
+    /// the cameras have.
     pub star_tracker_centroid_x: f32,
     /// Star Tracker Centroid Y: bits 192 to 223, 32-bit float, in pixels.
     ///
-    /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
+    /// Erratum ACP-202 (likely): see Star Tracker Centroid X.
     pub star_tracker_centroid_y: f32,
     /// Star Tracker Focal Length: bits 224 to 255, 32-bit float, in mm.
     pub star_tracker_focal_length: f32,
     /// K1 radial distortion coefficient: bits 256 to 287, 32-bit float, in gain.
     ///
-    /// Note ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain. It is
+    /// kept as a plain factor; which lens model and which normalisation they belong to is not said.
     pub k1_radial_distortion_coefficient: f32,
     /// K2 radial distortion coefficient: bits 288 to 319, 32-bit float, in gain.
     ///
-    /// Note ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): see K1 radial distortion coefficient.
     pub k2_radial_distortion_coefficient: f32,
     /// P1 tangential distortion coefficient: bits 320 to 351, 32-bit float, in gain.
     ///
-    /// Note ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): see K1 radial distortion coefficient.
     pub p1_tangential_distortion_coefficient: f32,
     /// P2 tangential distortion coefficient: bits 352 to 383, 32-bit float, in gain.
     ///
-    /// Note ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): see K1 radial distortion coefficient.
     pub p2_tangential_distortion_coefficient: f32,
     /// Star tracking window width: bits 384 to 391, raw 0 to 255.
     ///
-    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): see StarTracker detection threshold.
     ///
-    /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    /// Note ACP-147 (certain): see StarTracker exposure time.
     pub star_tracking_window_width: u8,
     /// Star Tracking Margin: bits 392 to 399, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
     ///
-    /// Note ACP-143 (open): Margins and search width have no unit.
+    /// Note ACP-143 (open): Margins and search width have no unit. Factors are given, units are
+    /// not; pixels, fractions and degrees are all possible.
     ///
-    /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    /// Note ACP-147 (certain): see StarTracker exposure time.
     pub tracking_margin: u8,
     /// Star Validation Margin: bits 400 to 407, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
     ///
-    /// Note ACP-143 (open): Margins and search width have no unit.
+    /// Note ACP-143 (open): see Star Tracking Margin.
     pub validation_margin: u8,
     /// Star Tracking Module Enable: bit 408.
     pub star_tracking_module_enable: bool,
     /// Star Tracking Location Prediction Enable: bit 409.
     ///
-    /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    /// Note ACP-147 (certain): see StarTracker exposure time.
     pub star_tracking_location_prediction_enable: bool,
     /// Star Tracking Search Width: bits 416 to 423, raw 0 to 255; physical `raw/5.0`, 0 to 51.
     ///
-    /// Note ACP-143 (open): Margins and search width have no unit.
+    /// Note ACP-143 (open): see Star Tracking Margin.
     pub search_width: u8,
 }
 

@@ -10,7 +10,8 @@ use crate::support::{put, take, Coded, Error};
 ///
 /// Gains of the tracking mode.
 ///
-/// Note ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
+/// get id have neutral names, but for eight. Names and identifiers are held as printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,25 +21,28 @@ pub struct SetTrackingControllerGainParameters {
     ///
     /// Kp3.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the
+    /// control laws are in another document.
     pub tracking_proportional_gain: f32,
     /// Tracking Derivative Gain: bits 32 to 63, 32-bit float.
     ///
     /// Kd3.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): see Tracking Proportional Gain.
     pub tracking_derivative_gain: f32,
     /// Tracking Integral Gain: bits 64 to 95, 32-bit float.
     ///
     /// Ki3.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): see Tracking Proportional Gain.
     pub tracking_integral_gain: f32,
     /// Target-tracking Facet: bits 96 to 103.
     ///
     /// Body axis that is pointed at the target.
     ///
-    /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
+    /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration serves
+    /// actuators, sensors and facets. A facet that points to the sun or to a target as Not Used is
+    /// allowed by its table and not explained.
     pub target_tracking_facet: Coded<enums::AxisSelect>,
 }
 

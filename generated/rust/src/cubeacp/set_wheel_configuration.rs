@@ -8,7 +8,8 @@ use crate::support::{Coded, Error};
 /// Set Wheel Configuration: configuration, set by telecommand 22, got by telemetry 137, 4 bytes.
 /// Table 181.
 ///
-/// Note ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
+/// get id have neutral names, but for eight. Names and identifiers are held as printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -16,23 +17,27 @@ use crate::support::{Coded, Error};
 pub struct SetWheelConfiguration {
     /// RW1 Configuration: bits 0 to 7.
     ///
-    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X. Numbers in one message, axes in the
+    /// other. The two agree only after the wheel configuration has been applied.
     pub rw1_configuration: Coded<enums::AxisSelect>,
     /// RW2 Configuration: bits 8 to 15.
     ///
-    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    /// Note ACP-129 (open): see RW1 Configuration.
     pub rw2_configuration: Coded<enums::AxisSelect>,
     /// RW3 Configuration: bits 16 to 23.
     ///
-    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    /// Note ACP-129 (open): see RW1 Configuration.
     pub rw3_configuration: Coded<enums::AxisSelect>,
     /// RW4 Configuration: bits 24 to 31.
     ///
     /// Wheel 4 or the momentum wheel.
     ///
-    /// Note ACP-127 (open): Four wheels can be configured, three are reported.
+    /// Note ACP-127 (open): Four wheels can be configured, three are reported. RW4 has a
+    /// configuration. No state, speed, current, error flag or power switch exists for it, and
+    /// speeds are by axis while currents are by number.
     ///
-    /// Note ACP-128 (open): RW4 or Momentum wheel.
+    /// Note ACP-128 (open): RW4 or Momentum wheel. One field is for the fourth wheel or for a
+    /// momentum wheel; how the program tells them apart is not said, perhaps by its type.
     pub rw4_configuration: Coded<enums::AxisSelect>,
 }
 

@@ -8,7 +8,8 @@ use crate::support::{put, take, Error};
 ///
 /// Only valid while the control mode is None.
 ///
-/// Note ACP-023 (certain): Control mode None does not exist.
+/// Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode
+/// falls back, when the control mode is None. The member with value 0 is called No control.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

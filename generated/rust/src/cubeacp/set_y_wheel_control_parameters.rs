@@ -9,7 +9,8 @@ use crate::support::{put, take, Error};
 ///
 /// Gains and reference of the Y-wheel mode.
 ///
-/// Note ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
+/// get id have neutral names, but for eight. Names and identifiers are held as printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,29 +20,31 @@ pub struct SetYWheelControlParameters {
     ///
     /// Kh.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the
+    /// control laws are in another document.
     ///
-    /// Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel.
+    /// Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel. The message is for the Y-wheel,
+    /// its gains are for Y-Momentum and Y-momentum, capital and small.
     pub y_momentum_control_gain: f32,
     /// Y-momentum Nutation Damping Gain: bits 32 to 63, 32-bit float.
     ///
     /// Kn.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): see Y-Momentum Control Gain.
     ///
-    /// Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel.
+    /// Note ACP-164 (certain): see Y-Momentum Control Gain.
     pub y_momentum_nutation_damping_gain: f32,
     /// Y-momentum Proportional Gain: bits 64 to 95, 32-bit float.
     ///
     /// Kp1.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): see Y-Momentum Control Gain.
     pub y_momentum_proportional_gain: f32,
     /// Y-momentum Derivative Gain: bits 96 to 127, 32-bit float.
     ///
     /// Kd1.
     ///
-    /// Note ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): see Y-Momentum Control Gain.
     pub y_momentum_derivative_gain: f32,
     /// Reference Wheel Momentum: bits 128 to 159, 32-bit float, in Nms.
     ///
@@ -49,7 +52,8 @@ pub struct SetYWheelControlParameters {
     ///
     /// Must be below 0 Nms.
     ///
-    /// Note ACP-162 (certain): Limits of a sign in words only.
+    /// Note ACP-162 (certain): Limits of a sign in words only. Two references must always be
+    /// smaller than 0; the types allow the opposite, and what the program does with it is not said.
     pub reference_wheel_momentum: f32,
 }
 

@@ -21,7 +21,8 @@ pub struct Sgp4OrbitParameters {
     pub argument_of_perigee: f64,
     /// B-Star drag term: bits 256 to 319, 64-bit float.
     ///
-    /// Note ACP-161 (open): B-Star has no unit.
+    /// Note ACP-161 (open): B-Star has no unit. The drag term of two-line elements is per earth
+    /// radius; the table has none.
     pub b_star_drag_term: f64,
     /// Mean Motion: bits 320 to 383, 64-bit float, in orbits/day.
     pub mean_motion: f64,
@@ -31,7 +32,9 @@ pub struct Sgp4OrbitParameters {
     ///
     /// Year and day in one number.
     ///
-    /// Note ACP-160 (open): Epoch: year.day.
+    /// Note ACP-160 (open): Epoch: year.day. The unit is a format. Two or four digits of the year,
+    /// and whether day 1 is the first of January, are left open; as a fraction of a year it would
+    /// be something else.
     pub epoch: f64,
 }
 

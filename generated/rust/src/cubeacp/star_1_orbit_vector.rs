@@ -16,19 +16,20 @@ pub struct Star1OrbitVector {
     ///
     /// Vector in the orbit frame.
     ///
-    /// Note ACP-091 (certain): Star vectors: X-vector is a component.
+    /// Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a
+    /// vector, of which it is one component; names abbreviate body and orbit to a letter.
     pub star1_orbit_x: i16,
     /// Star1OY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     ///
-    /// Note ACP-091 (certain): Star vectors: X-vector is a component.
+    /// Note ACP-091 (certain): see Star1OX.
     pub star1_orbit_y: i16,
     /// Star1OZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     ///
-    /// Note ACP-091 (certain): Star vectors: X-vector is a component.
+    /// Note ACP-091 (certain): see Star1OX.
     pub star1_orbit_z: i16,
 }
 

@@ -18,15 +18,17 @@ pub struct Star2RawData {
     ///
     /// Number in the star catalogue.
     ///
-    /// Note ACP-117 (open): Catalogue number or catalogue index.
+    /// Note ACP-117 (open): Catalogue number or catalogue index. The frames are described with an
+    /// index, their fields with a number of a catalogue that is not named.
     pub catalogue_star_2: u16,
     /// Centroid X Star 2: bits 16 to 31, raw -32768 to 32767.
     ///
-    /// Note ACP-116 (open): Star centroids have no scale.
+    /// Note ACP-116 (open): Star centroids have no scale. Signed 16-bit centroids without pixel,
+    /// angle or factor; the configuration has the image centre as a float in pixels.
     pub centroid_x_star_2: i16,
     /// Centroid Y Star 2: bits 32 to 47, raw -32768 to 32767.
     ///
-    /// Note ACP-116 (open): Star centroids have no scale.
+    /// Note ACP-116 (open): see Centroid X Star 2.
     pub centroid_y_star_2: i16,
 }
 

@@ -18,19 +18,20 @@ pub struct StarMagnitude {
     ///
     /// Instrument magnitude.
     ///
-    /// Note ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16 bits
+    /// without a factor can be neither fractional nor negative.
     pub magnitude_star_1: u16,
     /// Magnitude Star 2: bits 16 to 31, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Note ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): see Magnitude Star 1.
     pub magnitude_star_2: u16,
     /// Magnitude Star 3: bits 32 to 47, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Note ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): see Magnitude Star 1.
     pub magnitude_star_3: u16,
 }
 

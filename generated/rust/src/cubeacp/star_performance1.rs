@@ -11,7 +11,9 @@ use crate::support::{Coded, Error};
 ///
 /// Bit 52 of the log mask.
 ///
-/// Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
+/// Note ACP-096 (certain): Star Performance2 has the description of Star Performance1. Both are
+/// described as performance parameters of the star measurement; the second holds flags, a period
+/// and confidences.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,24 +22,22 @@ pub struct StarPerformance1 {
     /// Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// value. What is counted stands in place of a unit; noise repeats the name. They are kept as
+    /// units of counts.
     pub number_of_stars_detected: u8,
     /// Star image noise: bits 8 to 15, raw 0 to 255, in noise.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub star_image_noise: u8,
     /// Invalid Stars: bits 16 to 23, raw 0 to 255, in Invalid stars.
     ///
     /// How many of the detected stars are invalid.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub invalid_stars: u8,
     /// Number of stars identified: bits 24 to 31, raw 0 to 255, in stars.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub number_of_stars_identified: u8,
     /// Identification mode: bits 32 to 39.
     pub identification_mode: Coded<enums::StarIdModeVal>,
@@ -45,8 +45,7 @@ pub struct StarPerformance1 {
     ///
     /// Mean of the centre line of the image.
     ///
-    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
-    /// value.
+    /// Note ACP-093 (certain): see Number of stars detected.
     pub image_dark_value: u8,
 }
 

@@ -10,7 +10,9 @@ use crate::support::{flags, put, take, Error};
 ///
 /// Bit 64 of the log mask.
 ///
-/// Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
+/// Note ACP-096 (certain): Star Performance2 has the description of Star Performance1. Both are
+/// described as performance parameters of the star measurement; the second holds flags, a period
+/// and confidences.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -24,7 +26,8 @@ pub struct StarPerformance2 {
     pub identification_success: bool,
     /// AttitudeSuccess: bit 3.
     ///
-    /// Note ACP-115 (certain): AttitudeSuccess is written in one piece.
+    /// Note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags before it
+    /// have blanks, as its description has.
     pub attitude_success: bool,
     /// Processing Time Error: bit 4.
     pub processing_time_error: bool,
@@ -36,19 +39,21 @@ pub struct StarPerformance2 {
     pub comms_error: bool,
     /// Sample Period: bits 8 to 23, raw 0 to 65535.
     ///
-    /// Note ACP-113 (open): Sample period of the star tracker has no unit.
+    /// Note ACP-113 (open): Sample period of the star tracker has no unit. Other times of the star
+    /// tracker are in ms.
     pub sample_period: u16,
     /// Star 1 confidence: bits 24 to 31, raw 0 to 255, in %.
     ///
-    /// Erratum ACP-114 (certain): percentage is %.
+    /// Erratum ACP-114 (certain): percentage is %. The unit is spelt out in two frames and a sign
+    /// elsewhere.
     pub star_1_confidence: u8,
     /// Star 2 confidence: bits 32 to 39, raw 0 to 255, in %.
     ///
-    /// Erratum ACP-114 (certain): percentage is %.
+    /// Erratum ACP-114 (certain): see Star 1 confidence.
     pub star_2_confidence: u8,
     /// Star 3 confidence: bits 40 to 47, raw 0 to 255, in %.
     ///
-    /// Erratum ACP-114 (certain): percentage is %.
+    /// Erratum ACP-114 (certain): see Star 1 confidence.
     pub star_3_confidence: u8,
 }
 

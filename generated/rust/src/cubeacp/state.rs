@@ -8,7 +8,8 @@ use crate::support::{flags, Error};
 ///
 /// Errors in loading settings from flash and in using the SD card.
 ///
-/// Note ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
+/// They are written 0 and ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,19 +19,21 @@ pub struct State {
     ///
     /// Reading it from flash failed.
     ///
-    /// Note ACP-054 (open): Two saves for three stored sets.
+    /// Note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS
+    /// configuration, the orbit parameters and the system configuration. Telecommands save the
+    /// current configuration and the orbit parameters; which the first covers is not said.
     pub adcs_config_load_error: bool,
     /// Orbit Parameter Load Error: bit 1.
     ///
     /// Reading them from flash failed.
     ///
-    /// Note ACP-054 (open): Two saves for three stored sets.
+    /// Note ACP-054 (open): see ADCS Config Load Error.
     pub orbit_parameter_load_error: bool,
     /// System Configuration Load Error: bit 2.
     ///
     /// Reading it from flash failed.
     ///
-    /// Note ACP-054 (open): Two saves for three stored sets.
+    /// Note ACP-054 (open): see ADCS Config Load Error.
     pub system_configuration_load_error: bool,
     /// SD card initialisation error: bit 3.
     pub sd_card_initialisation_error: bool,

@@ -7,7 +7,8 @@ use crate::support::{Coded, Error};
 
 /// Status of Image Capture and Save Operation: telemetry 233, 2 bytes. Table 176.
 ///
-/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
+/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A
+/// telecommand or request sent to the wrong program is taken for another one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -17,7 +18,8 @@ pub struct StatusOfImageCaptureAndSaveOperation {
     pub percentage_complete: u8,
     /// Status: bits 8 to 15.
     ///
-    /// Note ACP-124 (open): Image status: no value for busy or done.
+    /// Note ACP-124 (open): Image status: no value for busy or done. The status of the operation
+    /// lists errors only, so No Error stands for not started, running and finished.
     pub status: Coded<enums::ImSaveStatus>,
 }
 

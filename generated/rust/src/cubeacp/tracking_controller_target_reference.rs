@@ -15,17 +15,19 @@ use crate::support::{put, take, Error};
 pub struct TrackingControllerTargetReference {
     /// Geocentric longitude of target: bits 0 to 31, 32-bit float, in deg.
     ///
-    /// Note ACP-138 (open): Target is geocentric, position is geodetic.
+    /// Note ACP-138 (open): Target is geocentric, position is geodetic. The target is given by
+    /// geocentric latitude and altitude, the satellite by WGS-84 ones; and longitude comes first
+    /// here, latitude there. What a geocentric altitude is measured from is not said.
     pub geocentric_longitude_of_target: f32,
     /// Geocentric latitude of target: bits 32 to 63, 32-bit float, in deg.
     ///
-    /// Note ACP-138 (open): Target is geocentric, position is geodetic.
+    /// Note ACP-138 (open): see Geocentric longitude of target.
     pub geocentric_latitude_of_target: f32,
     /// Geocentric altitude of target: bits 64 to 95, 32-bit float, in m.
     ///
-    /// Erratum ACP-139 (certain): meter is m.
+    /// Erratum ACP-139 (certain): meter is m. The unit is spelt out in one field.
     ///
-    /// Note ACP-138 (open): Target is geocentric, position is geodetic.
+    /// Note ACP-138 (open): see Geocentric longitude of target.
     pub geocentric_altitude_of_target: f32,
 }
 

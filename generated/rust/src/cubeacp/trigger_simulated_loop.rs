@@ -10,7 +10,10 @@ use crate::support::{put, take, Coded, Error, Scale};
 /// Runs the control loop once on the given measurements. Only valid while ADCS Run Mode is
 /// Triggered.
 ///
-/// Note ACP-032 (open): Simulated data are accepted while triggered, not while simulating.
+/// Note ACP-032 (open): Simulated data are accepted while triggered, not while simulating. The
+/// telecommand with simulated measurements is valid only in mode Triggered, and there is a mode
+/// Simulation that no other text mentions. The sentence was probably taken over from the
+/// telecommand before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -22,300 +25,323 @@ pub struct TriggerSimulatedLoop {
     pub unix_time: u32,
     /// Css Raw 1: bits 32 to 47, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8. The raw
+    /// values of the coarse sun sensors are twice as wide as in the frames that report them.
+    /// Whether more than 255 may be sent is not said.
     pub css_raw_1: u16,
     /// Css Raw 2: bits 48 to 63, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_2: u16,
     /// Css Raw 3: bits 64 to 79, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_3: u16,
     /// Css Raw 4: bits 80 to 95, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_4: u16,
     /// Css Raw 5: bits 96 to 111, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_5: u16,
     /// Css Raw 6: bits 112 to 127, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_6: u16,
     /// Css Raw 7: bits 128 to 143, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_7: u16,
     /// Css Raw 8: bits 144 to 159, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_8: u16,
     /// Css Raw 9: bits 160 to 175, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_9: u16,
     /// Css Raw 10: bits 176 to 191, raw 0 to 65535.
     ///
-    /// Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    /// Note ACP-033 (open): see Css Raw 1.
     pub css_raw_10: u16,
     /// Cam1 Raw X: bits 192 to 207, raw -32768 to 32767.
     ///
     /// Raw angle.
     ///
-    /// Note ACP-036 (open): Simulated data: raw camera angles.
+    /// Note ACP-036 (open): Simulated data: raw camera angles. They are called raw angles here,
+    /// centroids by name and azimuth and elevation by description in the frames. No scale is given
+    /// in any.
     ///
-    /// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+    /// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The telecommand
+    /// begins with Cam1. Frame 194 and the ids 166 and 167 have Cam2 before Cam1.
     pub cam1_raw_x: i16,
     /// Cam1 Raw Y: bits 208 to 223, raw -32768 to 32767.
     ///
     /// Raw angle.
     ///
-    /// Note ACP-036 (open): Simulated data: raw camera angles.
+    /// Note ACP-036 (open): see Cam1 Raw X.
     pub cam1_raw_y: i16,
     /// Cam1 Busy: bits 224 to 231, raw 0 to 255.
     ///
     /// Capture status.
     ///
-    /// Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    /// Note ACP-035 (likely): Simulated data: camera results are plain numbers. Capture status and
+    /// detection result are unsigned integers here and enumerations in the frames. The first is
+    /// called Busy although it is a status of six values.
     pub cam1_busy: u8,
     /// Cam1 Result: bits 232 to 239, raw 0 to 255.
     ///
     /// Detection result.
     ///
-    /// Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    /// Note ACP-035 (likely): see Cam1 Busy.
     pub cam1_result: u8,
     /// Cam2 Raw X: bits 240 to 255, raw -32768 to 32767.
     ///
     /// Raw angle.
     ///
-    /// Note ACP-036 (open): Simulated data: raw camera angles.
+    /// Note ACP-036 (open): see Cam1 Raw X.
     ///
-    /// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+    /// Note ACP-038 (certain): see Cam1 Raw X.
     pub cam2_raw_x: i16,
     /// Cam2 Raw Y: bits 256 to 271, raw -32768 to 32767.
     ///
     /// Raw angle.
     ///
-    /// Note ACP-036 (open): Simulated data: raw camera angles.
+    /// Note ACP-036 (open): see Cam1 Raw X.
     pub cam2_raw_y: i16,
     /// Cam2 Busy: bits 272 to 279, raw 0 to 255.
     ///
     /// Capture status.
     ///
-    /// Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    /// Note ACP-035 (likely): see Cam1 Busy.
     pub cam2_busy: u8,
     /// Cam2 Result: bits 280 to 287, raw 0 to 255.
     ///
     /// Detection result.
     ///
-    /// Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    /// Note ACP-035 (likely): see Cam1 Busy.
     pub cam2_result: u8,
     /// Mag Raw X: bits 288 to 303, raw -32768 to 32767.
     ///
-    /// Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+    /// Note ACP-041 (open): Simulated data: the second magnetometer is missing. One magnetometer
+    /// can be simulated, and nothing says which one it stands for when the modes select another.
     pub mag_raw_x: i16,
     /// Mag Raw Y: bits 304 to 319, raw -32768 to 32767.
     ///
-    /// Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+    /// Note ACP-041 (open): see Mag Raw X.
     pub mag_raw_y: i16,
     /// Mag Raw Z: bits 320 to 335, raw -32768 to 32767.
     ///
-    /// Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+    /// Note ACP-041 (open): see Mag Raw X.
     pub mag_raw_z: i16,
     /// Rate Raw X: bits 336 to 367, raw -2147483648 to 2147483647.
     ///
-    /// Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+    /// Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16. The raw rates are
+    /// twice as wide as in the frames that report them, without a scale in either.
     pub rate_raw_x: i32,
     /// Rate Raw Y: bits 368 to 399, raw -2147483648 to 2147483647.
     ///
-    /// Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+    /// Note ACP-034 (open): see Rate Raw X.
     pub rate_raw_y: i32,
     /// Rate Raw Z: bits 400 to 431, raw -2147483648 to 2147483647.
     ///
-    /// Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+    /// Note ACP-034 (open): see Rate Raw X.
     pub rate_raw_z: i32,
     /// Wheel Raw X: bits 432 to 447, raw -32768 to 32767, in rpm.
     ///
-    /// Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+    /// Note ACP-040 (open): Simulated data: raw wheel speeds in rpm. The wheel speed is called raw
+    /// and has a unit; the frame with the same unit is among the calibrated measurements.
     pub wheel_raw_x: i16,
     /// Wheel Raw Y: bits 448 to 463, raw -32768 to 32767, in rpm.
     ///
-    /// Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+    /// Note ACP-040 (open): see Wheel Raw X.
     pub wheel_raw_y: i16,
     /// Wheel Raw Z: bits 464 to 479, raw -32768 to 32767, in rpm.
     ///
-    /// Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+    /// Note ACP-040 (open): see Wheel Raw X.
     pub wheel_raw_z: i16,
     /// Star1CameraX: bits 480 to 495, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames. Star
+    /// vectors have a factor in telemetry and none here, and are in camera and inertial instead of
+    /// body and orbit axes.
     pub star1_camera_x: i16,
     /// Star1CameraY: bits 496 to 511, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star1_camera_y: i16,
     /// Star1CameraZ: bits 512 to 527, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star1_camera_z: i16,
     /// Star1InertialX: bits 528 to 543, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star1_inertial_x: i16,
     /// Star1InertialY: bits 544 to 559, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star1_inertial_y: i16,
     /// Star1InertialZ: bits 560 to 575, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star1_inertial_z: i16,
     /// Star2CameraX: bits 576 to 591, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star2_camera_x: i16,
     /// Star2CameraY: bits 592 to 607, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star2_camera_y: i16,
     /// Star2CameraZ: bits 608 to 623, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star2_camera_z: i16,
     /// Star2InertialX: bits 624 to 639, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star2_inertial_x: i16,
     /// Star2InertialY: bits 640 to 655, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star2_inertial_y: i16,
     /// Star2InertialZ: bits 656 to 671, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star2_inertial_z: i16,
     /// Star3CameraX: bits 672 to 687, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star3_camera_x: i16,
     /// Star3CameraY: bits 688 to 703, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star3_camera_y: i16,
     /// Star3CameraZ: bits 704 to 719, raw -32768 to 32767.
     ///
     /// Vector in the camera frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star3_camera_z: i16,
     /// Star3InertialX: bits 720 to 735, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star3_inertial_x: i16,
     /// Star3InertialY: bits 736 to 751, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star3_inertial_y: i16,
     /// Star3InertialZ: bits 752 to 767, raw -32768 to 32767.
     ///
     /// Vector in the inertial frame.
     ///
-    /// Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+    /// Note ACP-037 (open): see Star1CameraX.
     pub star3_inertial_z: i16,
     /// Gps Solution Status: bits 768 to 775.
     ///
-    /// Note ACP-042 (certain): GPS is spelt Gps in one field.
+    /// Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands among
+    /// fields with GPS, and the sun sensors are Css in the same telecommand.
     pub gps_solution_status: Coded<enums::GpsSolutionStatus>,
     /// GPS Reference Week: bits 776 to 791, raw 0 to 65535.
     ///
-    /// Note ACP-089 (open): GPS week: with or without roll-overs.
+    /// Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full
+    /// week, ten of which a receiver sends. A number of roll-overs is a setting, so it is open
+    /// which of the two this is.
     pub gps_reference_week: u16,
     /// GPS Time Milliseconds: bits 792 to 823, raw 0 to 4294967295, in ms.
     pub gps_time_milliseconds: u32,
     /// ECEF Position X: bits 824 to 855, raw -2147483648 to 2147483647, in m.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16
+    /// bits in the state frames and 32 bits in the GPS frames and the simulated data, with the same
+    /// name, description and unit.
     pub ecef_position_x: i32,
     /// ECEF Velocity X: bits 856 to 871, raw -32768 to 32767, in m/s.
     ///
-    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity from the
+    /// receiver has a step of 1 m/s, that of the propagator 0.25 m/s. A factor may have been lost;
+    /// none is made up.
     pub ecef_velocity_x: i16,
     /// ECEF Position Y: bits 872 to 903, raw -2147483648 to 2147483647, in m.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): see ECEF Position X.
     pub ecef_position_y: i32,
     /// ECEF Velocity Y: bits 904 to 919, raw -32768 to 32767, in m/s.
     ///
-    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): see ECEF Velocity X.
     pub ecef_velocity_y: i16,
     /// ECEF Position Z: bits 920 to 951, raw -2147483648 to 2147483647, in m.
     ///
-    /// Note ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): see ECEF Position X.
     pub ecef_position_z: i32,
     /// ECEF Velocity Z: bits 952 to 967, raw -32768 to 32767, in m/s.
     ///
-    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): see ECEF Velocity X.
     pub ecef_velocity_z: i16,
     /// X-pos Standard Deviation: bits 968 to 975, raw 0 to 255; physical `raw = value*10.0`, 0 to
     /// 25.5 m.
     ///
-    /// Note ACP-030 (certain): Formulas are written in two directions.
+    /// Note ACP-030 (certain): Formulas are written in two directions. Two telecommands give the
+    /// raw value as a multiple of the physical one, everything else the physical value from the raw
+    /// one. Both are held as printed.
     pub x_pos_standard_deviation: u8,
     /// Y-pos Standard Deviation: bits 976 to 983, raw 0 to 255; physical `raw = value*10.0`, 0 to
     /// 25.5 m.
     ///
-    /// Note ACP-030 (certain): Formulas are written in two directions.
+    /// Note ACP-030 (certain): see X-pos Standard Deviation.
     pub y_pos_standard_deviation: u8,
     /// Z-pos Standard Deviation: bits 984 to 991, raw 0 to 255; physical `raw = value*10.0`, 0 to
     /// 25.5 m.
     ///
-    /// Note ACP-030 (certain): Formulas are written in two directions.
+    /// Note ACP-030 (certain): see X-pos Standard Deviation.
     pub z_pos_standard_deviation: u8,
     /// X-vel Standard Deviation: bits 992 to 999, raw 0 to 255, in m/s.
     ///
-    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second. Deviations of the
+    /// position have a factor of 0.1, those of the velocity none. A whole 1 m/s is coarse for a GPS
+    /// velocity, and the limit that is compared with it is set in hundredths.
     pub x_vel_standard_deviation: u8,
     /// Y-vel Standard Deviation: bits 1000 to 1007, raw 0 to 255, in m/s.
     ///
-    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): see X-vel Standard Deviation.
     pub y_vel_standard_deviation: u8,
     /// Z-vel Standard Deviation: bits 1008 to 1015, raw 0 to 255, in m/s.
     ///
-    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): see X-vel Standard Deviation.
     pub z_vel_standard_deviation: u8,
 }
 

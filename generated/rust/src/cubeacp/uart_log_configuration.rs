@@ -17,14 +17,17 @@ pub struct UartLogConfiguration {
     ///
     /// Mask of up to 80 telemetry frames.
     ///
-    /// Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
+    /// Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned. Seventeen bits
+    /// of the mask have no frame: 2, 5, 6 and 66 to 79. What a log with one of them set holds is
+    /// not said.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub log_selection: [u8; 10],
     /// Log Period: bits 80 to 95, raw 0 to 65535.
     ///
     /// 0: logging disabled.
     ///
-    /// Note ACP-183 (open): Log period has no unit.
+    /// Note ACP-183 (open): Log period has no unit. Zero switches logging off; seconds or
+    /// iterations of the loop are both possible, and equal only while the loop runs at 1 Hz.
     pub log_period: u16,
 }
 

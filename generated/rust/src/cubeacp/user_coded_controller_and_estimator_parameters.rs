@@ -13,12 +13,13 @@ use crate::support::{array, put_array, Error};
 pub struct UserCodedControllerAndEstimatorParameters {
     /// User Coded Controller Settings: bytes 0 to 47.
     ///
-    /// Note ACP-178 (open): User coded settings: content of the arrays.
+    /// Note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes without
+    /// types; what they hold depends on code that the user supplies.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub user_coded_controller_settings: [u8; 48],
     /// User Coded Estimator Settings: bytes 48 to 95.
     ///
-    /// Note ACP-178 (open): User coded settings: content of the arrays.
+    /// Note ACP-178 (open): see User Coded Controller Settings.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub user_coded_estimator_settings: [u8; 48],
 }

@@ -16,21 +16,25 @@ use crate::support::{put, take, Error, Scale};
 pub struct WheelCurrents {
     /// Wheel1Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Note ACP-083 (open): Wheel currents: by number, described by axis.
+    /// Note ACP-083 (open): Wheel currents: by number, described by axis. The frame is described as
+    /// XYZ wheel currents, its fields are numbered, and names run together although their
+    /// descriptions do not.
     ///
-    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of 0.01 mA
+    /// sixteen bits reach 655.35 mA, which a wheel motor may well exceed. All other currents have
+    /// steps of 0.1 mA and more. The factor is held as printed.
     pub wheel1_current: u16,
     /// Wheel2Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Note ACP-083 (open): Wheel currents: by number, described by axis.
+    /// Note ACP-083 (open): see Wheel1Current.
     ///
-    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): see Wheel1Current.
     pub wheel2_current: u16,
     /// Wheel3Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Note ACP-083 (open): Wheel currents: by number, described by axis.
+    /// Note ACP-083 (open): see Wheel1Current.
     ///
-    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): see Wheel1Current.
     pub wheel3_current: u16,
 }
 

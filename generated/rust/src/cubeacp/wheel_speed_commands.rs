@@ -14,15 +14,17 @@ use crate::support::{put, take, Error};
 pub struct WheelSpeedCommands {
     /// Commanded X Wheel Speed: bits 0 to 15, raw -32768 to 32767, in rpm.
     ///
-    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds. The
+    /// descriptions are those of the measured speeds; the names tell the difference. The
+    /// telecommand names them again in another way.
     pub commanded_x_wheel_speed: i16,
     /// Commanded Y Wheel Speed: bits 16 to 31, raw -32768 to 32767, in rpm.
     ///
-    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    /// Note ACP-072 (certain): see Commanded X Wheel Speed.
     pub commanded_y_wheel_speed: i16,
     /// Commanded Z Wheel Speed: bits 32 to 47, raw -32768 to 32767, in rpm.
     ///
-    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    /// Note ACP-072 (certain): see Commanded X Wheel Speed.
     pub commanded_z_wheel_speed: i16,
 }
 

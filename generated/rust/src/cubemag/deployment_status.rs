@@ -8,9 +8,12 @@ use crate::support::{flags, put, take, Error};
 ///
 /// Only for the CubeMag of type Deploy.
 ///
-/// Note MAG-011 (open): Deployment Status: how to tell the type, and what other types answer.
+/// Note MAG-011 (open): Deployment Status: how to tell the type, and what other types answer. The
+/// frame applies to the deployable CubeMag only. Nothing in the excerpt tells the types apart, or
+/// says whether the others refuse the request.
 ///
-/// Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
+/// Note MAG-015 (open): Deployment Status and measurements end in unexplained bits. Three bits of
+/// the status and seven of each measurement are not described. They are held as reserved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,37 +23,42 @@ pub struct DeploymentStatus {
     ///
     /// Through the burn wire.
     ///
-    /// Note MAG-012 (open): Burn Current: 32 bits of whole milliamperes.
+    /// Note MAG-012 (open): Burn Current: 32 bits of whole milliamperes. An unsigned integer of 32
+    /// bits in mA reaches 4.3 million amperes. A float, as in the other measurements of the node,
+    /// or a scale that was lost would be more plausible; nothing is converted.
     pub burn_current: u32,
     /// Deployment Pin State: bit 32.
     ///
     /// Pin that detects the deployment.
     ///
-    /// Note MAG-013 (open): Polarity of the deployment pins is not given.
+    /// Note MAG-013 (open): Polarity of the deployment pins is not given. Whether a set bit means
+    /// deployed, a high level or an active burn wire is not said.
     pub deployment_pin_state: bool,
     /// Burn Pin State: bit 33.
     ///
     /// Pin that enables the burn wire.
     ///
-    /// Note MAG-013 (open): Polarity of the deployment pins is not given.
+    /// Note MAG-013 (open): see Deployment Pin State.
     pub burn_pin_state: bool,
     /// Burn UnderCurrent: bit 34.
     ///
     /// Too little current through the burn wire.
     ///
-    /// Note MAG-014 (open): Limits of the burn current and the configured time-out.
+    /// Note MAG-014 (open): Limits of the burn current and the configured time-out. Under- and
+    /// overcurrent have no limits, and the time-out is called configured without a message that
+    /// configures it.
     pub burn_under_current: bool,
     /// Burn OverCurrent: bit 35.
     ///
     /// Too much current through the burn wire.
     ///
-    /// Note MAG-014 (open): Limits of the burn current and the configured time-out.
+    /// Note MAG-014 (open): see Burn UnderCurrent.
     pub burn_over_current: bool,
     /// Deployment Timeout: bit 36.
     ///
     /// No deployment was detected within the configured time.
     ///
-    /// Note MAG-014 (open): Limits of the burn current and the configured time-out.
+    /// Note MAG-014 (open): see Burn UnderCurrent.
     pub deployment_timeout: bool,
 }
 

@@ -8,7 +8,9 @@ use crate::support::Enumeration;
 ///
 /// State of the CubeMag service.
 ///
-/// Note MAG-008 (open): MagState has no deployed state.
+/// Note MAG-008 (open): MagState has no deployed state. The service can be armed, deploying, idle
+/// or in error. A deployed boom shows as idle at best, and what a unit without a boom reports is
+/// not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -91,7 +93,8 @@ impl From<MagState> for u8 {
 ///
 /// State of a magnetometer service.
 ///
-/// Note MAG-009 (open): MntState: Mnt is not explained.
+/// Note MAG-009 (open): MntState: Mnt is not explained. The states belong to the magnetometers by
+/// the table that uses them; Mnt stands nowhere else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -108,11 +111,12 @@ pub enum MntState {
     ///
     /// Sampling automatically.
     ///
-    /// Note MAG-010 (open): MntState: Auto and Sample.
+    /// Note MAG-010 (open): MntState: Auto and Sample. Both mean sampling; when a single sample is
+    /// taken, and how automatic sampling is started, is not in the excerpt.
     Auto,
     /// Sample (4).
     ///
-    /// Note MAG-010 (open): MntState: Auto and Sample.
+    /// Note MAG-010 (open): see Auto.
     Sample,
     /// Error (5).
     Error,

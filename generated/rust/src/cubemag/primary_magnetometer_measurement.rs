@@ -6,7 +6,8 @@ use crate::support::{put, take, Error};
 
 /// Primary Magnetometer Measurement: telemetry 197, 13 bytes. Table 68.
 ///
-/// Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
+/// Note MAG-015 (open): Deployment Status and measurements end in unexplained bits. Three bits of
+/// the status and seven of each measurement are not described. They are held as reserved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -14,27 +15,32 @@ use crate::support::{put, take, Error};
 pub struct PrimaryMagnetometerMeasurement {
     /// X_axis: bits 0 to 31, 32-bit float, in nT.
     ///
-    /// Note MAG-016 (likely): FLOAT is not defined.
+    /// Note MAG-016 (likely): FLOAT is not defined. IEEE 754 of 32 bits, least significant byte
+    /// first, is held.
     ///
-    /// Note MAG-017 (open): Axes of the measurements are not defined.
+    /// Note MAG-017 (open): Axes of the measurements are not defined. Whether they are those of the
+    /// sensor, of the deployed boom or of the satellite is not said. The names carry an underscore
+    /// that no other name has.
     ///
-    /// Note MAG-018 (certain): nT here, uT there.
+    /// Note MAG-018 (certain): nT here, uT there. The node measures in nT as a float, the control
+    /// program reports the same field in uT with a step of 0.01. A reader who mixes them is wrong
+    /// by a factor of 1000.
     pub x_axis: f32,
     /// Y_axis: bits 32 to 63, 32-bit float, in nT.
     ///
-    /// Note MAG-016 (likely): FLOAT is not defined.
+    /// Note MAG-016 (likely): see X_axis.
     ///
-    /// Note MAG-017 (open): Axes of the measurements are not defined.
+    /// Note MAG-017 (open): see X_axis.
     ///
-    /// Note MAG-018 (certain): nT here, uT there.
+    /// Note MAG-018 (certain): see X_axis.
     pub y_axis: f32,
     /// Z_axis: bits 64 to 95, 32-bit float, in nT.
     ///
-    /// Note MAG-016 (likely): FLOAT is not defined.
+    /// Note MAG-016 (likely): see X_axis.
     ///
-    /// Note MAG-017 (open): Axes of the measurements are not defined.
+    /// Note MAG-017 (open): see X_axis.
     ///
-    /// Note MAG-018 (certain): nT here, uT there.
+    /// Note MAG-018 (certain): see X_axis.
     pub z_axis: f32,
     /// Data Valid: bit 96.
     pub data_valid: bool,

@@ -9,7 +9,9 @@ use crate::support::{Coded, Error};
 ///
 /// States of all services.
 ///
-/// Note MAG-004 (certain): Number 57 is used twice in the addendum.
+/// Note MAG-004 (certain): Number 57 is used twice in the addendum. Both parts have a Table 57,
+/// State here and Motor Power there. They come from two documents, and the source does not say
+/// where one ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,19 +21,21 @@ pub struct State {
     ///
     /// Of the CubeMag service.
     ///
-    /// Note MAG-007 (certain): State: names are cut short in three ways.
+    /// Note MAG-007 (certain): State: names are cut short in three ways. MagSvc, Primary Mag and
+    /// Red Mag stand for service, primary and redundant magnetometer; the measurement frames spell
+    /// redundant out.
     pub mag_svc_state: Coded<enums::MagState>,
     /// Primary Mag State: bits 8 to 15.
     ///
     /// Of the primary magnetometer.
     ///
-    /// Note MAG-007 (certain): State: names are cut short in three ways.
+    /// Note MAG-007 (certain): see MagSvc State.
     pub primary_mag_state: Coded<enums::MntState>,
     /// Red Mag State: bits 16 to 23.
     ///
     /// Of the redundant magnetometer.
     ///
-    /// Note MAG-007 (certain): State: names are cut short in three ways.
+    /// Note MAG-007 (certain): see MagSvc State.
     pub red_mag_state: Coded<enums::MntState>,
 }
 

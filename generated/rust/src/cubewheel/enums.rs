@@ -23,7 +23,8 @@ pub enum WheelErrorState {
     ///
     /// The speed asked for was not reached in time.
     ///
-    /// Note WHL-011 (open): Speed Not Reached Timeout: the time allowed is not given.
+    /// Note WHL-011 (open): Speed Not Reached Timeout: the time allowed is not given. The period is
+    /// called allocated; neither a figure nor a message that sets it is in the excerpt.
     SpeedNotReachedTimeout,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),

@@ -8,11 +8,16 @@ use crate::support::Error;
 ///
 /// Whether the motor is switched on.
 ///
-/// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
+/// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag. Tables
+/// 47, 48, 56 and 57 exist in the manual with other contents, 57 also in the first part of the
+/// addendum.
 ///
-/// Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
+/// Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word. The frame
+/// tells whether the motor is on; its text switches it, and its field is a power switch that is
+/// switched.
 ///
-/// Note WHL-016 (open): Motor Power: seven bits are not described.
+/// Note WHL-016 (open): Motor Power: seven bits are not described. One bit of the byte is
+/// explained; the others are held as reserved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,7 +25,7 @@ use crate::support::Error;
 pub struct MotorPower {
     /// Motor Power Switch: bit 0.
     ///
-    /// Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
+    /// Note WHL-015 (likely): see Motor Power.
     pub motor_power_switch: bool,
 }
 

@@ -8,11 +8,17 @@ use crate::support::{put, take, Error};
 ///
 /// Speed that the momentum wheel is set to.
 ///
-/// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
+/// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag. Tables
+/// 47, 48, 56 and 57 exist in the manual with other contents, 57 also in the first part of the
+/// addendum.
 ///
-/// Note WHL-012 (likely): Wheel Reference Speed is described as a telecommand.
+/// Note WHL-012 (likely): Wheel Reference Speed is described as a telecommand. The frame returns
+/// the reference, its description sets it. The text was taken over from the telecommand of the same
+/// data.
 ///
-/// Note WHL-013 (open): Momentum wheel in one place, wheel in the others.
+/// Note WHL-013 (open): Momentum wheel in one place, wheel in the others. The description of the
+/// reference speed has a momentum wheel, all other texts a wheel. CubeACP has three wheels and a
+/// fourth or momentum wheel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,11 +26,15 @@ use crate::support::{put, take, Error};
 pub struct WheelReferenceSpeed {
     /// Reference Speed: bits 0 to 31, 32-bit float, in rpm.
     ///
-    /// Erratum WHL-007 (certain): RPM is rpm.
+    /// Erratum WHL-007 (certain): RPM is rpm. The unit is printed in capitals here and in small
+    /// letters in the manual; once it stands in the description as well. Held in small letters.
     ///
-    /// Note WHL-009 (likely): FLOAT is not defined.
+    /// Note WHL-009 (likely): FLOAT is not defined. IEEE 754 of 32 bits, least significant byte
+    /// first, is held.
     ///
-    /// Note WHL-014 (open): Reference speed and reference torque: which one is in force.
+    /// Note WHL-014 (open): Reference speed and reference torque: which one is in force. A wheel
+    /// follows a speed or a torque. How to tell which of the two references is active is not in the
+    /// excerpt.
     pub reference_speed: f32,
 }
 

@@ -7,7 +7,9 @@ use crate::support::{put, take, Coded, Error};
 
 /// Wheel Speed: telemetry 188, 5 bytes. Table 47.
 ///
-/// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
+/// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag. Tables
+/// 47, 48, 56 and 57 exist in the manual with other contents, 57 also in the first part of the
+/// addendum.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -15,15 +17,21 @@ use crate::support::{put, take, Coded, Error};
 pub struct WheelSpeed {
     /// Wheel Speed: bits 0 to 31, 32-bit float, in rpm.
     ///
-    /// Erratum WHL-007 (certain): RPM is rpm.
+    /// Erratum WHL-007 (certain): RPM is rpm. The unit is printed in capitals here and in small
+    /// letters in the manual; once it stands in the description as well. Held in small letters.
     ///
-    /// Note WHL-008 (open): Wheel speed: the positive direction is not given.
+    /// Note WHL-008 (open): Wheel speed: the positive direction is not given. Neither the node nor
+    /// CubeACP, which has the speed as a whole number of 16 bits, says which direction counts as
+    /// positive.
     ///
-    /// Note WHL-009 (likely): FLOAT is not defined.
+    /// Note WHL-009 (likely): FLOAT is not defined. IEEE 754 of 32 bits, least significant byte
+    /// first, is held.
     pub wheel_speed: f32,
     /// Wheel Error State: bits 32 to 39.
     ///
-    /// Note WHL-010 (open): Wheel Error State: data that are valid are an error state.
+    /// Note WHL-010 (open): Wheel Error State: data that are valid are an error state. The value 0
+    /// says that all is well under the name of an error. Only one condition can be shown at a time;
+    /// which wins is not said.
     pub wheel_error_state: Coded<enums::WheelErrorState>,
 }
 

@@ -8,100 +8,48 @@ from typing import Optional, TypeVar
 
 from .._base import Message
 from .client import Client, Request
-from .events import Done, Event, Outcome, Refused, Timeout
-from .failures import FailedError, RefusedError, ReplyTimeoutError
+from .events import Event, Outcome, OutcomeOf
+from .exchanges import Exchange, Exchanges, P, Progress, T, executed, outcome_of
 from .link import Link, Settings
-from .procedures import Procedure
 
 M = TypeVar("M", bound=Message)
-P = TypeVar("P", bound=Procedure)
-
-_LONGEST_WAIT = 1000.0  # ms in one go
 
 
-class BusSession:
+class BusSession(Exchanges):
     """Asks, and waits for the outcome, over whatever ``_flush`` and ``_receive`` reach."""
-
-    def __init__(
-        self,
-        client: Client,
-        on_event: Optional[Callable[[Event], object]] = None,
-        clock: Callable[[], float] = time.monotonic,
-    ) -> None:
-        self.client = client
-        self._clock, self._on_event = clock, on_event
 
     def get(self, message: type[M]) -> M:
         """Requests telemetry, or reads a setting.
 
         Raises `RefusedError`, `ReplyTimeoutError` and what `Client.request` does.
         """
-        events = self.client.request(self._now(), message)
-        return message.from_bytes(_done(self._outcome(events)).data)
+        outcome = self._run(self._exchange(self.client.request, message))
+        return message.from_bytes(executed(outcome).data)
+
+    def ask(self, message: type[M]) -> OutcomeOf[M]:
+        """Requests telemetry, or reads a setting; its outcome.
+
+        Raises what `Client.request` does.
+        """
+        outcome = self._run(self._exchange(self.client.request, message))
+        return outcome_of(outcome, message)
 
     def send(self, message: Message, repeat: bool = False) -> None:
         """Sends a telecommand or a setting; raises like `get` and `Client.send`."""
-        _done(self._outcome(self.client.send(self._now(), message, repeat)))
+        executed(self._run(self._exchange(self.client.send, message, repeat)))
 
     def start(self, request: Request) -> Outcome:
         """Any request; its outcome. Raises what `Client.start` does."""
-        return self._outcome(self.client.start(self._now(), request))
+        return self._run(self._exchange(self.client.start, request))
 
-    def run(
-        self,
-        procedure: P,
-        progress: Optional[Callable[[int, Optional[int]], object]] = None,
-    ) -> P:
+    def run(self, procedure: P, progress: Optional[Progress] = None) -> P:
         """Runs a procedure to its end; ``progress`` is told of bytes, and of how many.
 
         A request that is refused with a code that the ICD does not have is sent again, if
         it may be, as the acknowledge may be damaged, and else taken for a time-out. Raises
         `FailedError`.
         """
-        try:
-            return self._driven(procedure, progress)
-        finally:
-            self.client.cancel()  # else a port that fails leaves it busy
-
-    def _driven(
-        self, procedure: P, progress: Optional[Callable[[int, Optional[int]], object]]
-    ) -> P:
-        events: list[Event] = []
-        shown: Optional[tuple[int, Optional[int]]] = None
-        asked: Optional[Request] = None
-        refused: Optional[Refused] = None
-        left = 0
-        while True:
-            is_again = False
-            for event in events:
-                if isinstance(event, Refused):
-                    refused = event
-                    if _may_be_damaged(event):
-                        self._tell(event)
-                        is_again = bool(asked and asked.repeat) and left > 0
-                        if is_again:
-                            continue
-                        event = Timeout(event.id, event.attempts)
-                procedure.event(self._now(), event)
-            events = []
-            if is_again:
-                left -= 1
-            elif not self.client.busy:
-                asked = procedure.next(self._now())
-                left = self.client.settings.retries
-            if asked and not self.client.busy:
-                events = self.client.start(self._now(), asked)
-            self._flush()
-            if progress and procedure.progress != shown:
-                shown = procedure.progress
-                progress(*shown)
-            if procedure.result == "done":
-                return procedure
-            if procedure.result:
-                why = refused if procedure.result == "refused" else None
-                raise FailedError(procedure.result, why)
-            if not events:
-                events = self.wait(procedure.deadline)
+        return self._run(self._procedure(procedure, progress))
 
     def wait(self, until: Optional[float] = None) -> list[Event]:
         """What happens next, by ``until`` at the latest (milliseconds of the clock).
@@ -109,30 +57,24 @@ class BusSession:
         Without ``until`` it waits as long as the client wants to, and a second at most.
         """
         self._flush()
-        now = self._now()
-        times = [time for time in (until, self.client.deadline) if time is not None]
-        wait = min([_LONGEST_WAIT, *(time - now for time in times)])
-        events = self._receive(max(0.0, wait) / 1000)
+        events = self._receive(self._seconds(until))
         self._flush()
-        for event in events:
-            if not isinstance(event, (Done, Refused, Timeout)):
-                self._tell(event)
-        return events
+        return self._tell_unasked(events)
 
-    def _tell(self, event: Event) -> None:
-        if self._on_event:
-            self._on_event(event)
-
-    def _outcome(self, events: list[Event]) -> Outcome:
+    def _run(self, exchange: Exchange[T]) -> T:
         try:
+            step = next(exchange)
             while True:
-                for event in events:
-                    if isinstance(event, (Done, Refused, Timeout)):
-                        self._flush()
-                        return event
-                events = self.wait()
+                if step == "send":
+                    self._flush()
+                    step = exchange.send([])
+                else:
+                    step = exchange.send(self.wait(step))
+        except StopIteration as end:
+            result: T = end.value
+            return result
         finally:
-            self.client.cancel()  # else a port that fails leaves it busy
+            exchange.close()
 
     def _flush(self) -> None:
         """Sends what the client wants to be sent."""
@@ -141,9 +83,6 @@ class BusSession:
     def _receive(self, seconds: float) -> list[Event]:
         """Gives the client what comes, or lets it know after so long that nothing does."""
         raise NotImplementedError
-
-    def _now(self) -> float:
-        return self._clock() * 1000
 
 
 class Session(BusSession):
@@ -179,16 +118,3 @@ class Session(BusSession):
         if data:
             return self.client.received(self._now(), data)
         return self.client.tick(self._now())
-
-
-def _done(outcome: Outcome) -> Done:
-    if isinstance(outcome, Refused):
-        raise RefusedError(outcome)
-    if isinstance(outcome, Timeout):
-        raise ReplyTimeoutError(outcome)
-    return outcome
-
-
-def _may_be_damaged(event: Refused) -> bool:
-    """Whether the code is one that the ICD does not have."""
-    return event.code is not None and event.reason is None

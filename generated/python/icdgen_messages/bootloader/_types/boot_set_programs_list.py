@@ -10,7 +10,9 @@ from ... import _enumeration
 class BootSetProgramsList(_enumeration.OpenEnum):
     """BootSetProgramsList: an enumeration. Table 63.
 
-    Note BOOT-009 (certain): Three enumerations of program places.
+    Note BOOT-009 (certain): Three enumerations of program places. BootSetProgramsList,
+    ProgramsList and BootProgramsList overlap. The internal program is 1 in all, the
+    bootloader 0 in one and 2 in another, where 2 is EEPROM in the first.
     """
 
     INTERNAL_FLASH_PROGRAM = 1, "Internal Flash Program"

@@ -14,15 +14,24 @@ class ClearErrorFlags(_base.Message):
     Clears the latched error flags of Bootloader State.
 
     Erratum BOOT-022 (certain): Clear Error Flags with a checksum deploys the
-    magnetometer boom where CubeACP runs.
+    magnetometer boom where CubeACP runs. The checksum of no parameters is 0xFF, so 07
+    FF is Deploy Magnetometer Boom with a time-out of 255 s. The ids are the vendor's
+    and stay. The bootloader knows no checksums, so that none is sent over its link; who
+    sends them to CubeACP must know that CubeACP runs.
 
     Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control
-    program.
+    program. The two programs answer on the same buses and addresses. These ids are a
+    different message in each, of another length in three cases, so who is answering
+    must be known first.
 
-    Note BOOT-005 (certain): Clear Error Flags and Clear Errors.
+    Note BOOT-005 (certain): Clear Error Flags and Clear Errors. The bootloader clears
+    with Clear Error Flags, the control program with Clear Errors, and the protocol
+    section names the second for both.
 
     Note BOOT-006 (open): What the bootloader does with telecommands of the control
-    program.
+    program. The ids of the control program are unknown to the bootloader, but four are
+    known with another meaning; telecommand 7 meant to deploy a boom clears flags. The
+    reverse is worse: 7 sent to clear flags deploys the boom.
     """
 
     NODE = "bootloader"

@@ -32,6 +32,8 @@ class CopyToInternalFlash(_base.Message):
     """Source Program Index: bits 0 to 7.
 
     Note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense.
+    The source may be the internal program itself or the bootloader. The result is not
+    described.
     """
 
     overwrite: int = _base.field(
@@ -50,5 +52,7 @@ class CopyToInternalFlash(_base.Message):
 
     90 (0x5A): overwrite the boot segment.
 
-    Note BOOT-012 (likely): Bootloader overwrite flag is a magic number.
+    Note BOOT-012 (likely): Bootloader overwrite flag is a magic number. A field of 8
+    bits is called a flag and acts at one value. Which value to send otherwise is not
+    said; anything else is assumed to leave the boot segment alone.
     """

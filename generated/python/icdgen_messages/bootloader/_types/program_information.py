@@ -15,7 +15,9 @@ class ProgramInformation(_base.Message):
     Answer to Read Program Information, to be polled until it is not busy.
 
     Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control
-    program.
+    program. The two programs answer on the same buses and addresses. These ids are a
+    different message in each, of another length in three cases, so who is answering
+    must be known first.
     """
 
     NODE = "bootloader"
@@ -30,7 +32,8 @@ class ProgramInformation(_base.Message):
     """Program Index: bits 0 to 7.
 
     Note BOOT-018 (open): Read Program Information: whether the answer belongs to the
-    request.
+    request. The request and the frame each have a program index. Whether the frame
+    still shows the previous one while busy, and how a wrong index shows, is not said.
     """
 
     busy: bool = _base.field("Busy", 8, 1, "bool", default=False)
@@ -42,9 +45,12 @@ class ProgramInformation(_base.Message):
     file_size: int = _base.field("File Size", 16, 32, "uint", default=0, unit="byte")
     """File Size: bits 16 to 47, raw 0 to 4294967295, in byte.
 
-    Erratum BOOT-021 (certain): Size of a program has its unit in words only.
+    Erratum BOOT-021 (certain): Size of a program has its unit in words only. Bytes
+    stand in the description, not as a unit of measure.
 
-    Note BOOT-019 (open): Program Information: what the checksum covers.
+    Note BOOT-019 (open): Program Information: what the checksum covers. File size and
+    checksum are given for a place in flash, which has no file. Whether the checksum
+    runs over the size or over the whole area is not said.
     """
 
     checksum: int = _base.field("Checksum", 48, 16, "uint", default=0)
@@ -52,5 +58,5 @@ class ProgramInformation(_base.Message):
 
     CRC-16.
 
-    Note BOOT-019 (open): Program Information: what the checksum covers.
+    Note BOOT-019 (open): see File Size.
     """

@@ -11,12 +11,18 @@ class ProgramsList(_enumeration.OpenEnum):
     """ProgramsList: an enumeration. Table 66."""
 
     BOOTLOADER = 0, "Bootloader"
-    """Note BOOT-009 (certain): Three enumerations of program places."""
+    """Note BOOT-009 (certain): Three enumerations of program places.
+    BootSetProgramsList, ProgramsList and BootProgramsList overlap. The internal program
+    is 1 in all, the bootloader 0 in one and 2 in another, where 2 is EEPROM in the
+    first.
+    """
     INTERNAL_FLASH_PROGRAM = 1, "Internal Flash Program"
     EEPROM = 2, "EEPROM"
-    """Note BOOT-009 (certain): Three enumerations of program places.
+    """Note BOOT-009 (certain): see Bootloader.
 
-    Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+    Note BOOT-010 (open): ProgramsList: places that are no flash programs. The text
+    knows seven areas of external flash and the internal one. EEPROM and eight files of
+    the SD card are listed too; whether they can be read or copied from is not said.
     """
     EXTERNAL_FLASH_PROGRAM_1 = 3, "External Flash Program 1"
     EXTERNAL_FLASH_PROGRAM_2 = 4, "External Flash Program 2"
@@ -26,18 +32,18 @@ class ProgramsList(_enumeration.OpenEnum):
     EXTERNAL_FLASH_PROGRAM_6 = 8, "External Flash Program 6"
     EXTERNAL_FLASH_PROGRAM_7 = 9, "External Flash Program 7"
     SD_USER_FILE_1 = 10, "SD User file 1"
-    """Note BOOT-010 (open): ProgramsList: places that are no flash programs."""
+    """Note BOOT-010 (open): see EEPROM."""
     SD_USER_FILE_2 = 11, "SD User file 2"
-    """Note BOOT-010 (open): ProgramsList: places that are no flash programs."""
+    """Note BOOT-010 (open): see EEPROM."""
     SD_USER_FILE_3 = 12, "SD User file 3"
-    """Note BOOT-010 (open): ProgramsList: places that are no flash programs."""
+    """Note BOOT-010 (open): see EEPROM."""
     SD_USER_FILE_4 = 13, "SD User file 4"
-    """Note BOOT-010 (open): ProgramsList: places that are no flash programs."""
+    """Note BOOT-010 (open): see EEPROM."""
     SD_USER_FILE_5 = 14, "SD User file 5"
-    """Note BOOT-010 (open): ProgramsList: places that are no flash programs."""
+    """Note BOOT-010 (open): see EEPROM."""
     SD_USER_FILE_6 = 15, "SD User file 6"
-    """Note BOOT-010 (open): ProgramsList: places that are no flash programs."""
+    """Note BOOT-010 (open): see EEPROM."""
     SD_USER_FILE_7 = 16, "SD User file 7"
-    """Note BOOT-010 (open): ProgramsList: places that are no flash programs."""
+    """Note BOOT-010 (open): see EEPROM."""
     SD_USER_FILE_8 = 17, "SD User file 8"
-    """Note BOOT-010 (open): ProgramsList: places that are no flash programs."""
+    """Note BOOT-010 (open): see EEPROM."""

@@ -16,6 +16,9 @@ class RunSelectedProgram(_base.Message):
     The node restarts instead of acknowledging it.
 
     Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere.
+    Its name refers to a selection, the text to the internal flash program. What it does
+    to the boot status, and whether it is acknowledged before the program starts, is not
+    said.
     """
 
     NODE = "bootloader"

@@ -26,5 +26,8 @@ class SetBootIndex(_base.Message):
     program_index: BootSetProgramsList = _base.field("Program Index", 0, 8, "enum", default=BootSetProgramsList(0))
     """Program Index: bits 0 to 7.
 
-    Note BOOT-007 (certain): Set Boot Index selects among one.
+    Note BOOT-007 (certain): Set Boot Index selects among one. The telecommand is to
+    choose a program, but its enumeration has one member and the text forbids others.
+    Its use is a side effect that the table does not mention: it sets the boot status
+    back.
     """

@@ -14,10 +14,13 @@ class State(_base.Message):
     Up-time, SRAM state and error flags. The error flags stay set until Clear Error
     Flags.
 
-    Erratum BOOT-013 (open): Bootloader State: 6 bytes announced, 28 bits described.
+    Erratum BOOT-013 (open): Bootloader State: 6 bytes announced, 28 bits described. The
+    last 20 bits of the frame are not explained. They are held as reserved.
 
     Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control
-    program.
+    program. The two programs answer on the same buses and addresses. These ids are a
+    different message in each, of another length in three cases, so who is answering
+    must be known first.
     """
 
     NODE = "bootloader"
@@ -31,7 +34,9 @@ class State(_base.Message):
     uptime: int = _base.field("Up-time (s)", 0, 16, "uint", default=0, unit="s")
     """Up-time (s): bits 0 to 15, raw 0 to 65535, in s.
 
-    Note BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds.
+    Note BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds. Name and
+    description differ, and the name repeats the unit. The field ends at 65535 s, while
+    the bootloader may stay for ever; what it shows then is not said.
     """
 
     sram1_is_enabled: bool = _base.field("SRAM1 is enabled", 16, 1, "bool", default=False)
@@ -45,7 +50,8 @@ class State(_base.Message):
     )
     """SRAM Latch-up Error occurred and could not be recovered: bit 18.
 
-    Note BOOT-017 (certain): Latch-up has three spellings.
+    Note BOOT-017 (certain): Latch-up has three spellings. Latch-up in the flags of the
+    bootloader, latchups and Latchup in the common frames, latch-up in the text.
     """
 
     sram_latchup_recovered: bool = _base.field(
@@ -53,7 +59,8 @@ class State(_base.Message):
     )
     """SRAM Latch-up Occurred but recovered after power cycle: bit 19.
 
-    Note BOOT-017 (certain): Latch-up has three spellings.
+    Note BOOT-017 (certain): see SRAM Latch-up Error occurred and could not be
+    recovered.
     """
 
     sd_card_initialisation_error: bool = _base.field("SD card initialisation error", 20, 1, "bool", default=False)
@@ -92,5 +99,7 @@ class State(_base.Message):
     communications_error_with_radio: bool = _base.field("Communications Error with Radio", 27, 1, "bool", default=False)
     """Communications Error with Radio: bit 27.
 
-    Note BOOT-016 (open): Bootloader State: a radio that the manual does not know.
+    Note BOOT-016 (open): Bootloader State: a radio that the manual does not know. A
+    flag reports communication errors with a radio. No radio, bus to it or setting for
+    it is mentioned anywhere.
     """

@@ -13,7 +13,8 @@ class AdvanceFileListReadPointer(_base.Message):
 
     Makes File Information describe the next file.
 
-    Note COM-040 (certain): A flow diagram is referred to without its number.
+    Note COM-040 (certain): A flow diagram is referred to without its number. The
+    process is described by the flow diagram in nothing; figure 14 is meant.
     """
 
     NODE = "common"

@@ -14,7 +14,9 @@ class BlockChecksum(_base.Message):
     CRC-16 of the received upload block, to be compared before the block is finalized.
 
     Note COM-041 (open): File upload is listed as common but described for the
-    bootloader only.
+    bootloader only. The messages of the upload are in the list common to both programs,
+    the procedure belongs to the bootloader. Whether the ACP answers them, refuses them,
+    or uploads somewhere is not said.
     """
 
     NODE = "common"
@@ -29,5 +31,7 @@ class BlockChecksum(_base.Message):
     """Checksum: bits 0 to 15, raw 0 to 65535.
 
     Note COM-106 (open): Checksum of an uploaded block is asked for before its length is
-    known.
+    known. The test comes before the block is committed, but the length of the block is
+    first sent when it is committed. Over how many bytes the node computes it for a
+    short last block is open.
     """

@@ -16,7 +16,8 @@ class BootAndRunningProgramStatus(_base.Message):
 
     Causes of the last reset and reboot, and the running program.
 
-    Note COM-062 (certain): Capitals of the boot status frame differ in the text.
+    Note COM-062 (certain): Capitals of the boot status frame differ in the text. Boot
+    And Running Program Status is Boot and Running Program Status in the text.
     """
 
     NODE = "common"
@@ -32,7 +33,10 @@ class BootAndRunningProgramStatus(_base.Message):
 
     From a hardware register of the MCU.
 
-    Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
+    Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap. Both are described
+    as the reason of the last reset. That the first comes from a hardware register and
+    the second from the software can be inferred only; which one holds when they
+    disagree is not said.
     """
 
     boot_cause: BootCause = _base.field("Boot Cause", 4, 4, "enum", default=BootCause.UNEXPECTED)
@@ -40,7 +44,7 @@ class BootAndRunningProgramStatus(_base.Message):
 
     Why the CubeComputer last rebooted.
 
-    Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
+    Note COM-059 (open): see Cause of MCU Reset.
     """
 
     boot_counter: int = _base.field("Boot Counter", 8, 16, "uint", default=0)
@@ -48,7 +52,10 @@ class BootAndRunningProgramStatus(_base.Message):
 
     How often the CubeComputer has booted.
 
-    Note COM-058 (certain): Reset Counter and Boot Counter are the same field.
+    Note COM-058 (certain): Reset Counter and Boot Counter are the same field. The text
+    calls the counter Reset Counter and, a few paragraphs later, Boot Counter; the table
+    has Boot Counter only. The text counts starts of the bootloader, the table boots of
+    the CubeComputer.
     """
 
     boot_program_index: BootProgramsList = _base.field("Boot Program Index", 24, 8, "enum", default=BootProgramsList(0))
@@ -60,11 +67,13 @@ class BootAndRunningProgramStatus(_base.Message):
     firmware_version_major: int = _base.field("Firmware version (Major)", 32, 8, "uint", default=0)
     """Firmware version (Major): bits 32 to 39, raw 0 to 255.
 
-    Note COM-061 (open): Firmware version stands in two frames.
+    Note COM-061 (open): Firmware version stands in two frames. Both frames hold major
+    and minor version in bytes. Whether frame 129 gives that of the running program or
+    of the one to be booted is not said.
     """
 
     firmware_version_minor: int = _base.field("Firmware version (Minor)", 40, 8, "uint", default=0)
     """Firmware version (Minor): bits 40 to 47, raw 0 to 255.
 
-    Note COM-061 (open): Firmware version stands in two frames.
+    Note COM-061 (open): see Firmware version (Major).
     """

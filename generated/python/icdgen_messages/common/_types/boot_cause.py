@@ -12,13 +12,19 @@ class BootCause(_enumeration.OpenEnum):
 
     UNEXPECTED = 0, "Unexpected"
     NOT_USED_1 = 1, "Not Used"
-    """Erratum COM-065 (certain): BootCause: first of two members called Not Used."""
+    """Erratum COM-065 (certain): BootCause: first of two members called Not Used. Two
+    values share a name. Each gets an identifier with its number.
+    """
     COMMUNICATIONS_TIMEOUT = 2, "Communications Timeout"
     """Nothing was received for too long.
 
     Note COM-067 (open): BootCause: a communications time-out that is described nowhere.
+    A reset for lack of communication needs a time-out. No setting, no figure and no
+    program that watches is named.
     """
     COMMANDED = 3, "Commanded"
     NOT_USED_4 = 4, "Not Used"
-    """Erratum COM-066 (certain): BootCause: second of two members called Not Used."""
+    """Erratum COM-066 (certain): BootCause: second of two members called Not Used. Two
+    values share a name. Each gets an identifier with its number.
+    """
     SRAM_LATCHUP = 5, "SRAM Latchup"

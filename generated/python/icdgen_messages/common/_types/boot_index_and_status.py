@@ -27,7 +27,9 @@ class BootIndexAndStatus(_base.Message):
     program_index: BootProgramsList = _base.field("Program Index", 0, 8, "enum", default=BootProgramsList(0))
     """Program Index: bits 0 to 7.
 
-    Note COM-069 (open): Program Index of the boot status can be the bootloader.
+    Note COM-069 (open): Program Index of the boot status can be the bootloader. The
+    frame shows which program is selected to boot, with an enumeration that has the
+    bootloader; only the internal program can be selected.
     """
 
     boot_status: BootStatus = _base.field("Boot Status", 8, 8, "enum", default=BootStatus.NEW_SELECTION)

@@ -13,5 +13,6 @@ class BootProgramsList(_enumeration.OpenEnum):
     INTERNAL_FLASH_PROGRAM = 1, "Internal Flash Program"
     BOOTLOADER = 2, "Bootloader"
     """Note COM-068 (certain): BootProgramsList numbers the bootloader 2, ProgramsList
-    0.
+    0. Three enumerations name program places, and two of them give different numbers to
+    the bootloader. The value 2 of this one is EEPROM in the other.
     """

@@ -13,16 +13,23 @@ class BootStatus(_enumeration.OpenEnum):
     Kept in flash. The bootloader counts up before each attempt, the program sets Boot
     Success once it runs.
 
-    Note COM-070 (open): Boot Status: whether the third attempt still takes place.
+    Note COM-070 (open): Boot Status: whether the third attempt still takes place. After
+    a first failure the bootloader is to try twice more, three attempts in all. But the
+    status is raised before each start, so it reads 4 before the third attempt begins,
+    and at 4 the application is said not to be started any more.
     """
 
     NEW_SELECTION = 0, "New Selection"
     BOOT_SUCCESS = 1, "Boot Success"
     FAILED_BOOT_ATTEMPT_1 = 2, "1 Failed boot attempt"
-    """Note COM-071 (certain): Boot Status values are named differently in the text.
+    """Note COM-071 (certain): Boot Status values are named differently in the text. The
+    text speaks of 3x failed attempts and of a 1st failed boot attempt; the enumeration
+    has 3 Failed boot attempts and 1 Failed boot attempt. Same values, other words.
 
     Note COM-072 (likely): Boot Status 2 is also written before the very first start.
+    While the application has not yet confirmed, a healthy start reads 1 Failed boot
+    attempt. Whoever reads the status early takes a running start for a failed one.
     """
     FAILED_BOOT_ATTEMPTS_2 = 3, "2 Failed boot attempts"
     FAILED_BOOT_ATTEMPTS_3 = 4, "3 Failed boot attempts"
-    """Note COM-071 (certain): Boot Status values are named differently in the text."""
+    """Note COM-071 (certain): see 1 Failed boot attempt."""

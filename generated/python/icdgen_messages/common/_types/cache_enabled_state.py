@@ -25,5 +25,6 @@ class CacheEnabledState(_base.Message):
     enabled_state: bool = _base.field("Enabled state", 0, 1, "bool", default=False)
     """Enabled state: bit 0.
 
-    Note COM-108 (open): Cache enabled state: which cache, and the default.
+    Note COM-108 (open): Cache enabled state: which cache, and the default. The setting
+    switches a cache that the manual does not mention anywhere else.
     """

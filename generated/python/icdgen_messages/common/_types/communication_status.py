@@ -14,6 +14,8 @@ class CommunicationStatus(_base.Message):
     Counts of messages received, and error flags of the interfaces.
 
     Erratum COM-084 (open): Communication Status: 6 bytes announced, 38 bits described.
+    The last byte and two bits of the one before it are not explained. The frame may be
+    filled up to the size of the loggable ones. They are held as reserved.
     """
 
     NODE = "common"
@@ -29,7 +31,9 @@ class CommunicationStatus(_base.Message):
 
     Telecommands received.
 
-    Note COM-082 (open): Counters: served or received.
+    Note COM-082 (open): Counters: served or received. The text counts commands and
+    requests that have been served, the table those that have been received. Refused
+    ones make the difference.
     """
 
     telemetry_request_counter: int = _base.field("Telemetry request counter", 16, 16, "uint", default=0)
@@ -37,7 +41,7 @@ class CommunicationStatus(_base.Message):
 
     Requests received.
 
-    Note COM-082 (open): Counters: served or received.
+    Note COM-082 (open): see Telecommand counter.
     """
 
     telecommand_buffer_overrun: bool = _base.field("Telecommand buffer overrun", 32, 1, "bool", default=False)
@@ -45,16 +49,21 @@ class CommunicationStatus(_base.Message):
 
     The buffer overflowed while a telecommand came in.
 
-    Note COM-081 (open): Which telecommand clears the communication error flags.
+    Note COM-081 (open): Which telecommand clears the communication error flags. For the
+    I2C flag a Clear Errors telecommand is named. It exists in the control program only,
+    and by its table clears ADCS and HK flags. Of the other flags, and of the
+    bootloader, nothing is said.
     """
 
     uart_protocol_error: bool = _base.field("UART protocol error", 33, 1, "bool", default=False)
     """UART protocol error: bit 33.
 
     Note COM-078 (open): UART: what a receiver does on an invalid escape or an
-    unfinished message.
+    unfinished message. An ESC followed by anything else should not occur, and a start
+    without a preceding end sets a flag. Whether the message begun is dropped or goes
+    on, and after which pause, is not said.
 
-    Note COM-081 (open): Which telecommand clears the communication error flags.
+    Note COM-081 (open): see Telecommand buffer overrun.
     """
 
     uart_incomplete_message: bool = _base.field("UART incomplete message", 34, 1, "bool", default=False)
@@ -62,10 +71,9 @@ class CommunicationStatus(_base.Message):
 
     A message began before the one before it had ended.
 
-    Note COM-078 (open): UART: what a receiver does on an invalid escape or an
-    unfinished message.
+    Note COM-078 (open): see UART protocol error.
 
-    Note COM-081 (open): Which telecommand clears the communication error flags.
+    Note COM-081 (open): see Telecommand buffer overrun.
     """
 
     i2c_telemetry_error: bool = _base.field("I2C telemetry error", 35, 1, "bool", default=False)
@@ -73,12 +81,16 @@ class CommunicationStatus(_base.Message):
 
     More bytes were read than the frame has. Stays set until Clear Errors.
 
-    Note COM-079 (open): I2C telemetry error: too many bytes, or any wrong number.
+    Note COM-079 (open): I2C telemetry error: too many bytes, or any wrong number. The
+    text sets the flag for an incorrect number of bytes, read past the end or
+    incomplete. The table sets it only for more bytes than the frame has.
 
     Note COM-080 (likely): I2C: reading one byte more is both an error and the way to
-    get the checksum.
+    get the checksum. An incorrect number of bytes sets an error flag, yet the control
+    program allows one more for the checksum. The flag must then be set from the second
+    extra byte on; the text does not say so.
 
-    Note COM-081 (open): Which telecommand clears the communication error flags.
+    Note COM-081 (open): see Telecommand buffer overrun.
     """
 
     i2c_telecommand_buffer_error: bool = _base.field("I2C telecommand buffer error", 36, 1, "bool", default=False)
@@ -86,9 +98,11 @@ class CommunicationStatus(_base.Message):
 
     A telecommand was longer than the buffer.
 
-    Note COM-081 (open): Which telecommand clears the communication error flags.
+    Note COM-081 (open): see Telecommand buffer overrun.
 
-    Note COM-083 (open): Two buffer errors have the same description.
+    Note COM-083 (open): Two buffer errors have the same description. The flags for I2C
+    and CAN are both explained as a telecommand larger than the buffer; the size of
+    neither buffer is given.
     """
 
     can_telecommand_buffer_error: bool = _base.field("CAN telecommand buffer error", 37, 1, "bool", default=False)
@@ -96,7 +110,7 @@ class CommunicationStatus(_base.Message):
 
     A telecommand was longer than the buffer.
 
-    Note COM-081 (open): Which telecommand clears the communication error flags.
+    Note COM-081 (open): see Telecommand buffer overrun.
 
-    Note COM-083 (open): Two buffer errors have the same description.
+    Note COM-083 (open): see I2C telecommand buffer error.
     """

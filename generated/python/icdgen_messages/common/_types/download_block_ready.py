@@ -13,7 +13,9 @@ class DownloadBlockReady(_base.Message):
 
     Whether the block asked for by Load File Download Block is in the buffer.
 
-    Note COM-093 (open): Polling has no interval and no time-out.
+    Note COM-093 (open): Polling has no interval and no time-out. How often the
+    acknowledge may be polled, and when to give up, is not said. For files a time is
+    suggested for two of the operations only.
     """
 
     NODE = "common"
@@ -32,7 +34,10 @@ class DownloadBlockReady(_base.Message):
 
     Message length and hole map together led to invalid array lengths.
 
-    Note COM-097 (open): ParameterError refers to arrays that no message has.
+    Note COM-097 (open): ParameterError refers to arrays that no message has. The
+    combination of message length and hole map is said to have led to invalid array
+    lengths. Which combinations do is not said, and the download text does not mention
+    the flag.
     """
 
     block_crc16_checksum: int = _base.field("Block CRC16 Checksum", 8, 16, "uint", default=0)
@@ -41,5 +46,7 @@ class DownloadBlockReady(_base.Message):
     block_length: int = _base.field("Block Length", 24, 16, "uint", default=0, unit="byte")
     """Block Length: bits 24 to 39, raw 0 to 65535, in byte.
 
-    Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant
+    throughout, but of the tables of messages only that of the program information says
+    so.
     """

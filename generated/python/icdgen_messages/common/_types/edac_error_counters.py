@@ -33,7 +33,9 @@ class EdacErrorCounters(_base.Message):
 
     Counted per byte.
 
-    Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been.
+    Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been. The
+    frame is said to count errors that were detected and corrected. It has counters for
+    double and multiple upsets in a byte, which such a code detects at best.
     """
 
     multiple_sram_upsets: int = _base.field("Multiple SRAM upsets", 32, 16, "uint", default=0)
@@ -41,5 +43,5 @@ class EdacErrorCounters(_base.Message):
 
     Counted per byte.
 
-    Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been.
+    Note COM-077 (likely): see Double SRAM upsets.
     """

@@ -17,7 +17,9 @@ class EraseFile(_base.Message):
 
     Dangerous: The file is lost; all files are with Erase All.
 
-    Note COM-034 (open): Erase File: what the other fields mean with Erase All.
+    Note COM-034 (open): Erase File: what the other fields mean with Erase All. With the
+    flag set all files go; whether type and counter must still be valid, or limit the
+    erasing to one type, is not said.
     """
 
     NODE = "common"
@@ -34,7 +36,8 @@ class EraseFile(_base.Message):
     file_counter: int = _base.field("File Counter", 8, 8, "uint", default=0)
     """File Counter: bits 8 to 15, raw 0 to 255.
 
-    Note COM-035 (open): File counter of 8 bits.
+    Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens
+    with the next one is not said.
     """
 
     erase_all: bool = _base.field("Erase All", 16, 1, "bool", default=False)

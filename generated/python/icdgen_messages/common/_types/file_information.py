@@ -15,10 +15,13 @@ class FileInformation(_base.Message):
     The file at the list pointer. All zeros with Busy Updating clear: the end of the
     list.
 
-    Note COM-093 (open): Polling has no interval and no time-out.
+    Note COM-093 (open): Polling has no interval and no time-out. How often the
+    acknowledge may be polled, and when to give up, is not said. For files a time is
+    suggested for two of the operations only.
 
     Note COM-102 (certain): File information and index entry order the same items
-    differently.
+    differently. The frame has size, date and checksum; the index has checksum, size and
+    date, and whole bytes. One layout cannot read the other.
     """
 
     NODE = "common"
@@ -37,7 +40,8 @@ class FileInformation(_base.Message):
 
     The other fields are valid once this is clear.
 
-    Note COM-101 (certain): Busy Updating has no description.
+    Note COM-101 (certain): Busy Updating has no description. What it means stands only
+    in the text: the rest of the frame is valid once it is clear.
     """
 
     file_ctr: int = _base.field("File Ctr", 8, 8, "uint", default=0)
@@ -45,15 +49,21 @@ class FileInformation(_base.Message):
 
     With the type it identifies the file.
 
-    Note COM-029 (certain): One field, several spellings.
+    Note COM-029 (certain): One field, several spellings. The same things are written
+    Magic number and Magic Number, BlockLength and Block Length, File bytes and File
+    Bytes, File Counter, Counter and File Ctr, and Checksum with and without CRC16.
+    Names are held as printed.
 
-    Note COM-035 (open): File counter of 8 bits.
+    Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens
+    with the next one is not said.
     """
 
     file_size: int = _base.field("File Size", 16, 32, "uint", default=0, unit="byte")
     """File Size: bits 16 to 47, raw 0 to 4294967295, in byte.
 
-    Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant
+    throughout, but of the tables of messages only that of the program information says
+    so.
     """
 
     file_date_and_time: int = _base.field("File Date and Time", 48, 32, "uint", default=0, unit="MS-DOS time")
@@ -61,9 +71,12 @@ class FileInformation(_base.Message):
 
     In MS-DOS format.
 
-    Erratum COM-099 (certain): File Date and Time: a packed date in seconds.
+    Erratum COM-099 (certain): File Date and Time: a packed date in seconds. The unit is
+    given as s, but the value is a date and time packed into bit fields, so it counts
+    nothing. Held with a unit of its own; the raw value is not converted.
 
-    Note COM-100 (open): Time zone of file times is not given.
+    Note COM-100 (open): Time zone of file times is not given. Whether UTC or something
+    else fills the packed date is not said; its resolution is 2 s.
     """
 
     file_crc16_checksum: int = _base.field("File CRC16 Checksum", 80, 16, "uint", default=0)

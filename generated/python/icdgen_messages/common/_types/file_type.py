@@ -10,11 +10,16 @@ from ... import _enumeration
 class FileType(_enumeration.OpenEnum):
     """FileType: an enumeration. Table 16.
 
-    Note COM-037 (open): FileType begins at 2 and jumps to 15.
+    Note COM-037 (open): FileType begins at 2 and jumps to 15. Values 0, 1 and 5 to 14
+    are not explained. Value 0 ends the file list, since an entry of zeroes does.
     """
 
     TELEMETRY_LOG = 2, "Telemetry Log"
     JPG_IMAGE = 3, "JPG Image"
     BMP_IMAGE = 4, "BMP Image"
     INDEX = 15, "Index"
-    """Note COM-038 (open): Index file: neither length nor counter is given."""
+    """Note COM-038 (open): Index file: neither length nor counter is given. The index,
+    Index in the list and Index File in the text, is fetched like a file, but the number
+    of entries is known only once it has been read, and which counter to send with its
+    type is not said.
+    """

@@ -12,12 +12,15 @@ class FileUploadDestination(_enumeration.OpenEnum):
 
     The SD card destinations are not supported.
 
-    Note COM-045 (certain): Names of the flash areas differ between two lists.
+    Note COM-045 (certain): Names of the flash areas differ between two lists. Flash
+    program 1 of the upload is External Flash Program 1 of the bootloader, with the same
+    number.
     """
 
     EEPROM = 2, "EEPROM"
     """Note COM-044 (open): FileUploadDestination: EEPROM is listed, the text knows
-    flash only.
+    flash only. A new firmware file can only go to the external flash, so value 2 is
+    either unsupported too or for something not described.
     """
     FLASH_PROGRAM_1 = 3, "Flash program 1"
     FLASH_PROGRAM_2 = 4, "Flash program 2"
@@ -28,25 +31,20 @@ class FileUploadDestination(_enumeration.OpenEnum):
     FLASH_PROGRAM_7 = 9, "Flash program 7"
     SD_USER_FILE_1 = 10, "SD User file 1"
     """Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+    The SD user files are listed as destinations, and the text says that they are not
+    supported.
     """
     SD_USER_FILE_2 = 11, "SD User file 2"
-    """Note COM-043 (certain): FileUploadDestination: eight members are not supported.
-    """
+    """Note COM-043 (certain): see SD User file 1."""
     SD_USER_FILE_3 = 12, "SD User file 3"
-    """Note COM-043 (certain): FileUploadDestination: eight members are not supported.
-    """
+    """Note COM-043 (certain): see SD User file 1."""
     SD_USER_FILE_4 = 13, "SD User file 4"
-    """Note COM-043 (certain): FileUploadDestination: eight members are not supported.
-    """
+    """Note COM-043 (certain): see SD User file 1."""
     SD_USER_FILE_5 = 14, "SD User file 5"
-    """Note COM-043 (certain): FileUploadDestination: eight members are not supported.
-    """
+    """Note COM-043 (certain): see SD User file 1."""
     SD_USER_FILE_6 = 15, "SD User file 6"
-    """Note COM-043 (certain): FileUploadDestination: eight members are not supported.
-    """
+    """Note COM-043 (certain): see SD User file 1."""
     SD_USER_FILE_7 = 16, "SD User file 7"
-    """Note COM-043 (certain): FileUploadDestination: eight members are not supported.
-    """
+    """Note COM-043 (certain): see SD User file 1."""
     SD_USER_FILE_8 = 17, "SD User file 8"
-    """Note COM-043 (certain): FileUploadDestination: eight members are not supported.
-    """
+    """Note COM-043 (certain): see SD User file 1."""

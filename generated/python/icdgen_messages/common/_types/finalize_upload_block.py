@@ -15,9 +15,14 @@ class FinalizeUploadBlock(_base.Message):
     Commits the received block to its destination.
 
     Note COM-041 (open): File upload is listed as common but described for the
-    bootloader only.
+    bootloader only. The messages of the upload are in the list common to both programs,
+    the procedure belongs to the bootloader. Whether the ACP answers them, refuses them,
+    or uploads somewhere is not said.
 
-    Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
+    Note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text
+    ends with the checksum test before the block is committed. The telecommand that
+    commits it and the frame that reports it are never named; both stood in a figure at
+    best.
     """
 
     NODE = "common"
@@ -36,11 +41,13 @@ class FinalizeUploadBlock(_base.Message):
 
     Where in the file the block belongs.
 
-    Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant
+    throughout, but of the tables of messages only that of the program information says
+    so.
     """
 
     block_length: int = _base.field("Block Length", 40, 16, "uint", default=0, unit="byte")
     """Block Length: bits 40 to 55, raw 0 to 65535, in byte.
 
-    Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    Erratum COM-039 (likely): see Offset.
     """

@@ -15,14 +15,19 @@ class HoleMap7(_base.Message):
     Packets 768 to 895 of a file block.
 
     Note COM-115 (certain): Hole maps are named for the upload and serve the download
-    too.
+    too. All eight messages are described as file upload hole map. For a download the
+    OBC sets them, for an upload it reads them. Whether both use one buffer is not said.
 
-    Note COM-116 (open): Hole map: who clears it before a download.
+    Note COM-116 (open): Hole map: who clears it before a download. Only Reset Upload
+    Block is said to reset the map. Before a download it may hold what the last transfer
+    left; the first burst ignores it, the second does not.
 
-    Note COM-117 (likely): Hole map: bits beyond the last packet.
+    Note COM-117 (likely): Hole map: bits beyond the last packet. The code treats every
+    0 among 1024 bits as a packet missed, also those that a shorter block does not have.
 
     Note COM-124 (certain): The hole map is read with eight frames, one table is
-    referred to.
+    referred to. Frames 247 to 254 are said to be described by Table 52, which describes
+    the first of them.
     """
 
     NODE = "common"

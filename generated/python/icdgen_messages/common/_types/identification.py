@@ -15,7 +15,9 @@ class Identification(_base.Message):
     booting on.
 
     Note COM-054 (likely): The identification request stops the boot that it is to
-    check.
+    check. A request that reaches the bootloader keeps it from booting: asked within the
+    first 5 s, or after a reset that nobody planned, it prevents the start. Section 7.1
+    does not say how the boot is resumed; Run Selected Program would do it.
     """
 
     NODE = "common"
@@ -35,7 +37,9 @@ class Identification(_base.Message):
     interface_version: int = _base.field("Interface version", 8, 8, "uint", default=0)
     """Interface version: bits 8 to 15, raw 0 to 255.
 
-    Erratum COM-055 (certain): Interface version should be 1.
+    Erratum COM-055 (certain): Interface version should be 1. The identification frame
+    is said to carry 1. The programs that it identifies carry 7 and 3, so the constant
+    would refuse every real answer.
     """
 
     firmware_version_major: int = _base.field("Firmware version (Major)", 16, 8, "uint", default=0)
@@ -49,9 +53,11 @@ class Identification(_base.Message):
 
     Since the processor started.
 
-    Erratum COM-057 (certain): Runtime has its unit in words only.
+    Erratum COM-057 (certain): Runtime has its unit in words only. Seconds stand in name
+    and description, not as a unit of measure.
 
-    Note COM-056 (open): Runtime ends after 18 hours.
+    Note COM-056 (open): Runtime ends after 18 hours. Seconds since start-up have 16
+    bits and reach 65535 s, 18 h 12 min. What follows is not said.
     """
 
     runtime_milliseconds: int = _base.field("Runtime (milliseconds)", 48, 16, "uint", default=0, unit="ms")
@@ -60,5 +66,5 @@ class Identification(_base.Message):
     Beyond the whole seconds.
 
     Erratum COM-127 (certain): Milliseconds of the runtime have their unit in words
-    only.
+    only. Milliseconds stand in name and description, not as a unit of measure.
     """

@@ -15,10 +15,18 @@ class InitiateDownloadBurst(_base.Message):
     succession, on I2C the master reads them one by one.
 
     Note COM-051 (certain): Messages of the download have other names in the text.
+    Initiate File Download Burst and Download File Packet do not exist. Initiate
+    Download Burst and File Download Buffer with File Contents are meant.
 
-    Note COM-052 (open): Download packets: id of the telecommand or of the frame.
+    Note COM-052 (open): Download packets: id of the telecommand or of the frame. On
+    UART the packets are said to be headed by the id of the telecommand, 119. The frame
+    with their format has the id 241. Which of the two the reads on I2C are headed by is
+    not said; 241 is assumed. With 119 a packet and an acknowledge differ by length
+    only.
 
-    Note COM-053 (open): Download over CAN is not described.
+    Note COM-053 (open): Download over CAN is not described. Packets are pushed on UART
+    and read on I2C. For CAN, which both programs support, nothing is said; a packet of
+    22 bytes would need an extended transaction of four.
     """
 
     NODE = "common"
@@ -32,7 +40,9 @@ class InitiateDownloadBurst(_base.Message):
     message_length: int = _base.field("Message Length", 0, 8, "uint", default=0)
     """Message Length: bits 0 to 7, raw 0 to 255.
 
-    Note COM-050 (open): Initiate Download Burst: Message Length is not explained.
+    Note COM-050 (open): Initiate Download Burst: Message Length is not explained. The
+    length of a message is fixed at 22 bytes by the frame and the text. Which value has
+    to be sent, and what others do, is not said; one error flag refers to it.
     """
 
     ignore_hole_map: bool = _base.field("Ignore Hole Map", 8, 1, "bool", default=False)

@@ -17,7 +17,9 @@ class InitiateFileUpload(_base.Message):
     Dangerous: The program in the destination is lost.
 
     Note COM-041 (open): File upload is listed as common but described for the
-    bootloader only.
+    bootloader only. The messages of the upload are in the list common to both programs,
+    the procedure belongs to the bootloader. Whether the ACP answers them, refuses them,
+    or uploads somewhere is not said.
     """
 
     NODE = "common"
@@ -39,5 +41,6 @@ class InitiateFileUpload(_base.Message):
 
     Ignored, may be 0.
 
-    Note COM-042 (certain): BlockSize is a byte and ignored.
+    Note COM-042 (certain): BlockSize is a byte and ignored. The field cannot hold the
+    size of a block, and the text says that it is ignored and may be 0.
     """

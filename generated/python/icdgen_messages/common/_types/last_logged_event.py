@@ -14,7 +14,8 @@ class LastLoggedEvent(_base.Message):
     The event at the log pointer, which Reset Log Pointer and Advance Log Pointer move.
 
     Note COM-073 (certain): Last Logged Event: wrong telecommands, and a bracket left
-    open.
+    open. The pointer is said to be adjusted with telecommands 3 and 4. Reset Log
+    Pointer is 4 and Advance Log Pointer 5; 3 sets the cache.
     """
 
     NODE = "common"
@@ -28,17 +29,19 @@ class LastLoggedEvent(_base.Message):
     time_of_event: int = _base.field("Time of Event", 0, 32, "uint", default=0)
     """Time of Event: bits 0 to 31, raw 0 to 4294967295.
 
-    Note COM-074 (open): Time of Event has no description.
+    Note COM-074 (open): Time of Event has no description. Neither unit nor epoch is
+    given; Unix time in seconds is a guess from the width.
     """
 
     event_id: int = _base.field("Event ID", 32, 8, "uint", default=0)
     """Event ID: bits 32 to 39, raw 0 to 255.
 
-    Note COM-075 (open): Events are not listed.
+    Note COM-075 (open): Events are not listed. Event ID and parameter are numbers
+    without a key.
     """
 
     event_parameter: int = _base.field("Event Parameter", 40, 8, "uint", default=0)
     """Event Parameter: bits 40 to 47, raw 0 to 255.
 
-    Note COM-075 (open): Events are not listed.
+    Note COM-075 (open): see Event ID.
     """

@@ -32,9 +32,13 @@ class LoadFileDownloadBlock(_base.Message):
 
     Of the file: with the type it identifies the file.
 
-    Note COM-029 (certain): One field, several spellings.
+    Note COM-029 (certain): One field, several spellings. The same things are written
+    Magic number and Magic Number, BlockLength and Block Length, File bytes and File
+    Bytes, File Counter, Counter and File Ctr, and Checksum with and without CRC16.
+    Names are held as printed.
 
-    Note COM-035 (open): File counter of 8 bits.
+    Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens
+    with the next one is not said.
     """
 
     offset: int = _base.field("Offset", 16, 32, "uint", default=0, unit="byte")
@@ -42,7 +46,9 @@ class LoadFileDownloadBlock(_base.Message):
 
     Where in the file the block begins.
 
-    Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    Erratum COM-039 (likely): Offsets and lengths of files have no unit. Bytes are meant
+    throughout, but of the tables of messages only that of the program information says
+    so.
     """
 
     block_length: int = _base.field("BlockLength", 48, 16, "uint", default=0, unit="byte", maximum=20480)
@@ -52,7 +58,7 @@ class LoadFileDownloadBlock(_base.Message):
 
     Must be at most 20480 byte.
 
-    Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    Erratum COM-039 (likely): see Offset.
 
-    Note COM-029 (certain): One field, several spellings.
+    Note COM-029 (certain): see Counter.
     """

@@ -14,7 +14,9 @@ class ResetBootRegisters(_base.Message):
     Resets the boot counter, boot state and boot cause.
 
     Note COM-032 (likely): Reset Boot Registers: a Boot State that no frame has, and no
-    values to reset to.
+    values to reset to. The command is said to reset Boot Counter, Boot State and Boot
+    Cause. There is no Boot State; Boot Status is probably meant. To which value status
+    and cause are reset is not said.
     """
 
     NODE = "common"

@@ -22,21 +22,25 @@ class ResetCause(_enumeration.OpenEnum):
     BACKUP_BROWN_OUT = 9, "Backup Brown-Out"
     """Of the backup domain."""
     BACKUP_MODE_RESET = 10, "Backup Mode Reset"
-    """Note COM-064 (certain): ResetCause: two spellings of one source."""
+    """Note COM-064 (certain): ResetCause: two spellings of one source. BackupModeRST
+    stands beside Backup Mode RST and Backup Mode Reset. Identifiers come out alike.
+    """
     BACKUP_MODE_AND_BACKUP_BROWN_OUT = 11, "Backup Mode RST and Backup Brown-Out Vdd Regulated"
     """Backup mode reset together with a brown-out of the backup domain on regulated
     VDD.
 
-    Note COM-064 (certain): ResetCause: two spellings of one source.
+    Note COM-064 (certain): see Backup Mode Reset.
     """
     BACKUP_MODE_AND_BOTH_BROWN_OUTS = 12, "BackupModeRST and Backup Brown-Out Vdd Regulated and Brown-Out Regulated"
     """As 11, and a brown-out on regulated power.
 
-    Note COM-064 (certain): ResetCause: two spellings of one source.
+    Note COM-064 (certain): see Backup Mode Reset.
     """
     BACKUP_MODE_AND_WATCHDOG_RESET = 13, "Backup Mode RST and Watchdog Reset"
-    """Note COM-064 (certain): ResetCause: two spellings of one source."""
+    """Note COM-064 (certain): see Backup Mode Reset."""
     BACKUP_BROWN_OUT_AND_SYSTEM_REQUEST_RESET = 14, "Backup Brown-Out BuvIn and System Request Reset"
     """The brown-out is that of the backup domain on BUVIN."""
     UNKNOWN_RESET_CAUSE = 15, "Unkown Reset Cause"
-    """Erratum COM-063 (certain): ResetCause: Unkown."""
+    """Erratum COM-063 (certain): ResetCause: Unkown. A letter is missing in Unknown, in
+    name and description. The identifier is held without the slip.
+    """

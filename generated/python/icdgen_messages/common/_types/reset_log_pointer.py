@@ -14,9 +14,12 @@ class ResetLogPointer(_base.Message):
     Resets the pointer at which Last Logged Event reads the event buffer.
 
     Note COM-030 (certain): Log pointer telecommands speak of a frame that is named
-    otherwise.
+    otherwise. They move the pointer of LastLogEvent; the frame is called Last Logged
+    Event.
 
-    Note COM-031 (open): Log pointer: where it starts and which way it advances.
+    Note COM-031 (open): Log pointer: where it starts and which way it advances. After a
+    reset the pointer may stand at the oldest or at the newest event, and advancing may
+    go either way. What is read past the end is not said.
     """
 
     NODE = "common"

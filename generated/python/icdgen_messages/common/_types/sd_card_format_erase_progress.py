@@ -13,7 +13,9 @@ class SdCardFormatEraseProgress(_base.Message):
 
     Whether the SD card is still being formatted or erased.
 
-    Note COM-085 (open): Erase File: progress and failure.
+    Note COM-085 (open): Erase File: progress and failure. Only Erase All can be
+    followed. A single file, or an erase or format that fails, leaves no trace in any
+    frame.
     """
 
     NODE = "common"
@@ -32,5 +34,6 @@ class SdCardFormatEraseProgress(_base.Message):
 
     All files are being erased.
 
-    Note COM-086 (certain): Erase All Busy: two verbs for one.
+    Note COM-086 (certain): Erase All Busy: two verbs for one. The description reads
+    formatting erasing, left over from the row above. Erasing is meant.
     """

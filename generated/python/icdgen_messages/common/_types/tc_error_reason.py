@@ -16,7 +16,10 @@ class TcErrorReason(_enumeration.OpenEnum):
     INCORRECT_PARAMETER = 3, "Incorrect Parameter"
     CRC_CHECK_FAILED = 4, "CRC check failed"
     """Note COM-095 (certain): Reasons for a TC error: three in the text, four in the
-    table.
+    table. The flag is said to be set for an invalid id, a wrong number of bytes or
+    invalid data. The table adds a failed checksum.
 
-    Note COM-096 (likely): CRC check failed is common, the checksum is not.
+    Note COM-096 (likely): CRC check failed is common, the checksum is not. The error
+    code stands in an enumeration of both programs, but the checksum exists in the
+    control program only. The bootloader cannot report it.
     """

@@ -15,9 +15,13 @@ class TelecommandAcknowledge(_base.Message):
     What became of the last telecommand. Meant for I2C, where the node cannot answer of
     its own accord.
 
-    Note COM-092 (certain): The procedure polls a thing called Telemetry Format.
+    Note COM-092 (certain): The procedure polls a thing called Telemetry Format. The
+    steps tell to poll the Telecommand Acknowledge Telemetry Format, the caption of a
+    table, instead of the frame.
 
-    Note COM-093 (open): Polling has no interval and no time-out.
+    Note COM-093 (open): Polling has no interval and no time-out. How often the
+    acknowledge may be polled, and when to give up, is not said. For files a time is
+    suggested for two of the operations only.
     """
 
     NODE = "common"
@@ -32,7 +36,9 @@ class TelecommandAcknowledge(_base.Message):
     """Last TC ID: bits 0 to 7, raw 0 to 255.
 
     Note COM-090 (open): Last TC ID is of the last received, the error of the last
-    processed.
+    processed. Id and Processed flag belong to the last telecommand received, the error
+    status to the last one processed. While the flag is 0 the error is that of an
+    earlier telecommand than the id names, and nothing in the table says so.
     """
 
     processed_flag: bool = _base.field("Processed flag", 8, 1, "bool", default=False)
@@ -40,18 +46,23 @@ class TelecommandAcknowledge(_base.Message):
 
     The next telecommand may be sent. Says nothing about the outcome of the last one.
 
-    Note COM-088 (certain): Processed flag has three names.
+    Note COM-088 (certain): Processed flag has three names. Telecommand Processed flag,
+    Processed flag and Processed stand for one bit.
 
-    Note COM-089 (open): Processed flag: processed or merely taken over.
+    Note COM-089 (open): Processed flag: processed or merely taken over. It is described
+    as showing that the last telecommand has been processed, and elsewhere as no
+    indication of its execution, only of readiness for another one. When the error
+    status of the same frame becomes valid is then open.
     """
 
     tc_error_status: TcErrorReason = _base.field("TC error status", 16, 8, "enum", default=TcErrorReason.NO_ERROR)
     """TC error status: bits 16 to 23.
 
-    Note COM-087 (certain): TC Error is called a flag and is a code.
+    Note COM-087 (certain): TC Error is called a flag and is a code. The text speaks of
+    a TC Error flag, of the TC Error Flag with a value of 4, and of Tc Error Status. The
+    field is an enumeration of 8 bits named TC error status.
 
-    Note COM-090 (open): Last TC ID is of the last received, the error of the last
-    processed.
+    Note COM-090 (open): see Last TC ID.
     """
 
     tc_parameter_error_index: int = _base.field("TC parameter error index", 24, 8, "uint", default=0)
@@ -59,5 +70,7 @@ class TelecommandAcknowledge(_base.Message):
 
     Which parameter was wrong.
 
-    Note COM-091 (open): TC parameter error index: index of what.
+    Note COM-091 (open): TC parameter error index: index of what. It may count
+    parameters, bytes or bits, from 0 or from 1. What it holds without an error is not
+    said, and neither UART nor CAN replies carry it.
     """

@@ -14,7 +14,8 @@ class UnixTimeSaveToFlash(_base.Message):
 
     When the Unix time is kept in flash, so that it survives a power cycle.
 
-    Note COM-112 (certain): Unix Time Save to Flash is described in two spellings.
+    Note COM-112 (certain): Unix Time Save to Flash is described in two spellings. The
+    list has Unix time, the table unixtime.
     """
 
     NODE = "common"
@@ -31,7 +32,9 @@ class UnixTimeSaveToFlash(_base.Message):
 
     Saves once.
 
-    Note COM-113 (open): Save Now is an action among settings.
+    Note COM-113 (open): Save Now is an action among settings. The message is a setting
+    that can be read back. What the action bit reads as, and whether a set with it
+    changes the other bits, is not said.
     """
 
     save_on_update: bool = _base.field("Save On Update", 1, 1, "bool", default=False)
@@ -49,5 +52,6 @@ class UnixTimeSaveToFlash(_base.Message):
     period: int = _base.field("Period", 8, 8, "uint", default=0, unit="s")
     """Period: bits 8 to 15, raw 0 to 255, in s.
 
-    Note COM-114 (open): Saving period: meaning of 0.
+    Note COM-114 (open): Saving period: meaning of 0. The period has 8 bits of seconds,
+    255 s at most. What 0 does is not said.
     """

@@ -14,14 +14,23 @@ class UploadBlockComplete(_base.Message):
     Polled after Finalize Upload Block.
 
     Note COM-041 (open): File upload is listed as common but described for the
-    bootloader only.
+    bootloader only. The messages of the upload are in the list common to both programs,
+    the procedure belongs to the bootloader. Whether the ACP answers them, refuses them,
+    or uploads somewhere is not said.
 
-    Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
+    Note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text
+    ends with the checksum test before the block is committed. The telecommand that
+    commits it and the frame that reports it are never named; both stood in a figure at
+    best.
 
-    Note COM-093 (open): Polling has no interval and no time-out.
+    Note COM-093 (open): Polling has no interval and no time-out. How often the
+    acknowledge may be polled, and when to give up, is not said. For files a time is
+    suggested for two of the operations only.
 
     Note COM-104 (certain): Upload is initiated, initialized and finalized under
-    changing names.
+    changing names. Initiate File Upload is followed by Initialize Upload Complete;
+    Finalize Upload Block is described as finalizing the uploaded file block, and its
+    frame Upload Block Complete as finalizing complete.
     """
 
     NODE = "common"
@@ -37,7 +46,9 @@ class UploadBlockComplete(_base.Message):
 
     Still finalizing the block.
 
-    Note COM-103 (certain): Frames named complete report busy.
+    Note COM-103 (certain): Frames named complete report busy. Initialize Upload
+    Complete and Upload Block Complete hold a flag that is set while the operation is
+    not complete.
     """
 
     error: bool = _base.field("Error", 1, 1, "bool", default=False)

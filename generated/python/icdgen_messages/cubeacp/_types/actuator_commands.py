@@ -28,9 +28,12 @@ class ActuatorCommands(_base.Message):
     On-time.
 
     Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    on-time.
+    on-time. The telecommand takes thousandths of a duty cycle, the frames give an
+    on-time in units of 10 ms. The conversion depends on the loop period and on a
+    resolution that is a setting.
 
-    Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    Note ACP-071 (likely): 10ms units is a factor, not a unit. The unit holds the scale
+    that a formula should. It is kept as a unit of counts; nothing is converted.
     """
 
     y_magnetorquer_command: int = _base.field("Y Magnetorquer Command", 16, 16, "int", default=0, unit="10ms units")
@@ -38,10 +41,9 @@ class ActuatorCommands(_base.Message):
 
     On-time.
 
-    Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    on-time.
+    Note ACP-070 (open): see X Magnetorquer Command.
 
-    Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    Note ACP-071 (likely): see X Magnetorquer Command.
     """
 
     z_magnetorquer_command: int = _base.field("Z Magnetorquer Command", 32, 16, "int", default=0, unit="10ms units")
@@ -49,26 +51,27 @@ class ActuatorCommands(_base.Message):
 
     On-time.
 
-    Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    on-time.
+    Note ACP-070 (open): see X Magnetorquer Command.
 
-    Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    Note ACP-071 (likely): see X Magnetorquer Command.
     """
 
     commanded_x_wheel_speed: int = _base.field("Commanded X Wheel Speed", 48, 16, "int", default=0, unit="rpm")
     """Commanded X Wheel Speed: bits 48 to 63, raw -32768 to 32767, in rpm.
 
-    Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds. The
+    descriptions are those of the measured speeds; the names tell the difference. The
+    telecommand names them again in another way.
     """
 
     commanded_y_wheel_speed: int = _base.field("Commanded Y Wheel Speed", 64, 16, "int", default=0, unit="rpm")
     """Commanded Y Wheel Speed: bits 64 to 79, raw -32768 to 32767, in rpm.
 
-    Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072 (certain): see Commanded X Wheel Speed.
     """
 
     commanded_z_wheel_speed: int = _base.field("Commanded Z Wheel Speed", 80, 16, "int", default=0, unit="rpm")
     """Commanded Z Wheel Speed: bits 80 to 95, raw -32768 to 32767, in rpm.
 
-    Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072 (certain): see Commanded X Wheel Speed.
     """

@@ -29,9 +29,13 @@ class AdcsConfiguration(_base.Message):
     Repeats Augmented-SGP4 Parameters from byte 378. Repeats User-coded Controller and
     Estimator Parameters from byte 408.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
 
-    Note ACP-159 (open): The current configuration is not all of it.
+    Note ACP-159 (open): The current configuration is not all of it. The message is
+    described as the current configuration. It joins 16 of the 25 others; orbit, target,
+    attitude command, power, logs, inertial vector and system configuration are not in
+    it. Save Configuration uses the same words.
     """
 
     NODE = "cubeacp"
@@ -88,6 +92,8 @@ class AdcsConfiguration(_base.Message):
     """
     x_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """X-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    x_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """X-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
 
     y_rate_sensor_offset: int = _base.field("Y-Rate Sensor Offset", 96, 16, "int", default=0, unit="deg/s")
     """Y-Rate Sensor Offset: bits 96 to 111, raw -32768 to 32767; physical `raw*0.001`,
@@ -95,6 +101,8 @@ class AdcsConfiguration(_base.Message):
     """
     y_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Y-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    y_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """Y-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
 
     z_rate_sensor_offset: int = _base.field("Z-Rate Sensor Offset", 112, 16, "int", default=0, unit="deg/s")
     """Z-Rate Sensor Offset: bits 112 to 127, raw -32768 to 32767; physical `raw*0.001`,
@@ -102,13 +110,16 @@ class AdcsConfiguration(_base.Message):
     """
     z_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Z-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    z_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """Z-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
 
     rate_sensor_mult: int = _base.field("RateSensorMult", 128, 8, "uint", default=0)
     """RateSensorMult: bits 128 to 135, raw 0 to 255.
 
     Factor on the rate sensor measurements.
 
-    Note ACP-130 (open): RateSensorMult has no scale and no blanks.
+    Note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8
+    bits; whether it is a whole factor, and of which quantity, is not said.
     """
 
     css1_configuration: AxisSelect = _base.field("CSS1 Configuration", 136, 8, "enum", default=AxisSelect.POSITIVE_X)
@@ -147,6 +158,8 @@ class AdcsConfiguration(_base.Message):
     """
     css1_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS1 Relative Scale, as a physical value: 0 to 2.55."""
+    css1_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS1 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css2_relative_scale: int = _base.field("CSS2 Relative Scale", 224, 8, "uint", default=0)
     """CSS2 Relative Scale: bits 224 to 231, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -154,6 +167,8 @@ class AdcsConfiguration(_base.Message):
     """
     css2_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS2 Relative Scale, as a physical value: 0 to 2.55."""
+    css2_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS2 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css3_relative_scale: int = _base.field("CSS3 Relative Scale", 232, 8, "uint", default=0)
     """CSS3 Relative Scale: bits 232 to 239, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -161,6 +176,8 @@ class AdcsConfiguration(_base.Message):
     """
     css3_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS3 Relative Scale, as a physical value: 0 to 2.55."""
+    css3_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS3 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css4_relative_scale: int = _base.field("CSS4 Relative Scale", 240, 8, "uint", default=0)
     """CSS4 Relative Scale: bits 240 to 247, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -168,6 +185,8 @@ class AdcsConfiguration(_base.Message):
     """
     css4_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS4 Relative Scale, as a physical value: 0 to 2.55."""
+    css4_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS4 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css5_relative_scale: int = _base.field("CSS5 Relative Scale", 248, 8, "uint", default=0)
     """CSS5 Relative Scale: bits 248 to 255, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -175,6 +194,8 @@ class AdcsConfiguration(_base.Message):
     """
     css5_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS5 Relative Scale, as a physical value: 0 to 2.55."""
+    css5_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS5 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css6_relative_scale: int = _base.field("CSS6 Relative Scale", 256, 8, "uint", default=0)
     """CSS6 Relative Scale: bits 256 to 263, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -182,6 +203,8 @@ class AdcsConfiguration(_base.Message):
     """
     css6_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS6 Relative Scale, as a physical value: 0 to 2.55."""
+    css6_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS6 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css7_relative_scale: int = _base.field("CSS7 Relative Scale", 264, 8, "uint", default=0)
     """CSS7 Relative Scale: bits 264 to 271, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -189,6 +212,8 @@ class AdcsConfiguration(_base.Message):
     """
     css7_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS7 Relative Scale, as a physical value: 0 to 2.55."""
+    css7_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS7 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css8_relative_scale: int = _base.field("CSS8 Relative Scale", 272, 8, "uint", default=0)
     """CSS8 Relative Scale: bits 272 to 279, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -196,6 +221,8 @@ class AdcsConfiguration(_base.Message):
     """
     css8_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS8 Relative Scale, as a physical value: 0 to 2.55."""
+    css8_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS8 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css9_relative_scale: int = _base.field("CSS9 Relative Scale", 280, 8, "uint", default=0)
     """CSS9 Relative Scale: bits 280 to 287, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -203,6 +230,8 @@ class AdcsConfiguration(_base.Message):
     """
     css9_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS9 Relative Scale, as a physical value: 0 to 2.55."""
+    css9_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS9 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css10_relative_scale: int = _base.field("CSS10 Relative Scale", 288, 8, "uint", default=0)
     """CSS10 Relative Scale: bits 288 to 295, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -210,11 +239,15 @@ class AdcsConfiguration(_base.Message):
     """
     css10_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS10 Relative Scale, as a physical value: 0 to 2.55."""
+    css10_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS10 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css_threshold: int = _base.field("CSS Threshold", 296, 8, "uint", default=0)
     """CSS Threshold: bits 296 to 303, raw 0 to 255.
 
-    Note ACP-133 (open): CSS threshold has no description.
+    Note ACP-133 (open): CSS threshold has no description. The name is repeated; neither
+    unit nor what lies below it is said. The message is described as directions and
+    scale factors.
     """
 
     cam1_mounting_alpha: int = _base.field(
@@ -225,6 +258,10 @@ class AdcsConfiguration(_base.Message):
     """
     cam1_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam1_mounting_beta: int = _base.field(
         "Cam1 Sensor Mounting Transform Beta Angle", 320, 16, "int", default=0, unit="deg"
@@ -234,6 +271,10 @@ class AdcsConfiguration(_base.Message):
     """
     cam1_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam1_mounting_gamma: int = _base.field(
         "Cam1 Sensor Mounting Transform Gamma Angle", 336, 16, "int", default=0, unit="deg"
@@ -243,6 +284,10 @@ class AdcsConfiguration(_base.Message):
     """
     cam1_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam1_detection_threshold: int = _base.field("Cam1 detection threshold", 352, 8, "uint", default=0)
     """Cam1 detection threshold: bits 352 to 359, raw 0 to 255."""
@@ -264,6 +309,8 @@ class AdcsConfiguration(_base.Message):
     """
     cam1_boresight_x_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Boresight X in pixels: 0 to 655.35."""
+    cam1_boresight_x_milli_pixels: int = _base.whole(10, 0)
+    """Cam1 Boresight X in thousandths of pixels, exact: 0 to 655350."""
 
     cam1_boresight_y: int = _base.field("Cam1 Boresight Y", 400, 16, "uint", default=0, unit="pixels")
     """Cam1 Boresight Y: bits 400 to 415, raw 0 to 65535; physical `raw*0.01`, 0 to
@@ -273,6 +320,8 @@ class AdcsConfiguration(_base.Message):
     """
     cam1_boresight_y_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Boresight Y in pixels: 0 to 655.35."""
+    cam1_boresight_y_milli_pixels: int = _base.whole(10, 0)
+    """Cam1 Boresight Y in thousandths of pixels, exact: 0 to 655350."""
 
     cam2_mounting_alpha: int = _base.field(
         "Cam2 Sensor Mounting Transform Alpha Angle", 416, 16, "int", default=0, unit="deg"
@@ -282,6 +331,10 @@ class AdcsConfiguration(_base.Message):
     """
     cam2_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam2_mounting_beta: int = _base.field(
         "Cam2 Sensor Mounting Transform Beta Angle", 432, 16, "int", default=0, unit="deg"
@@ -291,6 +344,10 @@ class AdcsConfiguration(_base.Message):
     """
     cam2_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam2_mounting_gamma: int = _base.field(
         "Cam2 Sensor Mounting Transform Gamma Angle", 448, 16, "int", default=0, unit="deg"
@@ -300,6 +357,10 @@ class AdcsConfiguration(_base.Message):
     """
     cam2_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam2_detection_threshold: int = _base.field("Cam2 detection threshold", 464, 8, "uint", default=0)
     """Cam2 detection threshold: bits 464 to 471, raw 0 to 255."""
@@ -321,6 +382,8 @@ class AdcsConfiguration(_base.Message):
     """
     cam2_boresight_x_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Boresight X in pixels: 0 to 655.35."""
+    cam2_boresight_x_milli_pixels: int = _base.whole(10, 0)
+    """Cam2 Boresight X in thousandths of pixels, exact: 0 to 655350."""
 
     cam2_boresight_y: int = _base.field("Cam2 Boresight Y", 512, 16, "uint", default=0, unit="pixels")
     """Cam2 Boresight Y: bits 512 to 527, raw 0 to 65535; physical `raw*0.01`, 0 to
@@ -330,6 +393,8 @@ class AdcsConfiguration(_base.Message):
     """
     cam2_boresight_y_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Boresight Y in pixels: 0 to 655.35."""
+    cam2_boresight_y_milli_pixels: int = _base.whole(10, 0)
+    """Cam2 Boresight Y in thousandths of pixels, exact: 0 to 655350."""
 
     nadir_max_deviation_percentage: int = _base.field(
         "Nadir Max Deviation Percentage", 528, 8, "uint", default=0, unit="%"
@@ -338,7 +403,9 @@ class AdcsConfiguration(_base.Message):
 
     Largest deviation of an edge, of the measured angular radius.
 
-    Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
+    Erratum ACP-151 (certain): Deviation percentage has its unit in words only. A
+    percentage of the measured angular radius by name and description, without the unit
+    of measure.
     """
 
     nadir_max_bad_edges: int = _base.field("Nadir Max Bad Edges", 536, 8, "uint", default=0)
@@ -350,13 +417,14 @@ class AdcsConfiguration(_base.Message):
     nadir_max_radius: int = _base.field("Nadir Max Radius", 544, 8, "uint", default=0, unit="deg")
     """Nadir Max Radius: bits 544 to 551, raw 0 to 255, in deg.
 
-    Erratum ACP-148 (certain): Degree sign is deg.
+    Erratum ACP-148 (certain): Degree sign is deg. Two fields have the sign, all other
+    angles deg.
     """
 
     nadir_min_radius: int = _base.field("Nadir Min Radius", 552, 8, "uint", default=0, unit="deg")
     """Nadir Min Radius: bits 552 to 559, raw 0 to 255, in deg.
 
-    Erratum ACP-148 (certain): Degree sign is deg.
+    Erratum ACP-148 (certain): see Nadir Max Radius.
     """
 
     cam_1_minimum_x_of_area_1: int = _base.field("Cam 1 Minimum X of area 1", 560, 16, "uint", default=0)
@@ -487,6 +555,10 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    magnetometer_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Magnetometer Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     magnetometer_mounting_beta: int = _base.field(
         "Magnetometer Mounting Transform Beta Angle", 1216, 16, "int", default=0, unit="deg"
@@ -496,6 +568,10 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    magnetometer_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Magnetometer Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     magnetometer_mounting_gamma: int = _base.field(
         "Magnetometer Mounting Transform Gamma Angle", 1232, 16, "int", default=0, unit="deg"
@@ -505,6 +581,10 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    magnetometer_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Magnetometer Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     magnetometer_channel_1_offset: int = _base.field("Magnetometer Channel 1 Offset", 1248, 16, "int", default=0)
     """Magnetometer Channel 1 Offset: bits 1248 to 1263, raw -32768 to 32767; physical
@@ -512,6 +592,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_channel_1_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767."""
+    magnetometer_channel_1_offset_milli: int = _base.whole(1, 0)
+    """Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767."""
 
     magnetometer_channel_2_offset: int = _base.field("Magnetometer Channel 2 Offset", 1264, 16, "int", default=0)
     """Magnetometer Channel 2 Offset: bits 1264 to 1279, raw -32768 to 32767; physical
@@ -519,6 +601,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_channel_2_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767."""
+    magnetometer_channel_2_offset_milli: int = _base.whole(1, 0)
+    """Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767."""
 
     magnetometer_channel_3_offset: int = _base.field("Magnetometer Channel 3 Offset", 1280, 16, "int", default=0)
     """Magnetometer Channel 3 Offset: bits 1280 to 1295, raw -32768 to 32767; physical
@@ -526,6 +610,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_channel_3_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767."""
+    magnetometer_channel_3_offset_milli: int = _base.whole(1, 0)
+    """Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s11: int = _base.field("Magnetometer Sensitivity Matrix S11", 1296, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S11: bits 1296 to 1311, raw -32768 to 32767;
@@ -533,6 +619,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s11_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s11_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s22: int = _base.field("Magnetometer Sensitivity Matrix S22", 1312, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S22: bits 1312 to 1327, raw -32768 to 32767;
@@ -540,6 +628,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s22_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s22_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s33: int = _base.field("Magnetometer Sensitivity Matrix S33", 1328, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S33: bits 1328 to 1343, raw -32768 to 32767;
@@ -547,6 +637,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s33_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s33_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s12: int = _base.field("Magnetometer Sensitivity Matrix S12", 1344, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S12: bits 1344 to 1359, raw -32768 to 32767;
@@ -554,6 +646,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s12_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s12_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s13: int = _base.field("Magnetometer Sensitivity Matrix S13", 1360, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S13: bits 1360 to 1375, raw -32768 to 32767;
@@ -561,6 +655,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s13_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s13_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s21: int = _base.field("Magnetometer Sensitivity Matrix S21", 1376, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S21: bits 1376 to 1391, raw -32768 to 32767;
@@ -568,6 +664,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s21_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s21_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s23: int = _base.field("Magnetometer Sensitivity Matrix S23", 1392, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S23: bits 1392 to 1407, raw -32768 to 32767;
@@ -575,6 +673,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s23_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s23_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s31: int = _base.field("Magnetometer Sensitivity Matrix S31", 1408, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S31: bits 1408 to 1423, raw -32768 to 32767;
@@ -582,6 +682,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s31_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s31_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to 32767."""
 
     magnetometer_sensitivity_s32: int = _base.field("Magnetometer Sensitivity Matrix S32", 1424, 16, "int", default=0)
     """Magnetometer Sensitivity Matrix S32: bits 1424 to 1439, raw -32768 to 32767;
@@ -589,6 +691,8 @@ class AdcsConfiguration(_base.Message):
     """
     magnetometer_sensitivity_s32_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767."""
+    magnetometer_sensitivity_s32_milli: int = _base.whole(1, 0)
+    """Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to 32767."""
 
     redundant_mag_mounting_alpha: int = _base.field(
         "Redundant Magnetometer Mounting Transform Alpha Angle", 1440, 16, "int", default=0, unit="deg"
@@ -598,6 +702,10 @@ class AdcsConfiguration(_base.Message):
     """
     redundant_mag_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
+    """
+    redundant_mag_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg,
+    exact: -327680 to 327670.
     """
 
     redundant_mag_mounting_beta: int = _base.field(
@@ -609,6 +717,10 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     """
+    redundant_mag_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg,
+    exact: -327680 to 327670.
+    """
 
     redundant_mag_mounting_gamma: int = _base.field(
         "Redundant Magnetometer Mounting Transform Gamma Angle", 1472, 16, "int", default=0, unit="deg"
@@ -618,6 +730,10 @@ class AdcsConfiguration(_base.Message):
     """
     redundant_mag_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
+    """
+    redundant_mag_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg,
+    exact: -327680 to 327670.
     """
 
     redundant_mag_channel_1_offset: int = _base.field(
@@ -629,6 +745,9 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_channel_1_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767.
     """
+    redundant_mag_channel_1_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767.
+    """
 
     redundant_mag_channel_2_offset: int = _base.field(
         "Redundant Magnetometer Channel 2 Offset", 1504, 16, "int", default=0
@@ -639,6 +758,9 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_channel_2_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767.
     """
+    redundant_mag_channel_2_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767.
+    """
 
     redundant_mag_channel_3_offset: int = _base.field(
         "Redundant Magnetometer Channel 3 Offset", 1520, 16, "int", default=0
@@ -648,6 +770,9 @@ class AdcsConfiguration(_base.Message):
     """
     redundant_mag_channel_3_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767.
+    """
+    redundant_mag_channel_3_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767.
     """
 
     redundant_mag_sensitivity_s11: int = _base.field(
@@ -660,6 +785,10 @@ class AdcsConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to
     32.767.
     """
+    redundant_mag_sensitivity_s11_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to
+    32767.
+    """
 
     redundant_mag_sensitivity_s22: int = _base.field(
         "Redundant Magnetometer Sensitivity Matrix S22", 1552, 16, "int", default=0
@@ -670,6 +799,10 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_sensitivity_s22_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to
     32.767.
+    """
+    redundant_mag_sensitivity_s22_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to
+    32767.
     """
 
     redundant_mag_sensitivity_s33: int = _base.field(
@@ -682,6 +815,10 @@ class AdcsConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to
     32.767.
     """
+    redundant_mag_sensitivity_s33_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to
+    32767.
+    """
 
     redundant_mag_sensitivity_s12: int = _base.field(
         "Redundant Magnetometer Sensitivity Matrix S12", 1584, 16, "int", default=0
@@ -692,6 +829,10 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_sensitivity_s12_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to
     32.767.
+    """
+    redundant_mag_sensitivity_s12_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to
+    32767.
     """
 
     redundant_mag_sensitivity_s13: int = _base.field(
@@ -704,6 +845,10 @@ class AdcsConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to
     32.767.
     """
+    redundant_mag_sensitivity_s13_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to
+    32767.
+    """
 
     redundant_mag_sensitivity_s21: int = _base.field(
         "Redundant Magnetometer Sensitivity Matrix S21", 1616, 16, "int", default=0
@@ -714,6 +859,10 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_sensitivity_s21_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to
     32.767.
+    """
+    redundant_mag_sensitivity_s21_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to
+    32767.
     """
 
     redundant_mag_sensitivity_s23: int = _base.field(
@@ -726,6 +875,10 @@ class AdcsConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to
     32.767.
     """
+    redundant_mag_sensitivity_s23_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to
+    32767.
+    """
 
     redundant_mag_sensitivity_s31: int = _base.field(
         "Redundant Magnetometer Sensitivity Matrix S31", 1648, 16, "int", default=0
@@ -736,6 +889,10 @@ class AdcsConfiguration(_base.Message):
     redundant_mag_sensitivity_s31_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to
     32.767.
+    """
+    redundant_mag_sensitivity_s31_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to
+    32767.
     """
 
     redundant_mag_sensitivity_s32: int = _base.field(
@@ -748,6 +905,10 @@ class AdcsConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to
     32.767.
     """
+    redundant_mag_sensitivity_s32_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to
+    32767.
+    """
 
     star_tracker_mounting_alpha: int = _base.field(
         "StarTracker Mounting Transform Alpha Angle", 1680, 16, "int", default=0, unit="deg"
@@ -757,6 +918,10 @@ class AdcsConfiguration(_base.Message):
     """
     star_tracker_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    star_tracker_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     star_tracker_mounting_beta: int = _base.field(
         "StarTracker Mounting Transform Beta Angle", 1696, 16, "int", default=0, unit="deg"
@@ -766,6 +931,10 @@ class AdcsConfiguration(_base.Message):
     """
     star_tracker_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    star_tracker_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     star_tracker_mounting_gamma: int = _base.field(
         "StarTracker Mounting Transform Gamma Angle", 1712, 16, "int", default=0, unit="deg"
@@ -775,13 +944,18 @@ class AdcsConfiguration(_base.Message):
     """
     star_tracker_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    star_tracker_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     star_tracker_exposure_time: int = _base.field("StarTracker exposure time", 1728, 16, "uint", default=0)
     """StarTracker exposure time: bits 1728 to 1743, raw 0 to 65535.
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): Exposure and gain are register values. Neither the register nor
+    its scale is given, so times and gains cannot be told from them.
     """
 
     star_tracker_analog_gain: int = _base.field("StarTracker analog gain", 1744, 16, "uint", default=0)
@@ -789,19 +963,20 @@ class AdcsConfiguration(_base.Message):
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): see StarTracker exposure time.
     """
 
     star_tracker_detection_threshold: int = _base.field("StarTracker detection threshold", 1760, 8, "uint", default=0)
     """StarTracker detection threshold: bits 1760 to 1767, raw 0 to 255.
 
     Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Names are repeated or a noun is missing, as in maximum of stars.
     """
 
     star_tracker_star_threshold: int = _base.field("StarTracker star threshold", 1768, 8, "uint", default=0)
     """StarTracker star threshold: bits 1768 to 1775, raw 0 to 255.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
     """
 
     maximum_star_matched: int = _base.field("Maximum Star Matched", 1776, 8, "uint", default=0)
@@ -809,13 +984,14 @@ class AdcsConfiguration(_base.Message):
 
     Most stars that are matched.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
     """
 
     detection_timeout_duration: int = _base.field("Detection Timeout duration", 1784, 16, "uint", default=0)
     """Detection Timeout duration: bits 1784 to 1799, raw 0 to 65535.
 
-    Note ACP-141 (open): Detection timeout has no unit.
+    Note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in
+    milliseconds; registers and pixels stand in between.
     """
 
     maximum_star_pixel: int = _base.field("Maximum Star Pixel", 1800, 8, "uint", default=0)
@@ -836,15 +1012,19 @@ class AdcsConfiguration(_base.Message):
 
     Of the star identification.
 
-    Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
+    Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit
+    % and a factor of 0.01 give steps of 0.01 % in 8 bits. If the factor already makes a
+    fraction, as in the margins that follow without a unit, the range is 255 %.
     """
     star_tracker_error_margin_percent: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Tracker Error Margin in %: 0 to 2.55."""
+    star_tracker_error_margin_milli_percent: int = _base.whole(10, 0)
+    """Star Tracker Error Margin in thousandths of %, exact: 0 to 2550."""
 
     star_tracker_delay_time: int = _base.field("Star Tracker Delay Time", 1824, 16, "uint", default=0, unit="ms")
     """Star Tracker Delay Time: bits 1824 to 1839, raw 0 to 65535, in ms.
 
-    Erratum ACP-140 (certain): milliseconds is ms.
+    Erratum ACP-140 (certain): milliseconds is ms. The unit is spelt out in one field.
     """
 
     star_tracker_centroid_x: float = _base.field(
@@ -853,7 +1033,8 @@ class AdcsConfiguration(_base.Message):
     """Star Tracker Centroid X: bits 1840 to 1871, 32-bit float, in pixels.
 
     Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words
-    only.
+    only. The fields are described as pixel centroids, without the unit of measure that
+    the boresights of the cameras have.
     """
 
     star_tracker_centroid_y: float = _base.field(
@@ -861,8 +1042,7 @@ class AdcsConfiguration(_base.Message):
     )
     """Star Tracker Centroid Y: bits 1872 to 1903, 32-bit float, in pixels.
 
-    Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words
-    only.
+    Erratum ACP-202 (likely): see Star Tracker Centroid X.
     """
 
     star_tracker_focal_length: float = _base.field(
@@ -875,7 +1055,9 @@ class AdcsConfiguration(_base.Message):
     )
     """K1 radial distortion coefficient: bits 1936 to 1967, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain.
+    It is kept as a plain factor; which lens model and which normalisation they belong
+    to is not said.
     """
 
     k2_radial_distortion_coefficient: float = _base.field(
@@ -883,7 +1065,7 @@ class AdcsConfiguration(_base.Message):
     )
     """K2 radial distortion coefficient: bits 1968 to 1999, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
 
     p1_tangential_distortion_coefficient: float = _base.field(
@@ -891,7 +1073,7 @@ class AdcsConfiguration(_base.Message):
     )
     """P1 tangential distortion coefficient: bits 2000 to 2031, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
 
     p2_tangential_distortion_coefficient: float = _base.field(
@@ -899,32 +1081,37 @@ class AdcsConfiguration(_base.Message):
     )
     """P2 tangential distortion coefficient: bits 2032 to 2063, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
 
     star_tracking_window_width: int = _base.field("Star tracking window width", 2064, 8, "uint", default=0)
     """Star tracking window width: bits 2064 to 2071, raw 0 to 255.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
     """
 
     star_tracking_margin: int = _base.field("Star Tracking Margin", 2072, 8, "uint", default=0)
     """Star Tracking Margin: bits 2072 to 2079, raw 0 to 255; physical `raw/100.0`, 0 to
     2.55.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): Margins and search width have no unit. Factors are given, units
+    are not; pixels, fractions and degrees are all possible.
     """
     star_tracking_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Tracking Margin, as a physical value: 0 to 2.55."""
+    star_tracking_margin_milli: int = _base.whole(10, 0)
+    """Star Tracking Margin in thousandths, exact: 0 to 2550."""
 
     star_validation_margin: int = _base.field("Star Validation Margin", 2080, 8, "uint", default=0)
     """Star Validation Margin: bits 2080 to 2087, raw 0 to 255; physical `raw/100.0`, 0
     to 2.55.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): see Star Tracking Margin.
     """
     star_validation_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Validation Margin, as a physical value: 0 to 2.55."""
+    star_validation_margin_milli: int = _base.whole(10, 0)
+    """Star Validation Margin in thousandths, exact: 0 to 2550."""
 
     star_tracking_module_enable: bool = _base.field("Star Tracking Module Enable", 2088, 1, "bool", default=False)
     """Star Tracking Module Enable: bit 2088."""
@@ -938,10 +1125,12 @@ class AdcsConfiguration(_base.Message):
     """Star Tracking Search Width: bits 2096 to 2103, raw 0 to 255; physical `raw/5.0`,
     0 to 51.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): see Star Tracking Margin.
     """
     star_tracking_search_width_physical: float = _base.scaled(1, 0, 5, default=0.0)
     """Star Tracking Search Width, as a physical value: 0 to 51."""
+    star_tracking_search_width_milli: int = _base.whole(200, 0)
+    """Star Tracking Search Width in thousandths, exact: 0 to 51000."""
 
     detumbling_spin_gain: float = _base.field("Detumbling Spin Gain", 2104, 32, "float", default=0.0)
     """Detumbling Spin Gain: bits 2104 to 2135, 32-bit float.
@@ -963,10 +1152,14 @@ class AdcsConfiguration(_base.Message):
 
     Must be below 0 deg/s.
 
-    Note ACP-162 (certain): Limits of a sign in words only.
+    Note ACP-162 (certain): Limits of a sign in words only. Two references must always
+    be smaller than 0; the types allow the opposite, and what the program does with it
+    is not said.
     """
     reference_spin_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s."""
+    reference_spin_rate_mdeg_per_s: int = _base.whole(1, 0)
+    """Reference spin rate in thousandths of deg/s, exact: -32768 to 32767."""
 
     fast_bdot_detumbling_gain: float = _base.field("Fast BDot Detumbling Gain", 2184, 32, "float", default=0.0)
     """Fast BDot Detumbling Gain: bits 2184 to 2215, 32-bit float.
@@ -1009,7 +1202,7 @@ class AdcsConfiguration(_base.Message):
 
     Must be below 0 Nms.
 
-    Note ACP-162 (certain): Limits of a sign in words only.
+    Note ACP-162 (certain): see Reference spin rate.
     """
 
     rwheel_proportional_gain: float = _base.field("RWheel Proportional Gain", 2376, 32, "float", default=0.0)
@@ -1073,19 +1266,20 @@ class AdcsConfiguration(_base.Message):
     moment_of_inertia_ixx: float = _base.field("Moment Of Inertia - Ixx", 2584, 32, "float", default=0.0, unit="kg.m^2")
     """Moment Of Inertia - Ixx: bits 2584 to 2615, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2. The same fields
+    have the unit in two spellings. Held as kg.m^2.
     """
 
     moment_of_inertia_iyy: float = _base.field("Moment Of Inertia - Iyy", 2616, 32, "float", default=0.0, unit="kg.m^2")
     """Moment Of Inertia - Iyy: bits 2616 to 2647, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
     """
 
     moment_of_inertia_izz: float = _base.field("Moment Of Inertia - Izz", 2648, 32, "float", default=0.0, unit="kg.m^2")
     """Moment Of Inertia - Izz: bits 2648 to 2679, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
     """
 
     product_of_inertia_ixy: float = _base.field(
@@ -1093,9 +1287,11 @@ class AdcsConfiguration(_base.Message):
     )
     """Product Of Inertia - Ixy: bits 2680 to 2711, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): Products of inertia: the sign is not given. The products are
+    elements of a matrix by the message and products of inertia by their names, which
+    differ in sign by the usual definitions. Neither is defined.
     """
 
     product_of_inertia_ixz: float = _base.field(
@@ -1103,9 +1299,9 @@ class AdcsConfiguration(_base.Message):
     )
     """Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): see Product Of Inertia - Ixy.
     """
 
     product_of_inertia_iyz: float = _base.field(
@@ -1113,9 +1309,9 @@ class AdcsConfiguration(_base.Message):
     )
     """Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): see Product Of Inertia - Ixy.
     """
 
     magnetometer_rate_filter_system_noise: float = _base.field(
@@ -1192,7 +1388,9 @@ class AdcsConfiguration(_base.Message):
 
     The magnetometer that estimation and control use.
 
-    Note ACP-049 (open): Magnetometer mode can be set in two places.
+    Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a
+    configuration message set the same mode. Which wins after a restart, and whether the
+    telecommand changes what the configuration returns, is not said.
     """
 
     raw_magnetometer_selection: MagModeVal = _base.field(
@@ -1217,7 +1415,9 @@ class AdcsConfiguration(_base.Message):
     Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
     that camera.
 
-    Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    Erratum ACP-169 (certain): Two sampling periods in one field with a unit. Two
+    periods of four bits share a byte that has the unit s. The value of the byte is no
+    time; each half is, up to 15 s, and is held as a field of its own.
     """
 
     cam2_period: int = _base.field("Cam2 period", 3020, 4, "uint", default=0, unit="s")
@@ -1226,7 +1426,7 @@ class AdcsConfiguration(_base.Message):
     Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
     that camera.
 
-    Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    Erratum ACP-169 (certain): see Cam1 period.
     """
 
     incl_coefficient: int = _base.field("Incl. coefficient", 3024, 16, "uint", default=0)
@@ -1237,6 +1437,8 @@ class AdcsConfiguration(_base.Message):
     """
     incl_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Incl. coefficient, as a physical value: 0 to 65.535."""
+    incl_coefficient_milli: int = _base.whole(1, 0)
+    """Incl. coefficient in thousandths, exact: 0 to 65535."""
 
     raan_coefficient: int = _base.field("Raan coefficient", 3040, 16, "uint", default=0)
     """Raan coefficient: bits 3040 to 3055, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -1246,6 +1448,8 @@ class AdcsConfiguration(_base.Message):
     """
     raan_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Raan coefficient, as a physical value: 0 to 65.535."""
+    raan_coefficient_milli: int = _base.whole(1, 0)
+    """Raan coefficient in thousandths, exact: 0 to 65535."""
 
     ecc_coefficient: int = _base.field("Ecc coefficient", 3056, 16, "uint", default=0)
     """Ecc coefficient: bits 3056 to 3071, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -1255,6 +1459,8 @@ class AdcsConfiguration(_base.Message):
     """
     ecc_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Ecc coefficient, as a physical value: 0 to 65.535."""
+    ecc_coefficient_milli: int = _base.whole(1, 0)
+    """Ecc coefficient in thousandths, exact: 0 to 65535."""
 
     aop_coefficient: int = _base.field("Aop coefficient", 3072, 16, "uint", default=0)
     """Aop coefficient: bits 3072 to 3087, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -1264,6 +1470,8 @@ class AdcsConfiguration(_base.Message):
     """
     aop_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Aop coefficient, as a physical value: 0 to 65.535."""
+    aop_coefficient_milli: int = _base.whole(1, 0)
+    """Aop coefficient in thousandths, exact: 0 to 65535."""
 
     time_coefficient: int = _base.field("Time coefficient", 3088, 16, "uint", default=0)
     """Time coefficient: bits 3088 to 3103, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -1273,6 +1481,8 @@ class AdcsConfiguration(_base.Message):
     """
     time_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Time coefficient, as a physical value: 0 to 65.535."""
+    time_coefficient_milli: int = _base.whole(1, 0)
+    """Time coefficient in thousandths, exact: 0 to 65535."""
 
     pos_coefficient: int = _base.field("Pos coefficient", 3104, 16, "uint", default=0)
     """Pos coefficient: bits 3104 to 3119, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -1282,6 +1492,8 @@ class AdcsConfiguration(_base.Message):
     """
     pos_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Pos coefficient, as a physical value: 0 to 65.535."""
+    pos_coefficient_milli: int = _base.whole(1, 0)
+    """Pos coefficient in thousandths, exact: 0 to 65535."""
 
     maximum_position_error: int = _base.field("Maximum position error", 3120, 8, "uint", default=0)
     """Maximum position error: bits 3120 to 3127, raw 0 to 255; physical `raw*0.1`, 0 to
@@ -1291,6 +1503,8 @@ class AdcsConfiguration(_base.Message):
     """
     maximum_position_error_physical: float = _base.scaled(1, 0, 10, default=0.0)
     """Maximum position error, as a physical value: 0 to 25.5."""
+    maximum_position_error_milli: int = _base.whole(100, 0)
+    """Maximum position error in thousandths, exact: 0 to 25500."""
 
     asgp4_filter: AsgpFilter = _base.field("ASGP4 filter", 3128, 8, "enum", default=AsgpFilter.LPF)
     """ASGP4 filter: bits 3128 to 3135."""
@@ -1323,6 +1537,8 @@ class AdcsConfiguration(_base.Message):
     """
     position_sd_physical: float = _base.scaled(1, 0, 10, default=0.0)
     """Position sd, as a physical value: 0 to 25.5."""
+    position_sd_milli: int = _base.whole(100, 0)
+    """Position sd in thousandths, exact: 0 to 25500."""
 
     velocity_sd: int = _base.field("Velocity sd", 3216, 8, "uint", default=0)
     """Velocity sd: bits 3216 to 3223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
@@ -1331,6 +1547,8 @@ class AdcsConfiguration(_base.Message):
     """
     velocity_sd_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Velocity sd, as a physical value: 0 to 2.55."""
+    velocity_sd_milli: int = _base.whole(10, 0)
+    """Velocity sd in thousandths, exact: 0 to 2550."""
 
     min_satellites: int = _base.field("Min. satellites", 3224, 8, "uint", default=0)
     """Min. satellites: bits 3224 to 3231, raw 0 to 255.
@@ -1345,6 +1563,8 @@ class AdcsConfiguration(_base.Message):
     """
     time_gain_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Time gain, as a physical value: 0 to 2.55."""
+    time_gain_milli: int = _base.whole(10, 0)
+    """Time gain in thousandths, exact: 0 to 2550."""
 
     max_lag: int = _base.field("Max. lag", 3240, 8, "uint", default=0)
     """Max. lag: bits 3240 to 3247, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
@@ -1353,6 +1573,8 @@ class AdcsConfiguration(_base.Message):
     """
     max_lag_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Max. lag, as a physical value: 0 to 2.55."""
+    max_lag_milli: int = _base.whole(10, 0)
+    """Max. lag in thousandths, exact: 0 to 2550."""
 
     min_samples: int = _base.field("Min. samples", 3248, 16, "uint", default=0)
     """Min. samples: bits 3248 to 3263, raw 0 to 65535.
@@ -1365,7 +1587,8 @@ class AdcsConfiguration(_base.Message):
     )
     """User Coded Controller Settings: bytes 408 to 455.
 
-    Note ACP-178 (open): User coded settings: content of the arrays.
+    Note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes
+    without types; what they hold depends on code that the user supplies.
     """
 
     user_coded_estimator_settings: bytes = _base.field(
@@ -1373,5 +1596,5 @@ class AdcsConfiguration(_base.Message):
     )
     """User Coded Estimator Settings: bytes 456 to 503.
 
-    Note ACP-178 (open): User coded settings: content of the arrays.
+    Note ACP-178 (open): see User Coded Controller Settings.
     """

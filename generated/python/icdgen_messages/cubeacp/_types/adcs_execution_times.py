@@ -13,7 +13,9 @@ class AdcsExecutionTimes(_base.Message):
 
     How long the parts of the control program take.
 
-    Note ACP-107 (certain): ADCS is Adcs in one message, a model a computation.
+    Note ACP-107 (certain): ADCS is Adcs in one message, a model a computation. Adcs
+    Execution Times stands alone in its spelling, and its last field names a model where
+    the description has a computation.
     """
 
     NODE = "cubeacp"

@@ -35,6 +35,8 @@ class AdcsMeasurements(_base.Message):
     """
     magnetic_field_x_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetic Field X in uT: -327.68 to 327.67."""
+    magnetic_field_x_nt: int = _base.whole(10, 0)
+    """Magnetic Field X in nT, exact: -327680 to 327670."""
 
     magnetic_field_y: int = _base.field("Magnetic Field Y", 16, 16, "int", default=0, unit="uT")
     """Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
@@ -42,6 +44,8 @@ class AdcsMeasurements(_base.Message):
     """
     magnetic_field_y_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetic Field Y in uT: -327.68 to 327.67."""
+    magnetic_field_y_nt: int = _base.whole(10, 0)
+    """Magnetic Field Y in nT, exact: -327680 to 327670."""
 
     magnetic_field_z: int = _base.field("Magnetic Field Z", 32, 16, "int", default=0, unit="uT")
     """Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
@@ -49,6 +53,8 @@ class AdcsMeasurements(_base.Message):
     """
     magnetic_field_z_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetic Field Z in uT: -327.68 to 327.67."""
+    magnetic_field_z_nt: int = _base.whole(10, 0)
+    """Magnetic Field Z in nT, exact: -327680 to 327670."""
 
     coarse_sun_x: int = _base.field("Coarse Sun X", 48, 16, "int", default=0)
     """Coarse Sun X: bits 48 to 63, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
@@ -56,6 +62,8 @@ class AdcsMeasurements(_base.Message):
     """
     coarse_sun_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Coarse Sun X, as a physical value: -3.2768 to 3.2767."""
+    coarse_sun_x_micro: int = _base.whole(100, 0)
+    """Coarse Sun X in millionths, exact: -3276800 to 3276700."""
 
     coarse_sun_y: int = _base.field("Coarse Sun Y", 64, 16, "int", default=0)
     """Coarse Sun Y: bits 64 to 79, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
@@ -63,6 +71,8 @@ class AdcsMeasurements(_base.Message):
     """
     coarse_sun_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Coarse Sun Y, as a physical value: -3.2768 to 3.2767."""
+    coarse_sun_y_micro: int = _base.whole(100, 0)
+    """Coarse Sun Y in millionths, exact: -3276800 to 3276700."""
 
     coarse_sun_z: int = _base.field("Coarse Sun Z", 80, 16, "int", default=0)
     """Coarse Sun Z: bits 80 to 95, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
@@ -70,6 +80,8 @@ class AdcsMeasurements(_base.Message):
     """
     coarse_sun_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Coarse Sun Z, as a physical value: -3.2768 to 3.2767."""
+    coarse_sun_z_micro: int = _base.whole(100, 0)
+    """Coarse Sun Z in millionths, exact: -3276800 to 3276700."""
 
     sun_x: int = _base.field("Sun X", 96, 16, "int", default=0)
     """Sun X: bits 96 to 111, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -77,6 +89,8 @@ class AdcsMeasurements(_base.Message):
     """
     sun_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Sun X, as a physical value: -3.2768 to 3.2767."""
+    sun_x_micro: int = _base.whole(100, 0)
+    """Sun X in millionths, exact: -3276800 to 3276700."""
 
     sun_y: int = _base.field("Sun Y", 112, 16, "int", default=0)
     """Sun Y: bits 112 to 127, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -84,6 +98,8 @@ class AdcsMeasurements(_base.Message):
     """
     sun_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Sun Y, as a physical value: -3.2768 to 3.2767."""
+    sun_y_micro: int = _base.whole(100, 0)
+    """Sun Y in millionths, exact: -3276800 to 3276700."""
 
     sun_z: int = _base.field("Sun Z", 128, 16, "int", default=0)
     """Sun Z: bits 128 to 143, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -91,6 +107,8 @@ class AdcsMeasurements(_base.Message):
     """
     sun_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Sun Z, as a physical value: -3.2768 to 3.2767."""
+    sun_z_micro: int = _base.whole(100, 0)
+    """Sun Z in millionths, exact: -3276800 to 3276700."""
 
     nadir_x: int = _base.field("Nadir X", 144, 16, "int", default=0)
     """Nadir X: bits 144 to 159, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -98,6 +116,8 @@ class AdcsMeasurements(_base.Message):
     """
     nadir_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Nadir X, as a physical value: -3.2768 to 3.2767."""
+    nadir_x_micro: int = _base.whole(100, 0)
+    """Nadir X in millionths, exact: -3276800 to 3276700."""
 
     nadir_y: int = _base.field("Nadir Y", 160, 16, "int", default=0)
     """Nadir Y: bits 160 to 175, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -105,6 +125,8 @@ class AdcsMeasurements(_base.Message):
     """
     nadir_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Nadir Y, as a physical value: -3.2768 to 3.2767."""
+    nadir_y_micro: int = _base.whole(100, 0)
+    """Nadir Y in millionths, exact: -3276800 to 3276700."""
 
     nadir_z: int = _base.field("Nadir Z", 176, 16, "int", default=0)
     """Nadir Z: bits 176 to 191, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -112,6 +134,8 @@ class AdcsMeasurements(_base.Message):
     """
     nadir_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Nadir Z, as a physical value: -3.2768 to 3.2767."""
+    nadir_z_micro: int = _base.whole(100, 0)
+    """Nadir Z in millionths, exact: -3276800 to 3276700."""
 
     x_angular_rate: int = _base.field("X Angular Rate", 192, 16, "int", default=0, unit="deg/s")
     """X Angular Rate: bits 192 to 207, raw -32768 to 32767; physical `raw*0.01`,
@@ -119,6 +143,8 @@ class AdcsMeasurements(_base.Message):
     """
     x_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """X Angular Rate in deg/s: -327.68 to 327.67."""
+    x_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """X Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
 
     y_angular_rate: int = _base.field("Y Angular Rate", 208, 16, "int", default=0, unit="deg/s")
     """Y Angular Rate: bits 208 to 223, raw -32768 to 32767; physical `raw*0.01`,
@@ -126,6 +152,8 @@ class AdcsMeasurements(_base.Message):
     """
     y_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """Y Angular Rate in deg/s: -327.68 to 327.67."""
+    y_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Y Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
 
     z_angular_rate: int = _base.field("Z Angular Rate", 224, 16, "int", default=0, unit="deg/s")
     """Z Angular Rate: bits 224 to 239, raw -32768 to 32767; physical `raw*0.01`,
@@ -133,6 +161,8 @@ class AdcsMeasurements(_base.Message):
     """
     z_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """Z Angular Rate in deg/s: -327.68 to 327.67."""
+    z_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Z Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
 
     x_wheel_speed: int = _base.field("X Wheel Speed", 240, 16, "int", default=0, unit="rpm")
     """X Wheel Speed: bits 240 to 255, raw -32768 to 32767, in rpm."""
@@ -151,6 +181,8 @@ class AdcsMeasurements(_base.Message):
     """
     star1_body_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1BX, as a physical value: -3.2768 to 3.2767."""
+    star1_body_x_micro: int = _base.whole(100, 0)
+    """Star1BX in millionths, exact: -3276800 to 3276700."""
 
     star1_body_y: int = _base.field("Star1BY", 304, 16, "int", default=0)
     """Star1BY: bits 304 to 319, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -160,6 +192,8 @@ class AdcsMeasurements(_base.Message):
     """
     star1_body_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1BY, as a physical value: -3.2768 to 3.2767."""
+    star1_body_y_micro: int = _base.whole(100, 0)
+    """Star1BY in millionths, exact: -3276800 to 3276700."""
 
     star1_body_z: int = _base.field("Star1BZ", 320, 16, "int", default=0)
     """Star1BZ: bits 320 to 335, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -169,6 +203,8 @@ class AdcsMeasurements(_base.Message):
     """
     star1_body_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1BZ, as a physical value: -3.2768 to 3.2767."""
+    star1_body_z_micro: int = _base.whole(100, 0)
+    """Star1BZ in millionths, exact: -3276800 to 3276700."""
 
     star1_orbit_x: int = _base.field("Star1OX", 336, 16, "int", default=0)
     """Star1OX: bits 336 to 351, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -178,6 +214,8 @@ class AdcsMeasurements(_base.Message):
     """
     star1_orbit_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1OX, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_x_micro: int = _base.whole(100, 0)
+    """Star1OX in millionths, exact: -3276800 to 3276700."""
 
     star1_orbit_y: int = _base.field("Star1OY", 352, 16, "int", default=0)
     """Star1OY: bits 352 to 367, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -187,6 +225,8 @@ class AdcsMeasurements(_base.Message):
     """
     star1_orbit_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1OY, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_y_micro: int = _base.whole(100, 0)
+    """Star1OY in millionths, exact: -3276800 to 3276700."""
 
     star1_orbit_z: int = _base.field("Star1OZ", 368, 16, "int", default=0)
     """Star1OZ: bits 368 to 383, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -196,6 +236,8 @@ class AdcsMeasurements(_base.Message):
     """
     star1_orbit_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1OZ, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_z_micro: int = _base.whole(100, 0)
+    """Star1OZ in millionths, exact: -3276800 to 3276700."""
 
     star2_body_x: int = _base.field("Star2BX", 384, 16, "int", default=0)
     """Star2BX: bits 384 to 399, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -205,6 +247,8 @@ class AdcsMeasurements(_base.Message):
     """
     star2_body_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star2BX, as a physical value: -3.2768 to 3.2767."""
+    star2_body_x_micro: int = _base.whole(100, 0)
+    """Star2BX in millionths, exact: -3276800 to 3276700."""
 
     star2_body_y: int = _base.field("Star2BY", 400, 16, "int", default=0)
     """Star2BY: bits 400 to 415, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -214,6 +258,8 @@ class AdcsMeasurements(_base.Message):
     """
     star2_body_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star2BY, as a physical value: -3.2768 to 3.2767."""
+    star2_body_y_micro: int = _base.whole(100, 0)
+    """Star2BY in millionths, exact: -3276800 to 3276700."""
 
     star2_body_z: int = _base.field("Star2BZ", 416, 16, "int", default=0)
     """Star2BZ: bits 416 to 431, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -223,6 +269,8 @@ class AdcsMeasurements(_base.Message):
     """
     star2_body_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star2BZ, as a physical value: -3.2768 to 3.2767."""
+    star2_body_z_micro: int = _base.whole(100, 0)
+    """Star2BZ in millionths, exact: -3276800 to 3276700."""
 
     star2_orbit_x: int = _base.field("Star2OX", 432, 16, "int", default=0)
     """Star2OX: bits 432 to 447, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -232,6 +280,8 @@ class AdcsMeasurements(_base.Message):
     """
     star2_orbit_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star2OX, as a physical value: -3.2768 to 3.2767."""
+    star2_orbit_x_micro: int = _base.whole(100, 0)
+    """Star2OX in millionths, exact: -3276800 to 3276700."""
 
     star2_orbit_y: int = _base.field("Star2OY", 448, 16, "int", default=0)
     """Star2OY: bits 448 to 463, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -241,6 +291,8 @@ class AdcsMeasurements(_base.Message):
     """
     star2_orbit_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star2OY, as a physical value: -3.2768 to 3.2767."""
+    star2_orbit_y_micro: int = _base.whole(100, 0)
+    """Star2OY in millionths, exact: -3276800 to 3276700."""
 
     star2_orbit_z: int = _base.field("Star2OZ", 464, 16, "int", default=0)
     """Star2OZ: bits 464 to 479, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -250,6 +302,8 @@ class AdcsMeasurements(_base.Message):
     """
     star2_orbit_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star2OZ, as a physical value: -3.2768 to 3.2767."""
+    star2_orbit_z_micro: int = _base.whole(100, 0)
+    """Star2OZ in millionths, exact: -3276800 to 3276700."""
 
     star3_body_x: int = _base.field("Star3BX", 480, 16, "int", default=0)
     """Star3BX: bits 480 to 495, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -259,6 +313,8 @@ class AdcsMeasurements(_base.Message):
     """
     star3_body_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star3BX, as a physical value: -3.2768 to 3.2767."""
+    star3_body_x_micro: int = _base.whole(100, 0)
+    """Star3BX in millionths, exact: -3276800 to 3276700."""
 
     star3_body_y: int = _base.field("Star3BY", 496, 16, "int", default=0)
     """Star3BY: bits 496 to 511, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -268,6 +324,8 @@ class AdcsMeasurements(_base.Message):
     """
     star3_body_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star3BY, as a physical value: -3.2768 to 3.2767."""
+    star3_body_y_micro: int = _base.whole(100, 0)
+    """Star3BY in millionths, exact: -3276800 to 3276700."""
 
     star3_body_z: int = _base.field("Star3BZ", 512, 16, "int", default=0)
     """Star3BZ: bits 512 to 527, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -277,6 +335,8 @@ class AdcsMeasurements(_base.Message):
     """
     star3_body_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star3BZ, as a physical value: -3.2768 to 3.2767."""
+    star3_body_z_micro: int = _base.whole(100, 0)
+    """Star3BZ in millionths, exact: -3276800 to 3276700."""
 
     star3_orbit_x: int = _base.field("Star3OX", 528, 16, "int", default=0)
     """Star3OX: bits 528 to 543, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -286,6 +346,8 @@ class AdcsMeasurements(_base.Message):
     """
     star3_orbit_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star3OX, as a physical value: -3.2768 to 3.2767."""
+    star3_orbit_x_micro: int = _base.whole(100, 0)
+    """Star3OX in millionths, exact: -3276800 to 3276700."""
 
     star3_orbit_y: int = _base.field("Star3OY", 544, 16, "int", default=0)
     """Star3OY: bits 544 to 559, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -295,6 +357,8 @@ class AdcsMeasurements(_base.Message):
     """
     star3_orbit_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star3OY, as a physical value: -3.2768 to 3.2767."""
+    star3_orbit_y_micro: int = _base.whole(100, 0)
+    """Star3OY in millionths, exact: -3276800 to 3276700."""
 
     star3_orbit_z: int = _base.field("Star3OZ", 560, 16, "int", default=0)
     """Star3OZ: bits 560 to 575, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -304,3 +368,5 @@ class AdcsMeasurements(_base.Message):
     """
     star3_orbit_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star3OZ, as a physical value: -3.2768 to 3.2767."""
+    star3_orbit_z_micro: int = _base.whole(100, 0)
+    """Star3OZ in millionths, exact: -3276800 to 3276700."""

@@ -28,10 +28,14 @@ class AdcsMiscCurrents(_base.Message):
     """CubeStarCurrent: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of
+    0.01 mA sixteen bits reach 655.35 mA, which a wheel motor may well exceed. All other
+    currents have steps of 0.1 mA and more. The factor is held as printed.
     """
     cubestar_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """CubeStarCurrent in mA: 0 to 655.35."""
+    cubestar_current_ua: int = _base.whole(10, 0)
+    """CubeStarCurrent in uA, exact: 0 to 655350."""
 
     magnetorquer_current: int = _base.field("Magnetorquer Current", 16, 16, "uint", default=0, unit="mA")
     """Magnetorquer Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0 to
@@ -39,14 +43,21 @@ class AdcsMiscCurrents(_base.Message):
     """
     magnetorquer_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """Magnetorquer Current in mA: 0 to 6553.5."""
+    magnetorquer_current_ua: int = _base.whole(100, 0)
+    """Magnetorquer Current in uA, exact: 0 to 6553500."""
 
     cubestar_mcu_temperature: int = _base.field("CubeStar MCU temperature", 32, 16, "int", default=0, unit="C")
     """CubeStar MCU temperature: bits 32 to 47, raw -32768 to 32767; physical
     `raw/100.0`, -327.68 to 327.67 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a
+    degree sign. Degrees Celsius are meant.
 
-    Note ACP-108 (certain): ADCS Misc Current Measurements holds a temperature.
+    Note ACP-108 (certain): ADCS Misc Current Measurements holds a temperature. The name
+    speaks of currents, the description of CubeStar and torquer currents and
+    temperatures; one temperature is there, of CubeStar.
     """
     cubestar_mcu_temperature_c: float = _base.scaled(1, 0, 100, default=0.0)
     """CubeStar MCU temperature in C: -327.68 to 327.67."""
+    cubestar_mcu_temperature_mc: int = _base.whole(10, 0)
+    """CubeStar MCU temperature in thousandths of C, exact: -327680 to 327670."""

@@ -15,7 +15,8 @@ class AdcsPowerControl(_base.Message):
 
     Switches components on and off.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
     """
 
     NODE = "cubeacp"
@@ -34,7 +35,8 @@ class AdcsPowerControl(_base.Message):
 
     Electronics of the signal PIC.
 
-    Note ACP-136 (certain): Power control calls the controllers PIC.
+    Note ACP-136 (certain): Power control calls the controllers PIC. Elsewhere the same
+    two are MCUs or microcontrollers.
     """
 
     cubecontrol_motor_power_selection: PowerSelect = _base.field(
@@ -44,7 +46,7 @@ class AdcsPowerControl(_base.Message):
 
     Electronics of the motor PIC.
 
-    Note ACP-136 (certain): Power control calls the controllers PIC.
+    Note ACP-136 (certain): see CubeControl Signal Power Selection.
     """
 
     cubesense1_power_selection: PowerSelect = _base.field(
@@ -62,7 +64,9 @@ class AdcsPowerControl(_base.Message):
     )
     """CubeStarPower Power Selection: bits 8 to 9.
 
-    Note ACP-134 (certain): Power is doubled in four names.
+    Note ACP-134 (certain): Power is doubled in four names. CubeStarPower Power
+    Selection and three like it say power twice; the other units have it once.
+    Identifiers are built without the first.
     """
 
     cubewheel1_power_selection: PowerSelect = _base.field(
@@ -70,7 +74,7 @@ class AdcsPowerControl(_base.Message):
     )
     """CubeWheel1Power Power Selection: bits 10 to 11.
 
-    Note ACP-134 (certain): Power is doubled in four names.
+    Note ACP-134 (certain): see CubeStarPower Power Selection.
     """
 
     cubewheel2_power_selection: PowerSelect = _base.field(
@@ -78,7 +82,7 @@ class AdcsPowerControl(_base.Message):
     )
     """CubeWheel2Power Power Selection: bits 12 to 13.
 
-    Note ACP-134 (certain): Power is doubled in four names.
+    Note ACP-134 (certain): see CubeStarPower Power Selection.
     """
 
     cubewheel3_power_selection: PowerSelect = _base.field(
@@ -86,7 +90,7 @@ class AdcsPowerControl(_base.Message):
     )
     """CubeWheel3Power Power Selection: bits 14 to 15.
 
-    Note ACP-134 (certain): Power is doubled in four names.
+    Note ACP-134 (certain): see CubeStarPower Power Selection.
     """
 
     motor_power: PowerSelect = _base.field("Motor Power", 16, 2, "enum", default=PowerSelect.OFF)
@@ -94,9 +98,12 @@ class AdcsPowerControl(_base.Message):
 
     Motor electronics.
 
-    Note ACP-062 (open): Power switches and enabled flags do not match.
+    Note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is
+    reported as Motor Driver Enabled, GPS Power switches the antenna amplifier and is
+    reported as GPS LNA Power Enabled. GPS Receiver Enabled has no switch.
 
-    Note ACP-135 (certain): Motor Power and GPS Power are not called selections.
+    Note ACP-135 (certain): Motor Power and GPS Power are not called selections. Two of
+    ten fields with the same enumeration lack the word.
     """
 
     gps_power: PowerSelect = _base.field("GPS Power", 18, 2, "enum", default=PowerSelect.OFF)
@@ -104,7 +111,7 @@ class AdcsPowerControl(_base.Message):
 
     LNA of the GPS.
 
-    Note ACP-062 (open): Power switches and enabled flags do not match.
+    Note ACP-062 (open): see Motor Power.
 
-    Note ACP-135 (certain): Motor Power and GPS Power are not called selections.
+    Note ACP-135 (certain): see Motor Power.
     """

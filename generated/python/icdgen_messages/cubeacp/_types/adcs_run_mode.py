@@ -13,7 +13,8 @@ class AdcsRunMode(_enumeration.OpenEnum):
     OFF = 0, "Off"
     """The loop does not run.
 
-    Note ACP-019 (certain): Disabled is Off.
+    Note ACP-019 (certain): Disabled is Off. The text says what happens when the ADCS is
+    disabled; no member has that name.
     """
     ENABLED = 1, "Enabled"
     """The loop runs at 1 Hz."""
@@ -21,5 +22,7 @@ class AdcsRunMode(_enumeration.OpenEnum):
     """The loop runs once for each trigger."""
     SIMULATION = 3, "Simulation"
     """Note ACP-032 (open): Simulated data are accepted while triggered, not while
-    simulating.
+    simulating. The telecommand with simulated measurements is valid only in mode
+    Triggered, and there is a mode Simulation that no other text mentions. The sentence
+    was probably taken over from the telecommand before it.
     """

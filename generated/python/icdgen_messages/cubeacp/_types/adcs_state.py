@@ -24,9 +24,13 @@ class AdcsState(_base.Message):
     (ECI) from byte 30. Repeats Satellite Velocity (ECI) from byte 36. Repeats Satellite
     Position (LLH) from byte 42. Repeats ECEF Position from byte 48.
 
-    Note ACP-059 (certain): Current ADCS State and ADCS State.
+    Note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called
+    Current ADCS State, and frame 190, which holds it and much more, ADCS State with the
+    description current ADCS state.
 
-    Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles.
+    Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles. Bits 66
+    to 95 are not described. They are the unused end of frame 224, which the frame
+    repeats.
     """
 
     NODE = "cubeacp"
@@ -51,7 +55,8 @@ class AdcsState(_base.Message):
     asgp4_mode: Asgp4ModeSelect = _base.field("ASGP4 Mode", 10, 2, "enum", default=Asgp4ModeSelect.OFF)
     """ASGP4 Mode: bits 10 to 11.
 
-    Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold
+    a mode with four values; the description has an enabled state.
     """
 
     cubecontrol_signal_enabled: bool = _base.field("CubeControl Signal Enabled", 12, 1, "bool", default=False)
@@ -129,7 +134,9 @@ class AdcsState(_base.Message):
 
     About a measured field of 65 uT. Whether above or below is not printed.
 
-    Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
+    Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is
+    set when the field has a size 65 uT. Above is likely, since the field of the earth
+    hardly reaches it.
     """
 
     cam1_sram_overcurrent_detected: bool = _base.field("Cam1 SRAM Overcurrent Detected", 33, 1, "bool", default=False)
@@ -155,7 +162,9 @@ class AdcsState(_base.Message):
 
     A detected sun angle was beyond +/-90 deg.
 
-    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag
+    each is for the sun and the nadir sensor; the cameras are numbered, and which of
+    them is which is a setting. With two sun sensors one flag serves both.
     """
 
     cam2_sram_overcurrent_detected: bool = _base.field("Cam2 SRAM Overcurrent Detected", 38, 1, "bool", default=False)
@@ -181,7 +190,7 @@ class AdcsState(_base.Message):
 
     A detected nadir angle was beyond +/-60 deg.
 
-    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    Note ACP-061 (open): see Sun Sensor Range Error.
     """
 
     rate_sensor_range_error: bool = _base.field("Rate Sensor Range Error", 43, 1, "bool", default=False)
@@ -218,7 +227,8 @@ class AdcsState(_base.Message):
 
     A parameter is out of bounds, or the SGP4 propagator could not start from them.
 
-    Note ACP-104 (open): Orbit parameter flag has two reasons.
+    Note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds,
+    or a propagator that failed to start, are told as two sentences for one bit.
     """
 
     configuration_is_invalid: bool = _base.field("Configuration is Invalid", 49, 1, "bool", default=False)
@@ -227,9 +237,13 @@ class AdcsState(_base.Message):
     Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at
     least one CSS.
 
-    Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
+    Note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames
+    differ by a letter in the description, and principle stands for principal twice in
+    each.
 
-    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output. Each
+    axis is said to need a torquer output 1, 2 or 3. The configuration works the other
+    way round and gives an axis to each torquer, or Not Used.
     """
 
     control_mode_change_is_not_allowed: bool = _base.field(
@@ -307,6 +321,8 @@ class AdcsState(_base.Message):
     """
     estimated_roll_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Roll Angle in deg: -327.68 to 327.67."""
+    estimated_roll_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Roll Angle in thousandths of deg, exact: -327680 to 327670."""
 
     estimated_pitch_angle: int = _base.field("Estimated Pitch Angle", 112, 16, "int", default=0, unit="deg")
     """Estimated Pitch Angle: bits 112 to 127, raw -32768 to 32767; physical `raw*0.01`,
@@ -314,6 +330,8 @@ class AdcsState(_base.Message):
     """
     estimated_pitch_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Pitch Angle in deg: -327.68 to 327.67."""
+    estimated_pitch_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Pitch Angle in thousandths of deg, exact: -327680 to 327670."""
 
     estimated_yaw_angle: int = _base.field("Estimated Yaw Angle", 128, 16, "int", default=0, unit="deg")
     """Estimated Yaw Angle: bits 128 to 143, raw -32768 to 32767; physical `raw*0.01`,
@@ -321,23 +339,27 @@ class AdcsState(_base.Message):
     """
     estimated_yaw_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Yaw Angle in deg: -327.68 to 327.67."""
+    estimated_yaw_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Yaw Angle in thousandths of deg, exact: -327680 to 327670."""
 
     estimated_q1: int = _base.field("Estimated q1", 144, 16, "int", default=0)
     """Estimated q1: bits 144 to 159, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): Estimated quaternion has no formula. Components of a unit
+    quaternion in 16 bits need a factor; all other quaternions have one of 1/10000. It
+    is likely here too, but not printed, so the raw value is all that is offered.
     """
 
     estimated_q2: int = _base.field("Estimated q2", 160, 16, "int", default=0)
     """Estimated q2: bits 160 to 175, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): see Estimated q1.
     """
 
     estimated_q3: int = _base.field("Estimated q3", 176, 16, "int", default=0)
     """Estimated q3: bits 176 to 191, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): see Estimated q1.
     """
 
     estimated_x_angular_rate: int = _base.field("Estimated X Angular Rate", 192, 16, "int", default=0, unit="deg/s")
@@ -346,6 +368,8 @@ class AdcsState(_base.Message):
     """
     estimated_x_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated X Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_x_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated X Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
 
     estimated_y_angular_rate: int = _base.field("Estimated Y Angular Rate", 208, 16, "int", default=0, unit="deg/s")
     """Estimated Y Angular Rate: bits 208 to 223, raw -32768 to 32767; physical
@@ -353,6 +377,8 @@ class AdcsState(_base.Message):
     """
     estimated_y_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Y Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_y_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated Y Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
 
     estimated_z_angular_rate: int = _base.field("Estimated Z Angular Rate", 224, 16, "int", default=0, unit="deg/s")
     """Estimated Z Angular Rate: bits 224 to 239, raw -32768 to 32767; physical
@@ -360,6 +386,8 @@ class AdcsState(_base.Message):
     """
     estimated_z_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Z Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_z_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated Z Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
 
     x_position: int = _base.field("X position", 240, 16, "int", default=0, unit="km")
     """X position: bits 240 to 255, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -367,6 +395,8 @@ class AdcsState(_base.Message):
     """
     x_position_km: float = _base.scaled(1, 0, 4, default=0.0)
     """X position in km: -8192 to 8191.75."""
+    x_position_m: int = _base.whole(250, 0)
+    """X position in m, exact: -8192000 to 8191750."""
 
     y_position: int = _base.field("Y position", 256, 16, "int", default=0, unit="km")
     """Y position: bits 256 to 271, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -374,6 +404,8 @@ class AdcsState(_base.Message):
     """
     y_position_km: float = _base.scaled(1, 0, 4, default=0.0)
     """Y position in km: -8192 to 8191.75."""
+    y_position_m: int = _base.whole(250, 0)
+    """Y position in m, exact: -8192000 to 8191750."""
 
     z_position: int = _base.field("Z position", 272, 16, "int", default=0, unit="km")
     """Z position: bits 272 to 287, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -381,6 +413,8 @@ class AdcsState(_base.Message):
     """
     z_position_km: float = _base.scaled(1, 0, 4, default=0.0)
     """Z position in km: -8192 to 8191.75."""
+    z_position_m: int = _base.whole(250, 0)
+    """Z position in m, exact: -8192000 to 8191750."""
 
     x_velocity: int = _base.field("X Velocity", 288, 16, "int", default=0, unit="m/s")
     """X Velocity: bits 288 to 303, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -388,6 +422,8 @@ class AdcsState(_base.Message):
     """
     x_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
     """X Velocity in m/s: -8192 to 8191.75."""
+    x_velocity_mm_per_s: int = _base.whole(250, 0)
+    """X Velocity in mm/s, exact: -8192000 to 8191750."""
 
     y_velocity: int = _base.field("Y Velocity", 304, 16, "int", default=0, unit="m/s")
     """Y Velocity: bits 304 to 319, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -395,6 +431,8 @@ class AdcsState(_base.Message):
     """
     y_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
     """Y Velocity in m/s: -8192 to 8191.75."""
+    y_velocity_mm_per_s: int = _base.whole(250, 0)
+    """Y Velocity in mm/s, exact: -8192000 to 8191750."""
 
     z_velocity: int = _base.field("Z Velocity", 320, 16, "int", default=0, unit="m/s")
     """Z Velocity: bits 320 to 335, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -402,6 +440,8 @@ class AdcsState(_base.Message):
     """
     z_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
     """Z Velocity in m/s: -8192 to 8191.75."""
+    z_velocity_mm_per_s: int = _base.whole(250, 0)
+    """Z Velocity in mm/s, exact: -8192000 to 8191750."""
 
     latitude: int = _base.field("Latitude", 336, 16, "int", default=0, unit="deg")
     """Latitude: bits 336 to 351, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
@@ -409,44 +449,59 @@ class AdcsState(_base.Message):
     """
     latitude_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Latitude in deg: -327.68 to 327.67."""
+    latitude_mdeg: int = _base.whole(10, 0)
+    """Latitude in thousandths of deg, exact: -327680 to 327670."""
 
     longitude: int = _base.field("Longitude", 352, 16, "int", default=0, unit="deg")
     """Longitude: bits 352 to 367, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     327.67 deg.
 
-    Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
+    Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The
+    datum is missing in one of three rows; the frame is called LLH by name and WGS-84
+    frame by description.
     """
     longitude_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Longitude in deg: -327.68 to 327.67."""
+    longitude_mdeg: int = _base.whole(10, 0)
+    """Longitude in thousandths of deg, exact: -327680 to 327670."""
 
     altitude: int = _base.field("Altitude", 368, 16, "uint", default=0, unit="km")
     """Altitude: bits 368 to 383, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
 
-    Note ACP-067 (open): Position and altitude do not reach equally far.
+    Note ACP-067 (open): Position and altitude do not reach equally far. The inertial
+    position fits orbits up to 1800 km, the altitude of 16 bits ends at 655.35 km. Above
+    that it wraps or sticks; which is not said.
     """
     altitude_km: float = _base.scaled(1, 0, 100, default=0.0)
     """Altitude in km: 0 to 655.35."""
+    altitude_m: int = _base.whole(10, 0)
+    """Altitude in m, exact: 0 to 655350."""
 
     ecef_position_x: int = _base.field("ECEF Position X", 384, 16, "int", default=0)
     """ECEF Position X: bits 384 to 399, raw -32768 to 32767.
 
-    Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    Erratum ACP-098 (likely): ECEF position: 16 bits in metres. In metres the field
+    reaches 32.767 km, a position some 7000 km. A factor is missing; 0.25 km as in the
+    inertial position is one possibility, km another. No unit is held, so nothing is
+    converted.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z
+    have 16 bits in the state frames and 32 bits in the GPS frames and the simulated
+    data, with the same name, description and unit.
     """
 
     ecef_position_y: int = _base.field("ECEF Position Y", 400, 16, "int", default=0)
     """ECEF Position Y: bits 400 to 415, raw -32768 to 32767.
 
-    Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    Erratum ACP-098 (likely): see ECEF Position X.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
 
     ecef_position_z: int = _base.field("ECEF Position Z", 416, 16, "int", default=0)
     """ECEF Position Z: bits 416 to 431, raw -32768 to 32767.
 
-    Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    Erratum ACP-098 (likely): see ECEF Position X.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """

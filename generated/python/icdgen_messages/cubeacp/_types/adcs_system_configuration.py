@@ -20,9 +20,12 @@ class AdcsSystemConfiguration(_base.Message):
 
     What is hard-coded: versions, ratings, calibration and pins.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
 
-    Note ACP-170 (open): System configuration is hard-coded and can be set.
+    Note ACP-170 (open): System configuration is hard-coded and can be set. The
+    description says hard-coded, the message has a set id, and a load error exists for
+    it. Whether a set is refused, or lost with the next start, is not said.
     """
 
     NODE = "cubeacp"
@@ -45,25 +48,26 @@ class AdcsSystemConfiguration(_base.Message):
     cubecontrol_signal_version: int = _base.field("CubeControl Signal Version", 8, 8, "uint", default=0)
     """CubeControl Signal Version: bits 8 to 15, raw 0 to 255.
 
-    Note ACP-171 (open): Versions of the units: format of the number.
+    Note ACP-171 (open): Versions of the units: format of the number. Versions of
+    hardware or firmware, as whole numbers or packed digits, are all possible in a byte.
     """
 
     cubecontrol_motor_version: int = _base.field("CubeControl Motor Version", 16, 8, "uint", default=0)
     """CubeControl Motor Version: bits 16 to 23, raw 0 to 255.
 
-    Note ACP-171 (open): Versions of the units: format of the number.
+    Note ACP-171 (open): see CubeControl Signal Version.
     """
 
     cubesense1_version: int = _base.field("CubeSense1 Version", 24, 8, "uint", default=0)
     """CubeSense1 Version: bits 24 to 31, raw 0 to 255.
 
-    Note ACP-171 (open): Versions of the units: format of the number.
+    Note ACP-171 (open): see CubeControl Signal Version.
     """
 
     cubesense2_version: int = _base.field("CubeSense2 Version", 32, 8, "uint", default=0)
     """CubeSense2 Version: bits 32 to 39, raw 0 to 255.
 
-    Note ACP-171 (open): Versions of the units: format of the number.
+    Note ACP-171 (open): see CubeControl Signal Version.
     """
 
     cubesense1_camera_type: CsCamType = _base.field(
@@ -79,7 +83,7 @@ class AdcsSystemConfiguration(_base.Message):
     cubestar_version: int = _base.field("CubeStar Version", 48, 8, "uint", default=0)
     """CubeStar Version: bits 48 to 55, raw 0 to 255.
 
-    Note ACP-171 (open): Versions of the units: format of the number.
+    Note ACP-171 (open): see CubeControl Signal Version.
     """
 
     gps_type: GpsSelect = _base.field("GPS Type", 56, 4, "enum", default=GpsSelect.NO_GPS_SUPPORT)
@@ -93,7 +97,8 @@ class AdcsSystemConfiguration(_base.Message):
     )
     """Magnetorquer-X Max Dipole: bits 64 to 95, 32-bit float, in A.m^2.
 
-    Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2.
+    Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2. The square is written as a digit
+    above the line here and with a caret for the inertia. Held with a caret.
     """
 
     magnetorquer_y_max_dipole: float = _base.field(
@@ -101,7 +106,7 @@ class AdcsSystemConfiguration(_base.Message):
     )
     """Magnetorquer-Y Max Dipole: bits 96 to 127, 32-bit float, in A.m^2.
 
-    Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2.
+    Erratum ACP-172 (certain): see Magnetorquer-X Max Dipole.
     """
 
     magnetorquer_z_max_dipole: float = _base.field(
@@ -109,7 +114,7 @@ class AdcsSystemConfiguration(_base.Message):
     )
     """Magnetorquer-Z Max Dipole: bits 128 to 159, 32-bit float, in A.m^2.
 
-    Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2.
+    Erratum ACP-172 (certain): see Magnetorquer-X Max Dipole.
     """
 
     magnetorquer_on_time_resolution: float = _base.field(
@@ -125,61 +130,64 @@ class AdcsSystemConfiguration(_base.Message):
     rw_x_maximum_torque: float = _base.field("RW-X Maximum Torque", 224, 32, "float", default=0.0, unit="N.m")
     """RW-X Maximum Torque: bits 224 to 255, 32-bit float, in N.m.
 
-    Note ACP-173 (certain): N.m and Nms.
+    Note ACP-173 (certain): N.m and Nms. Torque is written with a dot, angular momentum
+    without. Both are held as printed.
     """
 
     rw_y_maximum_torque: float = _base.field("RW-Y Maximum Torque", 256, 32, "float", default=0.0, unit="N.m")
     """RW-Y Maximum Torque: bits 256 to 287, 32-bit float, in N.m.
 
-    Note ACP-173 (certain): N.m and Nms.
+    Note ACP-173 (certain): see RW-X Maximum Torque.
     """
 
     rw_z_maximum_torque: float = _base.field("RW-Z Maximum Torque", 288, 32, "float", default=0.0, unit="N.m")
     """RW-Z Maximum Torque: bits 288 to 319, 32-bit float, in N.m.
 
-    Note ACP-173 (certain): N.m and Nms.
+    Note ACP-173 (certain): see RW-X Maximum Torque.
     """
 
     rw_x_maximum_momentum: float = _base.field("RW-X Maximum Momentum", 320, 32, "float", default=0.0, unit="Nms")
     """RW-X Maximum Momentum: bits 320 to 351, 32-bit float, in Nms.
 
-    Note ACP-173 (certain): N.m and Nms.
+    Note ACP-173 (certain): see RW-X Maximum Torque.
     """
 
     rw_y_maximum_momentum: float = _base.field("RW-Y Maximum Momentum", 352, 32, "float", default=0.0, unit="Nms")
     """RW-Y Maximum Momentum: bits 352 to 383, 32-bit float, in Nms.
 
-    Note ACP-173 (certain): N.m and Nms.
+    Note ACP-173 (certain): see RW-X Maximum Torque.
     """
 
     rw_z_maximum_momentum: float = _base.field("RW-Z Maximum Momentum", 384, 32, "float", default=0.0, unit="Nms")
     """RW-Z Maximum Momentum: bits 384 to 415, 32-bit float, in Nms.
 
-    Note ACP-173 (certain): N.m and Nms.
+    Note ACP-173 (certain): see RW-X Maximum Torque.
     """
 
     rw_x_inertia: float = _base.field("RW-X Inertia", 416, 32, "float", default=0.0, unit="kg.m^2")
     """RW-X Inertia: bits 416 to 447, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2. The same fields
+    have the unit in two spellings. Held as kg.m^2.
 
-    Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    Note ACP-129 (open): Reaction wheels are RW1 and RW-X. Numbers in one message, axes
+    in the other. The two agree only after the wheel configuration has been applied.
     """
 
     rw_y_inertia: float = _base.field("RW-Y Inertia", 448, 32, "float", default=0.0, unit="kg.m^2")
     """RW-Y Inertia: bits 448 to 479, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see RW-X Inertia.
 
-    Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    Note ACP-129 (open): see RW-X Inertia.
     """
 
     rw_z_inertia: float = _base.field("RW-Z Inertia", 480, 32, "float", default=0.0, unit="kg.m^2")
     """RW-Z Inertia: bits 480 to 511, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see RW-X Inertia.
 
-    Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    Note ACP-129 (open): see RW-X Inertia.
     """
 
     rw_torque_increment: float = _base.field("RW Torque Increment", 512, 32, "float", default=0.0, unit="N.m")
@@ -188,157 +196,160 @@ class AdcsSystemConfiguration(_base.Message):
     primary_mtm_x_bias_d1: float = _base.field("Primary MTM X-Bias d1", 544, 32, "float", default=0.0)
     """Primary MTM X-Bias d1: bits 544 to 575, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2. Twenty-four
+    coefficients have neither description nor unit. How they work together with the
+    offsets and the sensitivity matrix of the configuration is not said.
     """
 
     primary_mtm_y_bias_d1: float = _base.field("Primary MTM Y-Bias d1", 576, 32, "float", default=0.0)
     """Primary MTM Y-Bias d1: bits 576 to 607, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     primary_mtm_z_bias_d1: float = _base.field("Primary MTM Z-Bias d1", 608, 32, "float", default=0.0)
     """Primary MTM Z-Bias d1: bits 608 to 639, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     primary_mtm_x_bias_d2: float = _base.field("Primary MTM X-Bias d2", 640, 32, "float", default=0.0)
     """Primary MTM X-Bias d2: bits 640 to 671, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     primary_mtm_y_bias_d2: float = _base.field("Primary MTM Y-Bias d2", 672, 32, "float", default=0.0)
     """Primary MTM Y-Bias d2: bits 672 to 703, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     primary_mtm_z_bias_d2: float = _base.field("Primary MTM Z-Bias d2", 704, 32, "float", default=0.0)
     """Primary MTM Z-Bias d2: bits 704 to 735, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     primary_mtm_x_sens_s1: float = _base.field("Primary MTM X-Sens s1", 736, 32, "float", default=0.0)
     """Primary MTM X-Sens s1: bits 736 to 767, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     primary_mtm_y_sens_s1: float = _base.field("Primary MTM Y-Sens s1", 768, 32, "float", default=0.0)
     """Primary MTM Y-Sens s1: bits 768 to 799, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     primary_mtm_z_sens_s1: float = _base.field("Primary MTM Z-Sens s1", 800, 32, "float", default=0.0)
     """Primary MTM Z-Sens s1: bits 800 to 831, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     primary_mtm_x_sens_s2: float = _base.field("Primary MTM X-Sens s2", 832, 32, "float", default=0.0)
     """Primary MTM X-Sens s2: bits 832 to 863, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     primary_mtm_y_sens_s2: float = _base.field("Primary MTM Y-Sens s2", 864, 32, "float", default=0.0)
     """Primary MTM Y-Sens s2: bits 864 to 895, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     primary_mtm_z_sens_s2: float = _base.field("Primary MTM Z-Sens s2", 896, 32, "float", default=0.0)
     """Primary MTM Z-Sens s2: bits 896 to 927, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     redundant_mtm_x_bias_d1: float = _base.field("Redundant MTM X-Bias d1", 928, 32, "float", default=0.0)
     """Redundant MTM X-Bias d1: bits 928 to 959, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     redundant_mtm_y_bias_d1: float = _base.field("Redundant MTM Y-Bias d1", 960, 32, "float", default=0.0)
     """Redundant MTM Y-Bias d1: bits 960 to 991, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     redundant_mtm_z_bias_d1: float = _base.field("Redundant MTM Z-Bias d1", 992, 32, "float", default=0.0)
     """Redundant MTM Z-Bias d1: bits 992 to 1023, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     redundant_mtm_x_bias_d2: float = _base.field("Redundant MTM X-Bias d2", 1024, 32, "float", default=0.0)
     """Redundant MTM X-Bias d2: bits 1024 to 1055, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     redundant_mtm_y_bias_d2: float = _base.field("Redundant MTM Y-Bias d2", 1056, 32, "float", default=0.0)
     """Redundant MTM Y-Bias d2: bits 1056 to 1087, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     redundant_mtm_z_bias_d2: float = _base.field("Redundant MTM Z-Bias d2", 1088, 32, "float", default=0.0)
     """Redundant MTM Z-Bias d2: bits 1088 to 1119, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     redundant_mtm_x_sens_s1: float = _base.field("Redundant MTM X-Sens s1", 1120, 32, "float", default=0.0)
     """Redundant MTM X-Sens s1: bits 1120 to 1151, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     redundant_mtm_y_sens_s1: float = _base.field("Redundant MTM Y-Sens s1", 1152, 32, "float", default=0.0)
     """Redundant MTM Y-Sens s1: bits 1152 to 1183, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     redundant_mtm_z_sens_s1: float = _base.field("Redundant MTM Z-Sens s1", 1184, 32, "float", default=0.0)
     """Redundant MTM Z-Sens s1: bits 1184 to 1215, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     redundant_mtm_x_sens_s2: float = _base.field("Redundant MTM X-Sens s2", 1216, 32, "float", default=0.0)
     """Redundant MTM X-Sens s2: bits 1216 to 1247, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     redundant_mtm_y_sens_s2: float = _base.field("Redundant MTM Y-Sens s2", 1248, 32, "float", default=0.0)
     """Redundant MTM Y-Sens s2: bits 1248 to 1279, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     redundant_mtm_z_sens_s2: float = _base.field("Redundant MTM Z-Sens s2", 1280, 32, "float", default=0.0)
     """Redundant MTM Z-Sens s2: bits 1280 to 1311, 32-bit float.
 
-    Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174 (open): see Primary MTM X-Bias d1.
     """
 
     cc_signal_enable_port: GpioPort = _base.field("CC Signal Enable Port", 1312, 4, "enum", default=GpioPort.PORT_A)
     """CC Signal Enable Port: bits 1312 to 1315.
 
-    Note ACP-175 (likely): CC is not explained.
+    Note ACP-175 (likely): CC is not explained. It stands for CubeControl by the order
+    of the fields. A third, common enable line appears nowhere else.
     """
 
     cc_signal_enable_pin: GpioPortPin = _base.field("CC Signal Enable Pin", 1316, 4, "enum", default=GpioPortPin.PIN_0)
     """CC Signal Enable Pin: bits 1316 to 1319.
 
-    Note ACP-175 (likely): CC is not explained.
+    Note ACP-175 (likely): see CC Signal Enable Port.
     """
 
     cc_motor_enable_port: GpioPort = _base.field("CC Motor Enable Port", 1320, 4, "enum", default=GpioPort.PORT_A)
@@ -350,13 +361,13 @@ class AdcsSystemConfiguration(_base.Message):
     cc_common_enable_port: GpioPort = _base.field("CC Common Enable Port", 1328, 4, "enum", default=GpioPort.PORT_A)
     """CC Common Enable Port: bits 1328 to 1331.
 
-    Note ACP-175 (likely): CC is not explained.
+    Note ACP-175 (likely): see CC Signal Enable Port.
     """
 
     cc_common_enable_pin: GpioPortPin = _base.field("CC Common Enable Pin", 1332, 4, "enum", default=GpioPortPin.PIN_0)
     """CC Common Enable Pin: bits 1332 to 1335.
 
-    Note ACP-175 (likely): CC is not explained.
+    Note ACP-175 (likely): see CC Signal Enable Port.
     """
 
     cubesense1_enable_port: GpioPort = _base.field("CubeSense1 Enable Port", 1336, 4, "enum", default=GpioPort.PORT_A)

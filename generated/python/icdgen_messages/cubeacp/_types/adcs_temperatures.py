@@ -27,19 +27,24 @@ class AdcsTemperatures(_base.Message):
     mcu_temperature: int = _base.field("MCU Temperature", 0, 16, "int", default=0, unit="C")
     """MCU Temperature: bits 0 to 15, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a
+    degree sign. Degrees Celsius are meant.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and
+    hundredths stand side by side, in one frame even. That the controllers and rate
+    sensors report whole degrees in 16 bits may be a lost factor.
     """
 
     magnetometer_temperature: int = _base.field("Magnetometer Temperature", 16, 16, "int", default=0, unit="C")
     """Magnetometer Temperature: bits 16 to 31, raw -32768 to 32767; physical
     `raw/10.0`, -3276.8 to 3276.7 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see MCU Temperature.
     """
     magnetometer_temperature_c: float = _base.scaled(1, 0, 10, default=0.0)
     """Magnetometer Temperature in C: -3276.8 to 3276.7."""
+    magnetometer_temperature_mc: int = _base.whole(100, 0)
+    """Magnetometer Temperature in thousandths of C, exact: -3276800 to 3276700."""
 
     redundant_mag_temperature: int = _base.field(
         "Redundant Magnetometer Temperature", 32, 16, "int", default=0, unit="C"
@@ -47,10 +52,14 @@ class AdcsTemperatures(_base.Message):
     """Redundant Magnetometer Temperature: bits 32 to 47, raw -32768 to 32767; physical
     `raw/10.0`, -3276.8 to 3276.7 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see MCU Temperature.
 
     Note ACP-086 (certain): ADCS Temperatures: the redundant magnetometer is left out of
-    the description.
+    the description. Magnetometer and MCU are named, the third field is not.
     """
     redundant_mag_temperature_c: float = _base.scaled(1, 0, 10, default=0.0)
     """Redundant Magnetometer Temperature in C: -3276.8 to 3276.7."""
+    redundant_mag_temperature_mc: int = _base.whole(100, 0)
+    """Redundant Magnetometer Temperature in thousandths of C, exact: -3276800 to
+    3276700.
+    """

@@ -26,25 +26,32 @@ class AngularRateCovariance(_base.Message):
     """X Angular Rate Covariance: bits 0 to 15, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for
+    the square of a rate, and the type is signed.
     """
     x_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """X Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    x_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """X Angular Rate Covariance in thousandths, exact: -32768 to 32767."""
 
     y_angular_rate_covariance: int = _base.field("Y Angular Rate Covariance", 16, 16, "int", default=0)
     """Y Angular Rate Covariance: bits 16 to 31, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): see X Angular Rate Covariance.
     """
     y_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Y Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    y_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """Y Angular Rate Covariance in thousandths, exact: -32768 to 32767."""
 
     z_angular_rate_covariance: int = _base.field("Z Angular Rate Covariance", 32, 16, "int", default=0)
     """Z Angular Rate Covariance: bits 32 to 47, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): see X Angular Rate Covariance.
     """
     z_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Z Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    z_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """Z Angular Rate Covariance in thousandths, exact: -32768 to 32767."""

@@ -10,7 +10,8 @@ from ... import _enumeration
 class Asgp4ModeSelect(_enumeration.OpenEnum):
     """Asgp4ModeSelect: an enumeration. Table 87.
 
-    Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
+    Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and
+    descriptions of one module are spelt in four ways.
     """
 
     OFF = 0, "Off"

@@ -12,7 +12,9 @@ from .asgp4_mode_select import Asgp4ModeSelect
 class Asgp4RunMode(_base.Message):
     """ASGP4 Run Mode: telecommand 31, 1 byte. Table 86.
 
-    Note ACP-046 (certain): Telecommand 31 has the id of the escape byte.
+    Note ACP-046 (certain): Telecommand 31 has the id of the escape byte. On UART its id
+    is doubled like data. That follows from the decoding table; the text does not
+    mention the case.
     """
 
     NODE = "cubeacp"
@@ -26,5 +28,6 @@ class Asgp4RunMode(_base.Message):
     asgp4_mode: Asgp4ModeSelect = _base.field("ASGP4 Mode", 0, 8, "enum", default=Asgp4ModeSelect.OFF)
     """ASGP4 Mode: bits 0 to 7.
 
-    Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold
+    a mode with four values; the description has an enabled state.
     """

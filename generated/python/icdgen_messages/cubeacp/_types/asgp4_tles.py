@@ -35,17 +35,21 @@ class Asgp4Tles(_base.Message):
     asgp4_epoch: float = _base.field("ASGP4 Epoch", 8, 32, "float", default=0.0)
     """ASGP4 Epoch: bits 8 to 39, 32-bit float.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): ASGP4 elements have no units. The same elements have units as a
+    setting. AOP, MA and MM are abbreviations that the manual does not explain.
 
     Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Elements are returned as floats and set as doubles. An epoch of year and day in a
+    float has a step of minutes. Order differs too: epoch first against last, mean
+    anomaly before mean motion.
     """
 
     asgp4_inclination: float = _base.field("ASGP4 inclination", 40, 32, "float", default=0.0)
     """ASGP4 inclination: bits 40 to 71, 32-bit float.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """
 
     asgp4_raan: float = _base.field("ASGP4 RAAN", 72, 32, "float", default=0.0)
@@ -53,9 +57,9 @@ class Asgp4Tles(_base.Message):
 
     Right ascension of the ascending node.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """
 
     asgp4_ecc: float = _base.field("ASGP4 ECC", 104, 32, "float", default=0.0)
@@ -63,9 +67,9 @@ class Asgp4Tles(_base.Message):
 
     Eccentricity.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """
 
     asgp4_aop: float = _base.field("ASGP4 AOP", 136, 32, "float", default=0.0)
@@ -73,9 +77,9 @@ class Asgp4Tles(_base.Message):
 
     Argument of perigee.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """
 
     asgp4_ma: float = _base.field("ASGP4 MA", 168, 32, "float", default=0.0)
@@ -83,9 +87,9 @@ class Asgp4Tles(_base.Message):
 
     Mean anomaly.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """
 
     asgp4_mm: float = _base.field("ASGP4 MM", 200, 32, "float", default=0.0)
@@ -93,9 +97,9 @@ class Asgp4Tles(_base.Message):
 
     Mean motion.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """
 
     asgp4_bstar: float = _base.field("ASGP4 Bstar", 232, 32, "float", default=0.0)
@@ -103,7 +107,7 @@ class Asgp4Tles(_base.Message):
 
     Drag term.
 
-    Note ACP-121 (open): ASGP4 elements have no units.
+    Note ACP-121 (open): see ASGP4 Epoch.
 
-    Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122 (certain): see ASGP4 Epoch.
     """

@@ -10,13 +10,15 @@ from ... import _enumeration
 class AsgpError(_enumeration.OpenEnum):
     """AsgpError: an enumeration. Table 171.
 
-    Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
+    Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and
+    descriptions of one module are spelt in four ways.
     """
 
     OFF = 0, "Off"
     """No error.
 
-    Note ACP-123 (certain): AsgpError: no error is called Off.
+    Note ACP-123 (certain): AsgpError: no error is called Off. The member for no error
+    has the name of the inactive mode.
     """
     UNIX_TIME = 1, "Unix Time"
     """Error due to the time."""

@@ -10,7 +10,8 @@ from ... import _enumeration
 class AsgpFilter(_enumeration.OpenEnum):
     """AsgpFilter: an enumeration. Table 193.
 
-    Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
+    Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and
+    descriptions of one module are spelt in four ways.
     """
 
     LPF = 0, "LPF"

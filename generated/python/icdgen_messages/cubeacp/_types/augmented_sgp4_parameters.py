@@ -31,12 +31,16 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the filter of the inclination.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): Augmented SGP4: names are cut short. Incl., Ecc, Aop, Pos,
+    sd, Min. and Max. stand in names that are written out in the descriptions.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients. Factors
+    without range; whether coefficients are weights from 0 to 1 is not said.
     """
     incl_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Incl. coefficient, as a physical value: 0 to 65.535."""
+    incl_coefficient_milli: int = _base.whole(1, 0)
+    """Incl. coefficient in thousandths, exact: 0 to 65535."""
 
     raan_coefficient: int = _base.field("Raan coefficient", 16, 16, "uint", default=0)
     """Raan coefficient: bits 16 to 31, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -44,10 +48,12 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the filter of the RAAN.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
     raan_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Raan coefficient, as a physical value: 0 to 65.535."""
+    raan_coefficient_milli: int = _base.whole(1, 0)
+    """Raan coefficient in thousandths, exact: 0 to 65535."""
 
     ecc_coefficient: int = _base.field("Ecc coefficient", 32, 16, "uint", default=0)
     """Ecc coefficient: bits 32 to 47, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -55,12 +61,14 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the filter of the eccentricity.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
     ecc_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Ecc coefficient, as a physical value: 0 to 65.535."""
+    ecc_coefficient_milli: int = _base.whole(1, 0)
+    """Ecc coefficient in thousandths, exact: 0 to 65535."""
 
     aop_coefficient: int = _base.field("Aop coefficient", 48, 16, "uint", default=0)
     """Aop coefficient: bits 48 to 63, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -68,12 +76,14 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the filter of the argument of perigee.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
     aop_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Aop coefficient, as a physical value: 0 to 65.535."""
+    aop_coefficient_milli: int = _base.whole(1, 0)
+    """Aop coefficient in thousandths, exact: 0 to 65535."""
 
     time_coefficient: int = _base.field("Time coefficient", 64, 16, "uint", default=0)
     """Time coefficient: bits 64 to 79, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -81,10 +91,12 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the filter of the time.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
     time_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Time coefficient, as a physical value: 0 to 65.535."""
+    time_coefficient_milli: int = _base.whole(1, 0)
+    """Time coefficient in thousandths, exact: 0 to 65535."""
 
     pos_coefficient: int = _base.field("Pos coefficient", 80, 16, "uint", default=0)
     """Pos coefficient: bits 80 to 95, raw 0 to 65535; physical `raw*0.001`, 0 to
@@ -92,12 +104,14 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the filter of the position.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
     pos_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Pos coefficient, as a physical value: 0 to 65.535."""
+    pos_coefficient_milli: int = _base.whole(1, 0)
+    """Pos coefficient in thousandths, exact: 0 to 65535."""
 
     maximum_position_error: int = _base.field("Maximum position error", 96, 8, "uint", default=0)
     """Maximum position error: bits 96 to 103, raw 0 to 255; physical `raw*0.1`, 0 to
@@ -105,10 +119,14 @@ class AugmentedSgp4Parameters(_base.Message):
 
     ASGP4 stops working beyond it.
 
-    Note ACP-179 (open): Augmented SGP4: limits have no units.
+    Note ACP-179 (open): Augmented SGP4: limits have no units. Position, velocity and
+    time limits have factors and no units. Maximum position error with 0.1 reaches 25.5
+    of something; km and m are both possible.
     """
     maximum_position_error_physical: float = _base.scaled(1, 0, 10, default=0.0)
     """Maximum position error, as a physical value: 0 to 25.5."""
+    maximum_position_error_milli: int = _base.whole(100, 0)
+    """Maximum position error in thousandths, exact: 0 to 25500."""
 
     asgp4_filter: AsgpFilter = _base.field("ASGP4 filter", 104, 8, "enum", default=AsgpFilter.LPF)
     """ASGP4 filter: bits 104 to 111."""
@@ -119,7 +137,9 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Polar coefficient.
 
-    Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
+    Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit. Polar motion
+    is published in seconds of arc, the factor is 0.0000001. Radians fit the range as
+    well.
     """
     xp_coefficient_physical: float = _base.scaled(1, 0, 10000000, default=0.0)
     """xp coefficient, as a physical value: -214.7483648 to 214.7483647."""
@@ -130,7 +150,7 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Polar coefficient.
 
-    Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
+    Note ACP-180 (open): see xp coefficient.
     """
     yp_coefficient_physical: float = _base.scaled(1, 0, 10000000, default=0.0)
     """yp coefficient, as a physical value: -214.7483648 to 214.7483647."""
@@ -143,29 +163,33 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Largest standard deviation with which ASGP4 works.
 
-    Note ACP-179 (open): Augmented SGP4: limits have no units.
+    Note ACP-179 (open): see Maximum position error.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
     """
     position_sd_physical: float = _base.scaled(1, 0, 10, default=0.0)
     """Position sd, as a physical value: 0 to 25.5."""
+    position_sd_milli: int = _base.whole(100, 0)
+    """Position sd in thousandths, exact: 0 to 25500."""
 
     velocity_sd: int = _base.field("Velocity sd", 192, 8, "uint", default=0)
     """Velocity sd: bits 192 to 199, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
 
     Largest standard deviation with which ASGP4 works.
 
-    Note ACP-179 (open): Augmented SGP4: limits have no units.
+    Note ACP-179 (open): see Maximum position error.
     """
     velocity_sd_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Velocity sd, as a physical value: 0 to 2.55."""
+    velocity_sd_milli: int = _base.whole(10, 0)
+    """Velocity sd in thousandths, exact: 0 to 2550."""
 
     min_satellites: int = _base.field("Min. satellites", 200, 8, "uint", default=0)
     """Min. satellites: bits 200 to 207, raw 0 to 255.
 
     Fewest satellites with which ASGP4 works.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
     """
 
     time_gain: int = _base.field("Time gain", 208, 8, "uint", default=0)
@@ -173,22 +197,26 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the compensation of the time offset.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
     time_gain_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Time gain, as a physical value: 0 to 2.55."""
+    time_gain_milli: int = _base.whole(10, 0)
+    """Time gain in thousandths, exact: 0 to 2550."""
 
     max_lag: int = _base.field("Max. lag", 216, 8, "uint", default=0)
     """Max. lag: bits 216 to 223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
 
     Largest lag of the time stamps that are still used.
 
-    Note ACP-179 (open): Augmented SGP4: limits have no units.
+    Note ACP-179 (open): see Maximum position error.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
     """
     max_lag_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Max. lag, as a physical value: 0 to 2.55."""
+    max_lag_milli: int = _base.whole(10, 0)
+    """Max. lag in thousandths, exact: 0 to 2550."""
 
     min_samples: int = _base.field("Min. samples", 224, 16, "uint", default=0)
     """Min. samples: bits 224 to 239, raw 0 to 65535.

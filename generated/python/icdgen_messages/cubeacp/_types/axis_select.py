@@ -17,4 +17,7 @@ class AxisSelect(_enumeration.OpenEnum):
     POSITIVE_Z = 4, "Positive Z"
     NEGATIVE_Z = 5, "Negative Z"
     NOT_USED = 6, "Not Used"
-    """Note ACP-126 (open): AxisSelect is used where Not Used is no answer."""
+    """Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The
+    enumeration serves actuators, sensors and facets. A facet that points to the sun or
+    to a target as Not Used is allowed by its table and not explained.
+    """

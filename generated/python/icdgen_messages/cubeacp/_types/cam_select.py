@@ -10,7 +10,9 @@ from ... import _enumeration
 class CamSelect(_enumeration.OpenEnum):
     """CamSelect: an enumeration. Table 95.
 
-    Note ACP-056 (likely): Cameras: Cam, CubeSense, and star.
+    Note ACP-056 (likely): Cameras: Cam, CubeSense, and star. Cam1 and Cam2 appear
+    beside CubeSense1 and CubeSense2, once as Cam 1; the third camera is Star, CubeStar
+    or star tracker. That CamN is the camera of CubeSenseN is only likely.
     """
 
     CAM1 = 0, "Cam1"

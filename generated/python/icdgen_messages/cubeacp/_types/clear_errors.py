@@ -13,7 +13,8 @@ class ClearErrors(_base.Message):
 
     Clears the latched error flags that are selected.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
     """
 
     NODE = "cubeacp"
@@ -27,7 +28,10 @@ class ClearErrors(_base.Message):
     adcs_error_flags: bool = _base.field("ADCS Error Flags", 0, 1, "bool", default=False)
     """ADCS Error Flags: bit 0.
 
-    Note ACP-021 (open): Clear Errors: which flags.
+    Note ACP-021 (open): Clear Errors: which flags. The two bits clear ADCS and HK
+    errors. HK is not explained, and no frame says to which of the two its flags belong;
+    those of frame 144 are cleared by this telecommand by the text, by neither bit by
+    the table.
     """
 
     hk_error_flags: bool = _base.field("HK Error Flags", 1, 1, "bool", default=False)
@@ -35,5 +39,5 @@ class ClearErrors(_base.Message):
 
     Housekeeping errors.
 
-    Note ACP-021 (open): Clear Errors: which flags.
+    Note ACP-021 (open): see ADCS Error Flags.
     """

@@ -12,7 +12,9 @@ class CommandedAttitudeAngles(_base.Message):
     """Commanded Attitude Angles: configuration, set by telecommand 15, got by telemetry
     199, 6 bytes. Table 186.
 
-    Note ACP-066 (open): Attitude angles: order of rotation and frame.
+    Note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and
+    yaw need a sequence and a reference. Neither is given, for estimated or for
+    commanded angles.
     """
 
     NODE = "cubeacp"
@@ -30,6 +32,8 @@ class CommandedAttitudeAngles(_base.Message):
     """
     commanded_roll_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Commanded Roll Angle in deg: -327.68 to 327.67."""
+    commanded_roll_angle_mdeg: int = _base.whole(10, 0)
+    """Commanded Roll Angle in thousandths of deg, exact: -327680 to 327670."""
 
     commanded_pitch_angle: int = _base.field("Commanded Pitch Angle", 16, 16, "int", default=0, unit="deg")
     """Commanded Pitch Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
@@ -37,6 +41,8 @@ class CommandedAttitudeAngles(_base.Message):
     """
     commanded_pitch_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Commanded Pitch Angle in deg: -327.68 to 327.67."""
+    commanded_pitch_angle_mdeg: int = _base.whole(10, 0)
+    """Commanded Pitch Angle in thousandths of deg, exact: -327680 to 327670."""
 
     commanded_yaw_angle: int = _base.field("Commanded Yaw Angle", 32, 16, "int", default=0, unit="deg")
     """Commanded Yaw Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
@@ -44,3 +50,5 @@ class CommandedAttitudeAngles(_base.Message):
     """
     commanded_yaw_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Commanded Yaw Angle in deg: -327.68 to 327.67."""
+    commanded_yaw_angle_mdeg: int = _base.whole(10, 0)
+    """Commanded Yaw Angle in thousandths of deg, exact: -327680 to 327670."""

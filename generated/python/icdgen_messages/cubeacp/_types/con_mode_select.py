@@ -10,52 +10,76 @@ from ... import _enumeration
 class ConModeSelect(_enumeration.OpenEnum):
     """ConModeSelect: an enumeration. Table 78.
 
-    Note ACP-024 (open): Control modes that are named and not listed.
+    Note ACP-024 (open): Control modes that are named and not listed. An inertial
+    pointing control mode has a reference vector, and GEO tracking, inertial and two sun
+    pointing modes are special selections. The list of control modes has none of them.
     """
 
     NO_CONTROL = 0, "No control"
-    """Note ACP-023 (certain): Control mode None does not exist."""
+    """Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid,
+    and the mode falls back, when the control mode is None. The member with value 0 is
+    called No control.
+    """
     DETUMBLING_CONTROL = 1, "Detumbling control"
     Y_THOMSON_SPIN = 2, "Y-Thomson spin"
-    """Note ACP-028 (certain): Y-Thomson is a spin or a mode."""
+    """Note ACP-028 (certain): Y-Thomson is a spin or a mode. The mode is called
+    Y-Thomson spin in the list, Y-Thomson mode and steady-state Y-Thomson elsewhere; and
+    Y-momentum mode is one of the two Y-Wheel modes.
+    """
     Y_WHEEL_INITIAL_PITCH_ACQUISITION = 3, "Y-Wheel momentum stabilized - Initial Pitch Acquisition"
-    """Note ACP-027 (certain): Wheel control modes are written in five ways."""
+    """Note ACP-027 (certain): Wheel control modes are written in five ways. Y-Wheel,
+    XYZ-Wheel, Rwheel, R-wheels and wheel stand side by side, capital and small;
+    elsewhere RWheel and RW.
+    """
     Y_WHEEL_STEADY_STATE = 4, "Y-Wheel momentum stabilized - Steady State"
-    """Note ACP-027 (certain): Wheel control modes are written in five ways."""
+    """Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch
+    Acquisition.
+    """
     XYZ_WHEEL_CONTROL = 5, "XYZ-Wheel control"
-    """Note ACP-027 (certain): Wheel control modes are written in five ways."""
+    """Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch
+    Acquisition.
+    """
     RWHEEL_SUN_TRACKING_CONTROL = 6, "Rwheel sun tracking control"
-    """Note ACP-027 (certain): Wheel control modes are written in five ways."""
+    """Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch
+    Acquisition.
+    """
     RWHEEL_TARGET_TRACKING_CONTROL = 7, "Rwheel target tracking control"
-    """Note ACP-027 (certain): Wheel control modes are written in five ways."""
+    """Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch
+    Acquisition.
+    """
     VERY_FAST_SPIN_DETUMBLING_CONTROL = 8, "Very Fast-spin Detumbling control"
     """At 10 Hz, within CubeControl.
 
     Note ACP-026 (certain): Control modes 8 and 9 have other names in their
-    descriptions.
+    descriptions. Very Fast-spin Detumbling is described as 10 Hz detumbling within
+    CubeControl, Fast-spin as fast. The loop itself runs at 1 Hz.
     """
     FAST_SPIN_DETUMBLING_CONTROL = 9, "Fast-spin Detumbling control"
-    """Note ACP-026 (certain): Control modes 8 and 9 have other names in their
-    descriptions.
-    """
+    """Note ACP-026 (certain): see Very Fast-spin Detumbling control."""
     USER_SPECIFIC_CONTROL_MODE_1 = 10, "User Specific Control Mode 1"
     """User-defined or custom.
 
-    Note ACP-025 (open): Control modes: specific, defined, custom and coded.
+    Note ACP-025 (open): Control modes: specific, defined, custom and coded. Two modes
+    are User Specific and described as user defined or custom, a third is User Coded.
+    Which of them use the user coded settings is open.
     """
     USER_SPECIFIC_CONTROL_MODE_2 = 11, "User Specific Control Mode 2"
     """User-defined or custom.
 
-    Note ACP-025 (open): Control modes: specific, defined, custom and coded.
+    Note ACP-025 (open): see User Specific Control Mode 1.
     """
     STOP_R_WHEELS = 12, "Stop R-wheels"
-    """Note ACP-027 (certain): Wheel control modes are written in five ways."""
+    """Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch
+    Acquisition.
+    """
     USER_CODED_CONTROL_MODE = 13, "User Coded Control Mode"
-    """Note ACP-025 (open): Control modes: specific, defined, custom and coded."""
+    """Note ACP-025 (open): see User Specific Control Mode 1."""
     SUN_TRACKING_YAW_OR_ROLL_ONLY = 14, "Sun-tracking yaw- or roll-only wheel control mode"
-    """Note ACP-027 (certain): Wheel control modes are written in five ways."""
+    """Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch
+    Acquisition.
+    """
     TARGET_TRACKING_YAW_ONLY = 15, "Target-tracking yaw-only wheel control Mode"
     """Turns the selected facet towards a ground target.
 
-    Note ACP-027 (certain): Wheel control modes are written in five ways.
+    Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
     """

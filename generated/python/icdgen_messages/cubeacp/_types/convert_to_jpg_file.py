@@ -25,17 +25,19 @@ class ConvertToJpgFile(_base.Message):
     source_file_counter: int = _base.field("Source File Counter", 0, 8, "uint", default=0)
     """Source File Counter: bits 0 to 7, raw 0 to 255.
 
-    Note ACP-052 (open): Convert to JPG: which file.
+    Note ACP-052 (open): Convert to JPG: which file. The source is given by a counter
+    without a type. Raw and BMP files are named, and the file types have no raw one.
     """
 
     quality_factor: int = _base.field("Quality Factor", 8, 8, "uint", default=0)
     """Quality Factor: bits 8 to 15, raw 0 to 255.
 
     Note ACP-053 (open): Convert to JPG: quality and white balance have no scale.
+    Neither range nor meaning of the two parameters is given.
     """
 
     white_balance: int = _base.field("White Balance", 16, 8, "uint", default=0)
     """White Balance: bits 16 to 23, raw 0 to 255.
 
-    Note ACP-053 (open): Convert to JPG: quality and white balance have no scale.
+    Note ACP-053 (open): see Quality Factor.
     """

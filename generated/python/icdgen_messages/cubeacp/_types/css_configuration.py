@@ -60,12 +60,16 @@ class CssConfiguration(_base.Message):
     """
     css1_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS1 Relative Scale, as a physical value: 0 to 2.55."""
+    css1_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS1 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css2_relative_scale: int = _base.field("CSS2 Relative Scale", 88, 8, "uint", default=0)
     """CSS2 Relative Scale: bits 88 to 95, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     """
     css2_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS2 Relative Scale, as a physical value: 0 to 2.55."""
+    css2_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS2 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css3_relative_scale: int = _base.field("CSS3 Relative Scale", 96, 8, "uint", default=0)
     """CSS3 Relative Scale: bits 96 to 103, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -73,6 +77,8 @@ class CssConfiguration(_base.Message):
     """
     css3_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS3 Relative Scale, as a physical value: 0 to 2.55."""
+    css3_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS3 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css4_relative_scale: int = _base.field("CSS4 Relative Scale", 104, 8, "uint", default=0)
     """CSS4 Relative Scale: bits 104 to 111, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -80,6 +86,8 @@ class CssConfiguration(_base.Message):
     """
     css4_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS4 Relative Scale, as a physical value: 0 to 2.55."""
+    css4_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS4 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css5_relative_scale: int = _base.field("CSS5 Relative Scale", 112, 8, "uint", default=0)
     """CSS5 Relative Scale: bits 112 to 119, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -87,6 +95,8 @@ class CssConfiguration(_base.Message):
     """
     css5_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS5 Relative Scale, as a physical value: 0 to 2.55."""
+    css5_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS5 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css6_relative_scale: int = _base.field("CSS6 Relative Scale", 120, 8, "uint", default=0)
     """CSS6 Relative Scale: bits 120 to 127, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -94,6 +104,8 @@ class CssConfiguration(_base.Message):
     """
     css6_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS6 Relative Scale, as a physical value: 0 to 2.55."""
+    css6_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS6 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css7_relative_scale: int = _base.field("CSS7 Relative Scale", 128, 8, "uint", default=0)
     """CSS7 Relative Scale: bits 128 to 135, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -101,6 +113,8 @@ class CssConfiguration(_base.Message):
     """
     css7_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS7 Relative Scale, as a physical value: 0 to 2.55."""
+    css7_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS7 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css8_relative_scale: int = _base.field("CSS8 Relative Scale", 136, 8, "uint", default=0)
     """CSS8 Relative Scale: bits 136 to 143, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -108,6 +122,8 @@ class CssConfiguration(_base.Message):
     """
     css8_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS8 Relative Scale, as a physical value: 0 to 2.55."""
+    css8_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS8 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css9_relative_scale: int = _base.field("CSS9 Relative Scale", 144, 8, "uint", default=0)
     """CSS9 Relative Scale: bits 144 to 151, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -115,6 +131,8 @@ class CssConfiguration(_base.Message):
     """
     css9_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS9 Relative Scale, as a physical value: 0 to 2.55."""
+    css9_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS9 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css10_relative_scale: int = _base.field("CSS10 Relative Scale", 152, 8, "uint", default=0)
     """CSS10 Relative Scale: bits 152 to 159, raw 0 to 255; physical `raw*0.01`, 0 to
@@ -122,9 +140,13 @@ class CssConfiguration(_base.Message):
     """
     css10_relative_scale_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """CSS10 Relative Scale, as a physical value: 0 to 2.55."""
+    css10_relative_scale_milli: int = _base.whole(10, 0)
+    """CSS10 Relative Scale in thousandths, exact: 0 to 2550."""
 
     css_threshold: int = _base.field("CSS Threshold", 160, 8, "uint", default=0)
     """CSS Threshold: bits 160 to 167, raw 0 to 255.
 
-    Note ACP-133 (open): CSS threshold has no description.
+    Note ACP-133 (open): CSS threshold has no description. The name is repeated; neither
+    unit nor what lies below it is said. The message is described as directions and
+    scale factors.
     """

@@ -13,7 +13,9 @@ class Cubesense1Currents(_base.Message):
 
     Bit 21 of the log mask.
 
-    Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
+    Note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to
+    have 10+6*(N+1)*M bytes, and the UART message 11+6*N. With a frame of 4 bytes in the
+    mask both hold only if it is filled up.
     """
 
     NODE = "cubeacp"
@@ -30,6 +32,8 @@ class Cubesense1Currents(_base.Message):
     """
     cubesense1_3v3_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense1 3V3 Current in mA: 0 to 6553.5."""
+    cubesense1_3v3_current_ua: int = _base.whole(100, 0)
+    """CubeSense1 3V3 Current in uA, exact: 0 to 6553500."""
 
     cubesense1_cam_sram_current: int = _base.field("CubeSense1 Cam SRAM Current", 16, 16, "uint", default=0, unit="mA")
     """CubeSense1 Cam SRAM Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0
@@ -37,3 +41,5 @@ class Cubesense1Currents(_base.Message):
     """
     cubesense1_cam_sram_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense1 Cam SRAM Current in mA: 0 to 6553.5."""
+    cubesense1_cam_sram_current_ua: int = _base.whole(100, 0)
+    """CubeSense1 Cam SRAM Current in uA, exact: 0 to 6553500."""

@@ -14,9 +14,12 @@ class Cubesense2Currents(_base.Message):
     Bit 65 of the log mask.
 
     Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the
-    bootloader.
+    bootloader. A telecommand or request sent to the wrong program is taken for another
+    one.
 
-    Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
+    Note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to
+    have 10+6*(N+1)*M bytes, and the UART message 11+6*N. With a frame of 4 bytes in the
+    mask both hold only if it is filled up.
     """
 
     NODE = "cubeacp"
@@ -33,6 +36,8 @@ class Cubesense2Currents(_base.Message):
     """
     cubesense2_3v3_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense2 3V3 Current in mA: 0 to 6553.5."""
+    cubesense2_3v3_current_ua: int = _base.whole(100, 0)
+    """CubeSense2 3V3 Current in uA, exact: 0 to 6553500."""
 
     cubesense2_cam_sram_current: int = _base.field("CubeSense2 Cam SRAM Current", 16, 16, "uint", default=0, unit="mA")
     """CubeSense2 Cam SRAM Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0
@@ -40,3 +45,5 @@ class Cubesense2Currents(_base.Message):
     """
     cubesense2_cam_sram_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense2 Cam SRAM Current in mA: 0 to 6553.5."""
+    cubesense2_cam_sram_current_ua: int = _base.whole(100, 0)
+    """CubeSense2 Cam SRAM Current in uA, exact: 0 to 6553500."""

@@ -12,7 +12,8 @@ class CubesenseConfiguration(_base.Message):
     """CubeSense Configuration: configuration, set by telecommand 25, got by telemetry
     203, 112 bytes. Table 189.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
     """
 
     NODE = "cubeacp"
@@ -30,10 +31,15 @@ class CubesenseConfiguration(_base.Message):
     """Cam1 Sensor Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need
+    a sequence of axes and a direction. None is given.
     """
     cam1_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam1_mounting_beta: int = _base.field(
         "Cam1 Sensor Mounting Transform Beta Angle", 16, 16, "int", default=0, unit="deg"
@@ -41,10 +47,14 @@ class CubesenseConfiguration(_base.Message):
     """Cam1 Sensor Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
     """
     cam1_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam1_mounting_gamma: int = _base.field(
         "Cam1 Sensor Mounting Transform Gamma Angle", 32, 16, "int", default=0, unit="deg"
@@ -52,15 +62,20 @@ class CubesenseConfiguration(_base.Message):
     """Cam1 Sensor Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
     """
     cam1_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    cam1_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam1_detection_threshold: int = _base.field("Cam1 detection threshold", 48, 8, "uint", default=0)
     """Cam1 detection threshold: bits 48 to 55, raw 0 to 255.
 
     Note ACP-150 (certain): Cam1 detection threshold has no description in one table.
+    The description is empty in the message and present in the whole configuration.
     """
 
     cam1_sensor_auto_adjust_mode: bool = _base.field("Cam1 sensor auto adjust mode", 56, 1, "bool", default=False)
@@ -71,7 +86,8 @@ class CubesenseConfiguration(_base.Message):
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): Exposure and gain are register values. Neither the register nor
+    its scale is given, so times and gains cannot be told from them.
     """
 
     cam1_boresight_x: int = _base.field("Cam1 Boresight X", 80, 16, "uint", default=0, unit="pixels")
@@ -80,10 +96,13 @@ class CubesenseConfiguration(_base.Message):
 
     Where the boresight meets the image.
 
-    Note ACP-154 (certain): Cam1 and Cam 1.
+    Note ACP-154 (certain): Cam1 and Cam 1. Within one message the cameras are written
+    with and without a blank, area and Area too.
     """
     cam1_boresight_x_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Boresight X in pixels: 0 to 655.35."""
+    cam1_boresight_x_milli_pixels: int = _base.whole(10, 0)
+    """Cam1 Boresight X in thousandths of pixels, exact: 0 to 655350."""
 
     cam1_boresight_y: int = _base.field("Cam1 Boresight Y", 96, 16, "uint", default=0, unit="pixels")
     """Cam1 Boresight Y: bits 96 to 111, raw 0 to 65535; physical `raw*0.01`, 0 to
@@ -93,6 +112,8 @@ class CubesenseConfiguration(_base.Message):
     """
     cam1_boresight_y_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam1 Boresight Y in pixels: 0 to 655.35."""
+    cam1_boresight_y_milli_pixels: int = _base.whole(10, 0)
+    """Cam1 Boresight Y in thousandths of pixels, exact: 0 to 655350."""
 
     cam2_mounting_alpha: int = _base.field(
         "Cam2 Sensor Mounting Transform Alpha Angle", 112, 16, "int", default=0, unit="deg"
@@ -100,10 +121,14 @@ class CubesenseConfiguration(_base.Message):
     """Cam2 Sensor Mounting Transform Alpha Angle: bits 112 to 127, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
     """
     cam2_mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam2_mounting_beta: int = _base.field(
         "Cam2 Sensor Mounting Transform Beta Angle", 128, 16, "int", default=0, unit="deg"
@@ -111,10 +136,14 @@ class CubesenseConfiguration(_base.Message):
     """Cam2 Sensor Mounting Transform Beta Angle: bits 128 to 143, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
     """
     cam2_mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam2_mounting_gamma: int = _base.field(
         "Cam2 Sensor Mounting Transform Gamma Angle", 144, 16, "int", default=0, unit="deg"
@@ -122,10 +151,14 @@ class CubesenseConfiguration(_base.Message):
     """Cam2 Sensor Mounting Transform Gamma Angle: bits 144 to 159, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
     """
     cam2_mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    cam2_mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     cam2_detection_threshold: int = _base.field("Cam2 detection threshold", 160, 8, "uint", default=0)
     """Cam2 detection threshold: bits 160 to 167, raw 0 to 255."""
@@ -138,7 +171,7 @@ class CubesenseConfiguration(_base.Message):
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): see Cam1 sensor exposure time.
     """
 
     cam2_boresight_x: int = _base.field("Cam2 Boresight X", 192, 16, "uint", default=0, unit="pixels")
@@ -147,10 +180,12 @@ class CubesenseConfiguration(_base.Message):
 
     Where the boresight meets the image.
 
-    Note ACP-154 (certain): Cam1 and Cam 1.
+    Note ACP-154 (certain): see Cam1 Boresight X.
     """
     cam2_boresight_x_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Boresight X in pixels: 0 to 655.35."""
+    cam2_boresight_x_milli_pixels: int = _base.whole(10, 0)
+    """Cam2 Boresight X in thousandths of pixels, exact: 0 to 655350."""
 
     cam2_boresight_y: int = _base.field("Cam2 Boresight Y", 208, 16, "uint", default=0, unit="pixels")
     """Cam2 Boresight Y: bits 208 to 223, raw 0 to 65535; physical `raw*0.01`, 0 to
@@ -160,6 +195,8 @@ class CubesenseConfiguration(_base.Message):
     """
     cam2_boresight_y_pixels: float = _base.scaled(1, 0, 100, default=0.0)
     """Cam2 Boresight Y in pixels: 0 to 655.35."""
+    cam2_boresight_y_milli_pixels: int = _base.whole(10, 0)
+    """Cam2 Boresight Y in thousandths of pixels, exact: 0 to 655350."""
 
     nadir_max_deviation_percentage: int = _base.field(
         "Nadir Max Deviation Percentage", 224, 8, "uint", default=0, unit="%"
@@ -168,7 +205,9 @@ class CubesenseConfiguration(_base.Message):
 
     Largest deviation of an edge, of the measured angular radius.
 
-    Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
+    Erratum ACP-151 (certain): Deviation percentage has its unit in words only. A
+    percentage of the measured angular radius by name and description, without the unit
+    of measure.
     """
 
     nadir_max_bad_edges: int = _base.field("Nadir Max Bad Edges", 232, 8, "uint", default=0)
@@ -180,255 +219,258 @@ class CubesenseConfiguration(_base.Message):
     nadir_max_radius: int = _base.field("Nadir Max Radius", 240, 8, "uint", default=0, unit="deg")
     """Nadir Max Radius: bits 240 to 247, raw 0 to 255, in deg.
 
-    Erratum ACP-148 (certain): Degree sign is deg.
+    Erratum ACP-148 (certain): Degree sign is deg. Two fields have the sign, all other
+    angles deg.
     """
 
     nadir_min_radius: int = _base.field("Nadir Min Radius", 248, 8, "uint", default=0, unit="deg")
     """Nadir Min Radius: bits 248 to 255, raw 0 to 255, in deg.
 
-    Erratum ACP-148 (certain): Degree sign is deg.
+    Erratum ACP-148 (certain): see Nadir Max Radius.
     """
 
     cam_1_minimum_x_of_area_1: int = _base.field("Cam 1 Minimum X of area 1", 256, 16, "uint", default=0)
     """Cam 1 Minimum X of area 1: bits 256 to 271, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): Masked areas: purpose, unit and an unused area. Forty limits in
+    16 bits have no unit and no purpose; whether pixels inside are ignored, and how an
+    area is switched off, is not said.
 
-    Note ACP-154 (certain): Cam1 and Cam 1.
+    Note ACP-154 (certain): see Cam1 Boresight X.
     """
 
     cam_1_maximum_x_of_area_1: int = _base.field("Cam 1 Maximum X of area 1", 272, 16, "uint", default=0)
     """Cam 1 Maximum X of area 1: bits 272 to 287, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_minimum_y_of_area_1: int = _base.field("Cam 1 Minimum Y of area 1", 288, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 1: bits 288 to 303, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_maximum_y_of_area_1: int = _base.field("Cam 1 Maximum Y of area 1", 304, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 1: bits 304 to 319, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_minimum_x_of_area_2: int = _base.field("Cam 1 Minimum X of area 2", 320, 16, "uint", default=0)
     """Cam 1 Minimum X of area 2: bits 320 to 335, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_maximum_x_of_area_2: int = _base.field("Cam 1 Maximum X of area 2", 336, 16, "uint", default=0)
     """Cam 1 Maximum X of area 2: bits 336 to 351, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_minimum_y_of_area_2: int = _base.field("Cam 1 Minimum Y of area 2", 352, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 2: bits 352 to 367, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_maximum_y_of_area_2: int = _base.field("Cam 1 Maximum Y of area 2", 368, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 2: bits 368 to 383, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_minimum_x_of_area_3: int = _base.field("Cam 1 Minimum X of area 3", 384, 16, "uint", default=0)
     """Cam 1 Minimum X of area 3: bits 384 to 399, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_maximum_x_of_area_3: int = _base.field("Cam 1 Maximum X of area 3", 400, 16, "uint", default=0)
     """Cam 1 Maximum X of area 3: bits 400 to 415, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_minimum_y_of_area_3: int = _base.field("Cam 1 Minimum Y of area 3", 416, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 3: bits 416 to 431, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_maximum_y_of_area_3: int = _base.field("Cam 1 Maximum Y of area 3", 432, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 3: bits 432 to 447, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_minimum_x_of_area_4: int = _base.field("Cam 1 Minimum X of area 4", 448, 16, "uint", default=0)
     """Cam 1 Minimum X of area 4: bits 448 to 463, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_maximum_x_of_area_4: int = _base.field("Cam 1 Maximum X of area 4", 464, 16, "uint", default=0)
     """Cam 1 Maximum X of area 4: bits 464 to 479, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_minimum_y_of_area_4: int = _base.field("Cam 1 Minimum Y of area 4", 480, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 4: bits 480 to 495, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_maximum_y_of_area_4: int = _base.field("Cam 1 Maximum Y of area 4", 496, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 4: bits 496 to 511, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_minimum_x_of_area_5: int = _base.field("Cam 1 Minimum X of area 5", 512, 16, "uint", default=0)
     """Cam 1 Minimum X of area 5: bits 512 to 527, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_maximum_x_of_area_5: int = _base.field("Cam 1 Maximum X of area 5", 528, 16, "uint", default=0)
     """Cam 1 Maximum X of area 5: bits 528 to 543, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_minimum_y_of_area_5: int = _base.field("Cam 1 Minimum Y of area 5", 544, 16, "uint", default=0)
     """Cam 1 Minimum Y of area 5: bits 544 to 559, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_1_maximum_y_of_area_5: int = _base.field("Cam 1 Maximum Y of area 5", 560, 16, "uint", default=0)
     """Cam 1 Maximum Y of area 5: bits 560 to 575, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_minimum_x_of_area_1: int = _base.field("Cam 2 Minimum X of area 1", 576, 16, "uint", default=0)
     """Cam 2 Minimum X of area 1: bits 576 to 591, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
 
-    Note ACP-154 (certain): Cam1 and Cam 1.
+    Note ACP-154 (certain): see Cam1 Boresight X.
     """
 
     cam_2_maximum_x_of_area_1: int = _base.field("Cam 2 Maximum X of area 1", 592, 16, "uint", default=0)
     """Cam 2 Maximum X of area 1: bits 592 to 607, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_minimum_y_of_area_1: int = _base.field("Cam 2 Minimum Y of area 1", 608, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 1: bits 608 to 623, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_maximum_y_of_area_1: int = _base.field("Cam 2 Maximum Y of area 1", 624, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 1: bits 624 to 639, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_minimum_x_of_area_2: int = _base.field("Cam 2 Minimum X of area 2", 640, 16, "uint", default=0)
     """Cam 2 Minimum X of area 2: bits 640 to 655, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_maximum_x_of_area_2: int = _base.field("Cam 2 Maximum X of area 2", 656, 16, "uint", default=0)
     """Cam 2 Maximum X of area 2: bits 656 to 671, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_minimum_y_of_area_2: int = _base.field("Cam 2 Minimum Y of area 2", 672, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 2: bits 672 to 687, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_maximum_y_of_area_2: int = _base.field("Cam 2 Maximum Y of area 2", 688, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 2: bits 688 to 703, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_minimum_x_of_area_3: int = _base.field("Cam 2 Minimum X of area 3", 704, 16, "uint", default=0)
     """Cam 2 Minimum X of area 3: bits 704 to 719, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_maximum_x_of_area_3: int = _base.field("Cam 2 Maximum X of area 3", 720, 16, "uint", default=0)
     """Cam 2 Maximum X of area 3: bits 720 to 735, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_minimum_y_of_area_3: int = _base.field("Cam 2 Minimum Y of area 3", 736, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 3: bits 736 to 751, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_maximum_y_of_area_3: int = _base.field("Cam 2 Maximum Y of area 3", 752, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 3: bits 752 to 767, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_minimum_x_of_area_4: int = _base.field("Cam 2 Minimum X of area 4", 768, 16, "uint", default=0)
     """Cam 2 Minimum X of area 4: bits 768 to 783, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_maximum_x_of_area_4: int = _base.field("Cam 2 Maximum X of area 4", 784, 16, "uint", default=0)
     """Cam 2 Maximum X of area 4: bits 784 to 799, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_minimum_y_of_area_4: int = _base.field("Cam 2 Minimum Y of area 4", 800, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 4: bits 800 to 815, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_maximum_y_of_area_4: int = _base.field("Cam 2 Maximum Y of area 4", 816, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 4: bits 816 to 831, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_minimum_x_of_area_5: int = _base.field("Cam 2 Minimum X of area 5", 832, 16, "uint", default=0)
     """Cam 2 Minimum X of area 5: bits 832 to 847, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_maximum_x_of_area_5: int = _base.field("Cam 2 Maximum X of area 5", 848, 16, "uint", default=0)
     """Cam 2 Maximum X of area 5: bits 848 to 863, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_minimum_y_of_area_5: int = _base.field("Cam 2 Minimum Y of area 5", 864, 16, "uint", default=0)
     """Cam 2 Minimum Y of area 5: bits 864 to 879, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """
 
     cam_2_maximum_y_of_area_5: int = _base.field("Cam 2 Maximum Y of area 5", 880, 16, "uint", default=0)
     """Cam 2 Maximum Y of area 5: bits 880 to 895, raw 0 to 65535.
 
-    Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    Note ACP-153 (open): see Cam 1 Minimum X of area 1.
     """

@@ -13,7 +13,9 @@ class CubestarEstimatedQuaternion(_base.Message):
 
     Bit 63 of the log mask.
 
-    Note ACP-075 (open): Quaternions: the fourth component.
+    Note ACP-075 (open): Quaternions: the fourth component. Three of four components are
+    sent. The fourth follows up to its sign only, and which component is the scalar is
+    not said.
     """
 
     NODE = "cubeacp"
@@ -29,10 +31,14 @@ class CubestarEstimatedQuaternion(_base.Message):
 
     Of the attitude estimated by CubeStar, described as Q1.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names
+    and descriptions count differently. Q1 to Q3 agree with the other quaternions; if Q0
+    were the scalar, the third vector component would be missing.
     """
     q0_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q0, as a physical value: -3.2768 to 3.2767."""
+    q0_micro: int = _base.whole(100, 0)
+    """Q0 in millionths, exact: -3276800 to 3276700."""
 
     q1: int = _base.field("Q1", 16, 16, "int", default=0)
     """Q1: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -40,10 +46,12 @@ class CubestarEstimatedQuaternion(_base.Message):
 
     Of the attitude estimated by CubeStar, described as Q2.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): see Q0.
     """
     q1_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q1, as a physical value: -3.2768 to 3.2767."""
+    q1_micro: int = _base.whole(100, 0)
+    """Q1 in millionths, exact: -3276800 to 3276700."""
 
     q2: int = _base.field("Q2", 32, 16, "int", default=0)
     """Q2: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -51,7 +59,9 @@ class CubestarEstimatedQuaternion(_base.Message):
 
     Of the attitude estimated by CubeStar, described as Q3.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): see Q0.
     """
     q2_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q2, as a physical value: -3.2768 to 3.2767."""
+    q2_micro: int = _base.whole(100, 0)
+    """Q2 in millionths, exact: -3276800 to 3276700."""

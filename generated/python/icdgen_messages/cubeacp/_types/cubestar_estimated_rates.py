@@ -28,10 +28,13 @@ class CubestarEstimatedRates(_base.Message):
 
     Estimated by CubeStar, about its own X axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given
+    without a unit. The other rates are in deg/s; rad/s would fit the range as well.
     """
     x_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """x-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    x_axis_rate_micro: int = _base.whole(100, 0)
+    """x-Axis rate in millionths, exact: -3276800 to 3276700."""
 
     y_axis_rate: int = _base.field("y-Axis rate", 16, 16, "int", default=0)
     """y-Axis rate: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
@@ -39,10 +42,12 @@ class CubestarEstimatedRates(_base.Message):
 
     Estimated by CubeStar, about its own Y axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): see x-Axis rate.
     """
     y_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """y-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    y_axis_rate_micro: int = _base.whole(100, 0)
+    """y-Axis rate in millionths, exact: -3276800 to 3276700."""
 
     z_axis_rate: int = _base.field("z-Axis rate", 32, 16, "int", default=0)
     """z-Axis rate: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
@@ -50,7 +55,9 @@ class CubestarEstimatedRates(_base.Message):
 
     Estimated by CubeStar, about its own Z axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): see x-Axis rate.
     """
     z_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """z-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    z_axis_rate_micro: int = _base.whole(100, 0)
+    """z-Axis rate in millionths, exact: -3276800 to 3276700."""

@@ -20,13 +20,18 @@ class CurrentAdcsState(_base.Message):
     Bit 27 of the log mask.
 
     Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the
-    bootloader.
+    bootloader. A telecommand or request sent to the wrong program is taken for another
+    one.
 
-    Note ACP-057 (certain): ACP stands for two things.
+    Note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS
+    Control Program, the state frames have Attitude Control Processor.
 
-    Note ACP-059 (certain): Current ADCS State and ADCS State.
+    Note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called
+    Current ADCS State, and frame 190, which holds it and much more, ADCS State with the
+    description current ADCS state.
 
-    Note ACP-064 (open): Which flags are latched.
+    Note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but
+    the state frames do not tell latched flags from present states.
     """
 
     NODE = "cubeacp"
@@ -51,7 +56,8 @@ class CurrentAdcsState(_base.Message):
     asgp4_mode: Asgp4ModeSelect = _base.field("ASGP4 Mode", 10, 2, "enum", default=Asgp4ModeSelect.OFF)
     """ASGP4 Mode: bits 10 to 11.
 
-    Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold
+    a mode with four values; the description has an enabled state.
     """
 
     cubecontrol_signal_enabled: bool = _base.field("CubeControl Signal Enabled", 12, 1, "bool", default=False)
@@ -78,13 +84,17 @@ class CurrentAdcsState(_base.Message):
     cubestar_enabled: bool = _base.field("CubeStar Enabled", 19, 1, "bool", default=False)
     """CubeStar Enabled: bit 19.
 
-    Note ACP-063 (certain): Star tracker has four spellings.
+    Note ACP-063 (certain): Star tracker has four spellings. StarTracker Match Error
+    stands beside Star Tracker Overcurrent Detected; elsewhere CubeStar and star
+    tracking.
     """
 
     gps_receiver_enabled: bool = _base.field("GPS Receiver Enabled", 20, 1, "bool", default=False)
     """GPS Receiver Enabled: bit 20.
 
-    Note ACP-062 (open): Power switches and enabled flags do not match.
+    Note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is
+    reported as Motor Driver Enabled, GPS Power switches the antenna amplifier and is
+    reported as GPS LNA Power Enabled. GPS Receiver Enabled has no switch.
     """
 
     gps_lna_power_enabled: bool = _base.field("GPS LNA Power Enabled", 21, 1, "bool", default=False)
@@ -92,13 +102,13 @@ class CurrentAdcsState(_base.Message):
 
     Amplifier of the GPS antenna.
 
-    Note ACP-062 (open): Power switches and enabled flags do not match.
+    Note ACP-062 (open): see GPS Receiver Enabled.
     """
 
     motor_driver_enabled: bool = _base.field("Motor Driver Enabled", 22, 1, "bool", default=False)
     """Motor Driver Enabled: bit 22.
 
-    Note ACP-062 (open): Power switches and enabled flags do not match.
+    Note ACP-062 (open): see GPS Receiver Enabled.
     """
 
     sun_is_above_local_horizon: bool = _base.field("Sun is Above Local Horizon", 23, 1, "bool", default=False)
@@ -140,7 +150,9 @@ class CurrentAdcsState(_base.Message):
 
     About a measured field of 65 uT. Whether above or below is not printed.
 
-    Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
+    Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is
+    set when the field has a size 65 uT. Above is likely, since the field of the earth
+    hardly reaches it.
     """
 
     cam1_sram_overcurrent_detected: bool = _base.field("Cam1 SRAM Overcurrent Detected", 33, 1, "bool", default=False)
@@ -166,7 +178,9 @@ class CurrentAdcsState(_base.Message):
 
     A detected sun angle was beyond +/-90 deg.
 
-    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag
+    each is for the sun and the nadir sensor; the cameras are numbered, and which of
+    them is which is a setting. With two sun sensors one flag serves both.
     """
 
     cam2_sram_overcurrent_detected: bool = _base.field("Cam2 SRAM Overcurrent Detected", 38, 1, "bool", default=False)
@@ -192,7 +206,7 @@ class CurrentAdcsState(_base.Message):
 
     A detected nadir angle was beyond +/-60 deg.
 
-    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    Note ACP-061 (open): see Sun Sensor Range Error.
     """
 
     rate_sensor_range_error: bool = _base.field("Rate Sensor Range Error", 43, 1, "bool", default=False)
@@ -218,7 +232,7 @@ class CurrentAdcsState(_base.Message):
 
     Too few stars were matched.
 
-    Note ACP-063 (certain): Star tracker has four spellings.
+    Note ACP-063 (certain): see CubeStar Enabled.
     """
 
     star_tracker_overcurrent_detected: bool = _base.field(
@@ -226,5 +240,5 @@ class CurrentAdcsState(_base.Message):
     )
     """Star Tracker Overcurrent Detected: bit 47.
 
-    Note ACP-063 (certain): Star tracker has four spellings.
+    Note ACP-063 (certain): see CubeStar Enabled.
     """

@@ -17,10 +17,14 @@ class CurrentAdcsState2(_base.Message):
     Bit 61 of the log mask.
 
     Erratum ACP-120 (open): Current ADCS State 2: 6 bytes announced, 18 bits described.
+    More than half of the frame is not explained. It is held as reserved, here and where
+    frame 190 repeats it.
 
-    Note ACP-057 (certain): ACP stands for two things.
+    Note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS
+    Control Program, the state frames have Attitude Control Processor.
 
-    Note ACP-064 (open): Which flags are latched.
+    Note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but
+    the state frames do not tell latched flags from present states.
     """
 
     NODE = "cubeacp"
@@ -36,7 +40,8 @@ class CurrentAdcsState2(_base.Message):
 
     A parameter is out of bounds, or the SGP4 propagator could not start from them.
 
-    Note ACP-104 (open): Orbit parameter flag has two reasons.
+    Note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds,
+    or a propagator that failed to start, are told as two sentences for one bit.
     """
 
     configuration_is_invalid: bool = _base.field("Configuration is Invalid", 1, 1, "bool", default=False)
@@ -45,7 +50,9 @@ class CurrentAdcsState2(_base.Message):
     Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at
     least one CSS.
 
-    Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
+    Note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames
+    differ by a letter in the description, and principle stands for principal twice in
+    each.
     """
 
     control_mode_change_is_not_allowed: bool = _base.field(

@@ -14,7 +14,8 @@ class DeployMagnetometerBoom(_base.Message):
     Dangerous: The boom stays deployed.
 
     Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the
-    bootloader.
+    bootloader. A telecommand or request sent to the wrong program is taken for another
+    one.
     """
 
     NODE = "cubeacp"
@@ -30,5 +31,7 @@ class DeployMagnetometerBoom(_base.Message):
 
     Of the deployment actuation.
 
-    Note ACP-016 (open): Deployment timeout: range and default.
+    Note ACP-016 (open): Deployment timeout: range and default. The field has 8 bits of
+    seconds; whether 0 means none, for ever or a default is not said. The telecommand
+    has no magic number, unlike a reset.
     """

@@ -12,9 +12,12 @@ class EstimModeSelect(_enumeration.OpenEnum):
 
     NO_ATTITUDE_ESTIMATION = 0, "No attitude estimation"
     MEMS_RATE_SENSING = 1, "MEMS rate sensing"
-    """Note ACP-029 (certain): Estimation modes have other names in settings."""
+    """Note ACP-029 (certain): Estimation modes have other names in settings. MEMS rate
+    estimation mode and RKF appear in the description of a flag; the list has MEMS rate
+    sensing and Magnetometer rate filter.
+    """
     MAGNETOMETER_RATE_FILTER = 2, "Magnetometer rate filter"
-    """Note ACP-029 (certain): Estimation modes have other names in settings."""
+    """Note ACP-029 (certain): see MEMS rate sensing."""
     MAGNETOMETER_RATE_FILTER_WITH_PITCH = 3, "Magnetometer rate filter with pitch estimation"
     MAGNETOMETER_AND_FINE_SUN_TRIAD = 4, "Magnetometer and Fine-sun TRIAD algorithm"
     FULL_STATE_EKF = 5, "Full-state EKF"

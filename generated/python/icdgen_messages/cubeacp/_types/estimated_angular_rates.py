@@ -30,6 +30,8 @@ class EstimatedAngularRates(_base.Message):
     """
     estimated_x_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated X Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_x_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated X Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
 
     estimated_y_angular_rate: int = _base.field("Estimated Y Angular Rate", 16, 16, "int", default=0, unit="deg/s")
     """Estimated Y Angular Rate: bits 16 to 31, raw -32768 to 32767; physical
@@ -37,6 +39,8 @@ class EstimatedAngularRates(_base.Message):
     """
     estimated_y_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Y Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_y_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated Y Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
 
     estimated_z_angular_rate: int = _base.field("Estimated Z Angular Rate", 32, 16, "int", default=0, unit="deg/s")
     """Estimated Z Angular Rate: bits 32 to 47, raw -32768 to 32767; physical
@@ -44,3 +48,5 @@ class EstimatedAngularRates(_base.Message):
     """
     estimated_z_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Z Angular Rate in deg/s: -327.68 to 327.67."""
+    estimated_z_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Estimated Z Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""

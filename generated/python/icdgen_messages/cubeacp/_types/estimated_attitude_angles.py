@@ -13,7 +13,9 @@ class EstimatedAttitudeAngles(_base.Message):
 
     Bit 28 of the log mask.
 
-    Note ACP-066 (open): Attitude angles: order of rotation and frame.
+    Note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and
+    yaw need a sequence and a reference. Neither is given, for estimated or for
+    commanded angles.
     """
 
     NODE = "cubeacp"
@@ -30,6 +32,8 @@ class EstimatedAttitudeAngles(_base.Message):
     """
     estimated_roll_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Roll Angle in deg: -327.68 to 327.67."""
+    estimated_roll_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Roll Angle in thousandths of deg, exact: -327680 to 327670."""
 
     estimated_pitch_angle: int = _base.field("Estimated Pitch Angle", 16, 16, "int", default=0, unit="deg")
     """Estimated Pitch Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
@@ -37,6 +41,8 @@ class EstimatedAttitudeAngles(_base.Message):
     """
     estimated_pitch_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Pitch Angle in deg: -327.68 to 327.67."""
+    estimated_pitch_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Pitch Angle in thousandths of deg, exact: -327680 to 327670."""
 
     estimated_yaw_angle: int = _base.field("Estimated Yaw Angle", 32, 16, "int", default=0, unit="deg")
     """Estimated Yaw Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
@@ -44,3 +50,5 @@ class EstimatedAttitudeAngles(_base.Message):
     """
     estimated_yaw_angle_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Estimated Yaw Angle in deg: -327.68 to 327.67."""
+    estimated_yaw_angle_mdeg: int = _base.whole(10, 0)
+    """Estimated Yaw Angle in thousandths of deg, exact: -327680 to 327670."""

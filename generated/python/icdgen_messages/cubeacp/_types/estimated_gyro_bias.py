@@ -30,6 +30,8 @@ class EstimatedGyroBias(_base.Message):
     """
     estimated_x_gyro_bias_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Estimated X-gyro Bias in deg/s: -32.768 to 32.767."""
+    estimated_x_gyro_bias_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated X-gyro Bias in thousandths of deg/s, exact: -32768 to 32767."""
 
     estimated_y_gyro_bias: int = _base.field("Estimated Y-gyro Bias", 16, 16, "int", default=0, unit="deg/s")
     """Estimated Y-gyro Bias: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`,
@@ -37,6 +39,8 @@ class EstimatedGyroBias(_base.Message):
     """
     estimated_y_gyro_bias_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Estimated Y-gyro Bias in deg/s: -32.768 to 32.767."""
+    estimated_y_gyro_bias_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated Y-gyro Bias in thousandths of deg/s, exact: -32768 to 32767."""
 
     estimated_z_gyro_bias: int = _base.field("Estimated Z-gyro Bias", 32, 16, "int", default=0, unit="deg/s")
     """Estimated Z-gyro Bias: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`,
@@ -44,3 +48,5 @@ class EstimatedGyroBias(_base.Message):
     """
     estimated_z_gyro_bias_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Estimated Z-gyro Bias in deg/s: -32.768 to 32.767."""
+    estimated_z_gyro_bias_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated Z-gyro Bias in thousandths of deg/s, exact: -32768 to 32767."""

@@ -13,7 +13,9 @@ class EstimatedQuaternion(_base.Message):
 
     Bit 29 of the log mask.
 
-    Note ACP-075 (open): Quaternions: the fourth component.
+    Note ACP-075 (open): Quaternions: the fourth component. Three of four components are
+    sent. The fourth follows up to its sign only, and which component is the scalar is
+    not said.
     """
 
     NODE = "cubeacp"
@@ -27,17 +29,19 @@ class EstimatedQuaternion(_base.Message):
     estimated_q1: int = _base.field("Estimated q1", 0, 16, "int", default=0)
     """Estimated q1: bits 0 to 15, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): Estimated quaternion has no formula. Components of a unit
+    quaternion in 16 bits need a factor; all other quaternions have one of 1/10000. It
+    is likely here too, but not printed, so the raw value is all that is offered.
     """
 
     estimated_q2: int = _base.field("Estimated q2", 16, 16, "int", default=0)
     """Estimated q2: bits 16 to 31, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): see Estimated q1.
     """
 
     estimated_q3: int = _base.field("Estimated q3", 32, 16, "int", default=0)
     """Estimated q3: bits 32 to 47, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): see Estimated q1.
     """

@@ -35,6 +35,8 @@ class EstimationData(_base.Message):
     """
     igrf_modelled_magnetic_field_x_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """IGRF Modelled Magnetic Field X in uT: -327.68 to 327.67."""
+    igrf_modelled_magnetic_field_x_nt: int = _base.whole(10, 0)
+    """IGRF Modelled Magnetic Field X in nT, exact: -327680 to 327670."""
 
     igrf_modelled_magnetic_field_y: int = _base.field(
         "IGRF Modelled Magnetic Field Y", 16, 16, "int", default=0, unit="uT"
@@ -44,6 +46,8 @@ class EstimationData(_base.Message):
     """
     igrf_modelled_magnetic_field_y_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """IGRF Modelled Magnetic Field Y in uT: -327.68 to 327.67."""
+    igrf_modelled_magnetic_field_y_nt: int = _base.whole(10, 0)
+    """IGRF Modelled Magnetic Field Y in nT, exact: -327680 to 327670."""
 
     igrf_modelled_magnetic_field_z: int = _base.field(
         "IGRF Modelled Magnetic Field Z", 32, 16, "int", default=0, unit="uT"
@@ -53,6 +57,8 @@ class EstimationData(_base.Message):
     """
     igrf_modelled_magnetic_field_z_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """IGRF Modelled Magnetic Field Z in uT: -327.68 to 327.67."""
+    igrf_modelled_magnetic_field_z_nt: int = _base.whole(10, 0)
+    """IGRF Modelled Magnetic Field Z in nT, exact: -327680 to 327670."""
 
     modelled_sun_vector_x: int = _base.field("Modelled Sun Vector X", 48, 16, "int", default=0)
     """Modelled Sun Vector X: bits 48 to 63, raw -32768 to 32767; physical
@@ -60,6 +66,8 @@ class EstimationData(_base.Message):
     """
     modelled_sun_vector_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Modelled Sun Vector X, as a physical value: -3.2768 to 3.2767."""
+    modelled_sun_vector_x_micro: int = _base.whole(100, 0)
+    """Modelled Sun Vector X in millionths, exact: -3276800 to 3276700."""
 
     modelled_sun_vector_y: int = _base.field("Modelled Sun Vector Y", 64, 16, "int", default=0)
     """Modelled Sun Vector Y: bits 64 to 79, raw -32768 to 32767; physical
@@ -67,6 +75,8 @@ class EstimationData(_base.Message):
     """
     modelled_sun_vector_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Modelled Sun Vector Y, as a physical value: -3.2768 to 3.2767."""
+    modelled_sun_vector_y_micro: int = _base.whole(100, 0)
+    """Modelled Sun Vector Y in millionths, exact: -3276800 to 3276700."""
 
     modelled_sun_vector_z: int = _base.field("Modelled Sun Vector Z", 80, 16, "int", default=0)
     """Modelled Sun Vector Z: bits 80 to 95, raw -32768 to 32767; physical
@@ -74,6 +84,8 @@ class EstimationData(_base.Message):
     """
     modelled_sun_vector_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Modelled Sun Vector Z, as a physical value: -3.2768 to 3.2767."""
+    modelled_sun_vector_z_micro: int = _base.whole(100, 0)
+    """Modelled Sun Vector Z in millionths, exact: -3276800 to 3276700."""
 
     estimated_x_gyro_bias: int = _base.field("Estimated X-gyro Bias", 96, 16, "int", default=0, unit="deg/s")
     """Estimated X-gyro Bias: bits 96 to 111, raw -32768 to 32767; physical `raw*0.001`,
@@ -81,6 +93,8 @@ class EstimationData(_base.Message):
     """
     estimated_x_gyro_bias_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Estimated X-gyro Bias in deg/s: -32.768 to 32.767."""
+    estimated_x_gyro_bias_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated X-gyro Bias in thousandths of deg/s, exact: -32768 to 32767."""
 
     estimated_y_gyro_bias: int = _base.field("Estimated Y-gyro Bias", 112, 16, "int", default=0, unit="deg/s")
     """Estimated Y-gyro Bias: bits 112 to 127, raw -32768 to 32767; physical
@@ -88,6 +102,8 @@ class EstimationData(_base.Message):
     """
     estimated_y_gyro_bias_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Estimated Y-gyro Bias in deg/s: -32.768 to 32.767."""
+    estimated_y_gyro_bias_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated Y-gyro Bias in thousandths of deg/s, exact: -32768 to 32767."""
 
     estimated_z_gyro_bias: int = _base.field("Estimated Z-gyro Bias", 128, 16, "int", default=0, unit="deg/s")
     """Estimated Z-gyro Bias: bits 128 to 143, raw -32768 to 32767; physical
@@ -95,33 +111,42 @@ class EstimationData(_base.Message):
     """
     estimated_z_gyro_bias_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Estimated Z-gyro Bias in deg/s: -32.768 to 32.767."""
+    estimated_z_gyro_bias_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated Z-gyro Bias in thousandths of deg/s, exact: -32768 to 32767."""
 
     innovation_vector_x: int = _base.field("Innovation Vector X", 144, 16, "int", default=0)
     """Innovation Vector X: bits 144 to 159, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): Innovation has no unit. What the innovation vector is a
+    difference of, and hence its unit, is not said.
     """
     innovation_vector_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Innovation Vector X, as a physical value: -3.2768 to 3.2767."""
+    innovation_vector_x_micro: int = _base.whole(100, 0)
+    """Innovation Vector X in millionths, exact: -3276800 to 3276700."""
 
     innovation_vector_y: int = _base.field("Innovation Vector Y", 160, 16, "int", default=0)
     """Innovation Vector Y: bits 160 to 175, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): see Innovation Vector X.
     """
     innovation_vector_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Innovation Vector Y, as a physical value: -3.2768 to 3.2767."""
+    innovation_vector_y_micro: int = _base.whole(100, 0)
+    """Innovation Vector Y in millionths, exact: -3276800 to 3276700."""
 
     innovation_vector_z: int = _base.field("Innovation Vector Z", 176, 16, "int", default=0)
     """Innovation Vector Z: bits 176 to 191, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): see Innovation Vector X.
     """
     innovation_vector_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Innovation Vector Z, as a physical value: -3.2768 to 3.2767."""
+    innovation_vector_z_micro: int = _base.whole(100, 0)
+    """Innovation Vector Z in millionths, exact: -3276800 to 3276700."""
 
     quaternion_error_q1: int = _base.field("Quaternion Error - Q1", 192, 16, "int", default=0)
     """Quaternion Error - Q1: bits 192 to 207, raw -32768 to 32767; physical
@@ -129,6 +154,8 @@ class EstimationData(_base.Message):
     """
     quaternion_error_q1_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Quaternion Error - Q1, as a physical value: -3.2768 to 3.2767."""
+    quaternion_error_q1_micro: int = _base.whole(100, 0)
+    """Quaternion Error - Q1 in millionths, exact: -3276800 to 3276700."""
 
     quaternion_error_q2: int = _base.field("Quaternion Error - Q2", 208, 16, "int", default=0)
     """Quaternion Error - Q2: bits 208 to 223, raw -32768 to 32767; physical
@@ -136,6 +163,8 @@ class EstimationData(_base.Message):
     """
     quaternion_error_q2_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Quaternion Error - Q2, as a physical value: -3.2768 to 3.2767."""
+    quaternion_error_q2_micro: int = _base.whole(100, 0)
+    """Quaternion Error - Q2 in millionths, exact: -3276800 to 3276700."""
 
     quaternion_error_q3: int = _base.field("Quaternion Error - Q3", 224, 16, "int", default=0)
     """Quaternion Error - Q3: bits 224 to 239, raw -32768 to 32767; physical
@@ -143,57 +172,74 @@ class EstimationData(_base.Message):
     """
     quaternion_error_q3_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Quaternion Error - Q3, as a physical value: -3.2768 to 3.2767."""
+    quaternion_error_q3_micro: int = _base.whole(100, 0)
+    """Quaternion Error - Q3 in millionths, exact: -3276800 to 3276700."""
 
     quaternion_covariance_q1_rms: int = _base.field("Quaternion Covariance - Q1 RMS", 240, 16, "int", default=0)
     """Quaternion Covariance - Q1 RMS: bits 240 to 255, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): Quaternion covariance: an RMS with a sign. The field is a
+    covariance by its frame, an RMS by its name and signed by its type. Neither
+    quantity, on the diagonal, is negative.
     """
     quaternion_covariance_q1_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Quaternion Covariance - Q1 RMS, as a physical value: -32.768 to 32.767."""
+    quaternion_covariance_q1_rms_milli: int = _base.whole(1, 0)
+    """Quaternion Covariance - Q1 RMS in thousandths, exact: -32768 to 32767."""
 
     quaternion_covariance_q2_rms: int = _base.field("Quaternion Covariance - Q2 RMS", 256, 16, "int", default=0)
     """Quaternion Covariance - Q2 RMS: bits 256 to 271, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
     """
     quaternion_covariance_q2_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Quaternion Covariance - Q2 RMS, as a physical value: -32.768 to 32.767."""
+    quaternion_covariance_q2_rms_milli: int = _base.whole(1, 0)
+    """Quaternion Covariance - Q2 RMS in thousandths, exact: -32768 to 32767."""
 
     quaternion_covariance_q3_rms: int = _base.field("Quaternion Covariance - Q3 RMS", 272, 16, "int", default=0)
     """Quaternion Covariance - Q3 RMS: bits 272 to 287, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
     """
     quaternion_covariance_q3_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Quaternion Covariance - Q3 RMS, as a physical value: -32.768 to 32.767."""
+    quaternion_covariance_q3_rms_milli: int = _base.whole(1, 0)
+    """Quaternion Covariance - Q3 RMS in thousandths, exact: -32768 to 32767."""
 
     x_angular_rate_covariance: int = _base.field("X Angular Rate Covariance", 288, 16, "int", default=0)
     """X Angular Rate Covariance: bits 288 to 303, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for
+    the square of a rate, and the type is signed.
     """
     x_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """X Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    x_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """X Angular Rate Covariance in thousandths, exact: -32768 to 32767."""
 
     y_angular_rate_covariance: int = _base.field("Y Angular Rate Covariance", 304, 16, "int", default=0)
     """Y Angular Rate Covariance: bits 304 to 319, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): see X Angular Rate Covariance.
     """
     y_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Y Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    y_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """Y Angular Rate Covariance in thousandths, exact: -32768 to 32767."""
 
     z_angular_rate_covariance: int = _base.field("Z Angular Rate Covariance", 320, 16, "int", default=0)
     """Z Angular Rate Covariance: bits 320 to 335, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): see X Angular Rate Covariance.
     """
     z_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Z Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
+    z_angular_rate_covariance_milli: int = _base.whole(1, 0)
+    """Z Angular Rate Covariance in thousandths, exact: -32768 to 32767."""

@@ -26,25 +26,32 @@ class EstimationInnovationVector(_base.Message):
     """Innovation Vector X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): Innovation has no unit. What the innovation vector is a
+    difference of, and hence its unit, is not said.
     """
     innovation_vector_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Innovation Vector X, as a physical value: -3.2768 to 3.2767."""
+    innovation_vector_x_micro: int = _base.whole(100, 0)
+    """Innovation Vector X in millionths, exact: -3276800 to 3276700."""
 
     innovation_vector_y: int = _base.field("Innovation Vector Y", 16, 16, "int", default=0)
     """Innovation Vector Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): see Innovation Vector X.
     """
     innovation_vector_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Innovation Vector Y, as a physical value: -3.2768 to 3.2767."""
+    innovation_vector_y_micro: int = _base.whole(100, 0)
+    """Innovation Vector Y in millionths, exact: -3276800 to 3276700."""
 
     innovation_vector_z: int = _base.field("Innovation Vector Z", 32, 16, "int", default=0)
     """Innovation Vector Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): see Innovation Vector X.
     """
     innovation_vector_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Innovation Vector Z, as a physical value: -3.2768 to 3.2767."""
+    innovation_vector_z_micro: int = _base.whole(100, 0)
+    """Innovation Vector Z in millionths, exact: -3276800 to 3276700."""

@@ -15,9 +15,12 @@ class EstimationParameters(_base.Message):
 
     Noise covariances, and which sensors the estimator uses.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
 
-    Note ACP-167 (certain): Estimation Parameters: more than its description.
+    Note ACP-167 (certain): Estimation Parameters: more than its description. Noise
+    covariance and sensor mask are promised; magnetometer modes, recovery and sampling
+    periods are in the message as well.
     """
 
     NODE = "cubeacp"
@@ -34,43 +37,44 @@ class EstimationParameters(_base.Message):
     )
     """Magnetometer Rate Filter System Noise: bits 0 to 31, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): Noise: covariance or deviation, and no unit. The message calls
+    them covariances, the fields noise. Units are missing.
     """
 
     ekf_system_noise: float = _base.field("EKF System Noise", 32, 32, "float", default=0.0)
     """EKF System Noise: bits 32 to 63, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     """
 
     css_measurement_noise: float = _base.field("CSS Measurement Noise", 64, 32, "float", default=0.0)
     """CSS Measurement Noise: bits 64 to 95, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     """
 
     sun_sensor_measurement_noise: float = _base.field("Sun Sensor Measurement Noise", 96, 32, "float", default=0.0)
     """Sun Sensor Measurement Noise: bits 96 to 127, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     """
 
     nadir_sensor_measurement_noise: float = _base.field("Nadir Sensor Measurement Noise", 128, 32, "float", default=0.0)
     """Nadir Sensor Measurement Noise: bits 128 to 159, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     """
 
     magnetometer_measurement_noise: float = _base.field("Magnetometer Measurement Noise", 160, 32, "float", default=0.0)
     """Magnetometer Measurement Noise: bits 160 to 191, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     """
 
     star_tracker_measurement_noise: float = _base.field("Star Tracker Measurement Noise", 192, 32, "float", default=0.0)
     """Star Tracker Measurement Noise: bits 192 to 223, 32-bit float.
 
-    Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+    Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
     """
 
     use_sun_sensor: bool = _base.field("Use Sun Sensor", 224, 1, "bool", default=False)
@@ -118,7 +122,9 @@ class EstimationParameters(_base.Message):
 
     The magnetometer that estimation and control use.
 
-    Note ACP-049 (open): Magnetometer mode can be set in two places.
+    Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a
+    configuration message set the same mode. Which wins after a restart, and whether the
+    telecommand changes what the configuration returns, is not said.
     """
 
     raw_magnetometer_selection: MagModeVal = _base.field(
@@ -128,7 +134,9 @@ class EstimationParameters(_base.Message):
 
     Magnetometer and sampling path for the second raw magnetometer frame.
 
-    Note ACP-118 (likely): Secondary magnetometer: fixed or selected.
+    Note ACP-118 (likely): Secondary magnetometer: fixed or selected. The frame is named
+    for the secondary magnetometer, with the field names of the primary one. A setting
+    selects which magnetometer, sampled how, it shows.
     """
 
     estimation_transition_on_rate_sensor_error: bool = _base.field(
@@ -145,7 +153,9 @@ class EstimationParameters(_base.Message):
     Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
     that camera.
 
-    Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    Erratum ACP-169 (certain): Two sampling periods in one field with a unit. Two
+    periods of four bits share a byte that has the unit s. The value of the byte is no
+    time; each half is, up to 15 s, and is held as a field of its own.
     """
 
     cam2_period: int = _base.field("Cam2 period", 244, 4, "uint", default=0, unit="s")
@@ -154,5 +164,5 @@ class EstimationParameters(_base.Message):
     Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
     that camera.
 
-    Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    Erratum ACP-169 (certain): see Cam1 period.
     """

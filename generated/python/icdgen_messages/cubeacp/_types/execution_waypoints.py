@@ -22,6 +22,9 @@ class ExecutionWaypoints(_enumeration.OpenEnum):
     SAVING_IMAGE_TO_SD_CARD = 8, "Saving Image to SD Card"
     LOGGING = 9, "Logging"
     LOG_FILE_COMPRESSION = 10, "Log File Compression"
-    """Note ACP-119 (open): Loop waypoints: logs are compressed."""
+    """Note ACP-119 (open): Loop waypoints: logs are compressed. The loop has a step
+    that compresses the log file, while the log format is described without compression
+    and its size by a plain formula.
+    """
     SAVING_LOG_TO_SD_CARD = 11, "Saving Log to SD Card"
     WRITING_TO_FLASH = 12, "Writing to flash"

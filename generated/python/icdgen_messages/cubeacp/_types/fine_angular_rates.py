@@ -29,31 +29,41 @@ class FineAngularRates(_base.Message):
     """Estimated X Angular Rate: bits 0 to 15, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767 deg/s.
 
-    Note ACP-109 (certain): Fine and normal rates have the same field names.
+    Note ACP-109 (certain): Fine and normal rates have the same field names. Estimated X
+    Angular Rate has a factor of 0.01 in one frame and of 0.001 in another. A value
+    copied by its name is wrong by ten.
 
-    Note ACP-110 (open): Fine rates end at 32 deg/s.
+    Note ACP-110 (open): Fine rates end at 32 deg/s. The range is +/-32.767 deg/s;
+    whether faster rates saturate or wrap is not said. The rate error flag starts at 20
+    deg/s.
     """
     estimated_x_angular_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Estimated X Angular Rate in deg/s: -32.768 to 32.767."""
+    estimated_x_angular_rate_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated X Angular Rate in thousandths of deg/s, exact: -32768 to 32767."""
 
     estimated_y_angular_rate: int = _base.field("Estimated Y Angular Rate", 16, 16, "int", default=0, unit="deg/s")
     """Estimated Y Angular Rate: bits 16 to 31, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767 deg/s.
 
-    Note ACP-109 (certain): Fine and normal rates have the same field names.
+    Note ACP-109 (certain): see Estimated X Angular Rate.
 
-    Note ACP-110 (open): Fine rates end at 32 deg/s.
+    Note ACP-110 (open): see Estimated X Angular Rate.
     """
     estimated_y_angular_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Estimated Y Angular Rate in deg/s: -32.768 to 32.767."""
+    estimated_y_angular_rate_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated Y Angular Rate in thousandths of deg/s, exact: -32768 to 32767."""
 
     estimated_z_angular_rate: int = _base.field("Estimated Z Angular Rate", 32, 16, "int", default=0, unit="deg/s")
     """Estimated Z Angular Rate: bits 32 to 47, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767 deg/s.
 
-    Note ACP-109 (certain): Fine and normal rates have the same field names.
+    Note ACP-109 (certain): see Estimated X Angular Rate.
 
-    Note ACP-110 (open): Fine rates end at 32 deg/s.
+    Note ACP-110 (open): see Estimated X Angular Rate.
     """
     estimated_z_angular_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Estimated Z Angular Rate in deg/s: -32.768 to 32.767."""
+    estimated_z_angular_rate_mdeg_per_s: int = _base.whole(1, 0)
+    """Estimated Z Angular Rate in thousandths of deg/s, exact: -32768 to 32767."""

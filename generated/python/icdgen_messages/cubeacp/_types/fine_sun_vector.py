@@ -15,7 +15,10 @@ class FineSunVector(_base.Message):
 
     Bit 11 of the log mask.
 
-    Note ACP-069 (open): Reference frames of measured vectors are not named.
+    Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled
+    vectors are in the orbit frame, estimated rates relative to it. Of the measured
+    field, sun, nadir and rate vectors nothing is said; SBC for the body frame is in the
+    list of acronyms and used nowhere.
     """
 
     NODE = "cubeacp"
@@ -32,6 +35,8 @@ class FineSunVector(_base.Message):
     """
     sun_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Sun X, as a physical value: -3.2768 to 3.2767."""
+    sun_x_micro: int = _base.whole(100, 0)
+    """Sun X in millionths, exact: -3276800 to 3276700."""
 
     sun_y: int = _base.field("Sun Y", 16, 16, "int", default=0)
     """Sun Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -39,6 +44,8 @@ class FineSunVector(_base.Message):
     """
     sun_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Sun Y, as a physical value: -3.2768 to 3.2767."""
+    sun_y_micro: int = _base.whole(100, 0)
+    """Sun Y in millionths, exact: -3276800 to 3276700."""
 
     sun_z: int = _base.field("Sun Z", 32, 16, "int", default=0)
     """Sun Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -46,3 +53,5 @@ class FineSunVector(_base.Message):
     """
     sun_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Sun Z, as a physical value: -3.2768 to 3.2767."""
+    sun_z_micro: int = _base.whole(100, 0)
+    """Sun Z in millionths, exact: -3276800 to 3276700."""

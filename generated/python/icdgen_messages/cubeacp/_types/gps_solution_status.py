@@ -10,7 +10,9 @@ from ... import _enumeration
 class GpsSolutionStatus(_enumeration.OpenEnum):
     """GpsSolutionStatus: an enumeration. Table 85.
 
-    Note ACP-045 (open): One GPS status for different receivers.
+    Note ACP-045 (open): One GPS status for different receivers. The enumeration is used
+    whatever receiver is fitted; three types are listed, among them none. Whether the
+    values are those of the receiver or of the control program is not said.
     """
 
     SOLUTION_COMPUTED = 0, "Solution computed"

@@ -30,6 +30,8 @@ class IgrfModelledMagneticFieldVector(_base.Message):
     """
     field_x_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """IGRF Modelled Magnetic Field X in uT: -327.68 to 327.67."""
+    field_x_nt: int = _base.whole(10, 0)
+    """IGRF Modelled Magnetic Field X in nT, exact: -327680 to 327670."""
 
     field_y: int = _base.field("IGRF Modelled Magnetic Field Y", 16, 16, "int", default=0, unit="uT")
     """IGRF Modelled Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical
@@ -37,6 +39,8 @@ class IgrfModelledMagneticFieldVector(_base.Message):
     """
     field_y_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """IGRF Modelled Magnetic Field Y in uT: -327.68 to 327.67."""
+    field_y_nt: int = _base.whole(10, 0)
+    """IGRF Modelled Magnetic Field Y in nT, exact: -327680 to 327670."""
 
     field_z: int = _base.field("IGRF Modelled Magnetic Field Z", 32, 16, "int", default=0, unit="uT")
     """IGRF Modelled Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical
@@ -44,3 +48,5 @@ class IgrfModelledMagneticFieldVector(_base.Message):
     """
     field_z_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """IGRF Modelled Magnetic Field Z in uT: -327.68 to 327.67."""
+    field_z_nt: int = _base.whole(10, 0)
+    """IGRF Modelled Magnetic Field Z in nT, exact: -327680 to 327670."""

@@ -14,7 +14,9 @@ class InertialPointingReferenceVector(_base.Message):
 
     Unit vector for the inertial pointing mode.
 
-    Note ACP-024 (open): Control modes that are named and not listed.
+    Note ACP-024 (open): Control modes that are named and not listed. An inertial
+    pointing control mode has a reference vector, and GEO tracking, inertial and two sun
+    pointing modes are special selections. The list of control modes has none of them.
     """
 
     NODE = "cubeacp"
@@ -30,25 +32,33 @@ class InertialPointingReferenceVector(_base.Message):
     """Inertial Reference X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`,
     -3.2768 to 3.2767.
 
-    Note ACP-188 (open): Inertial reference: unit vector without a frame.
+    Note ACP-188 (open): Inertial reference: unit vector without a frame. The vector is
+    for an inertial pointing mode; which inertial frame, and which body axis points
+    along it, is not said.
     """
     reference_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Inertial Reference X, as a physical value: -3.2768 to 3.2767."""
+    reference_x_micro: int = _base.whole(100, 0)
+    """Inertial Reference X in millionths, exact: -3276800 to 3276700."""
 
     reference_y: int = _base.field("Inertial Reference Y", 16, 16, "int", default=0)
     """Inertial Reference Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`,
     -3.2768 to 3.2767.
 
-    Note ACP-188 (open): Inertial reference: unit vector without a frame.
+    Note ACP-188 (open): see Inertial Reference X.
     """
     reference_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Inertial Reference Y, as a physical value: -3.2768 to 3.2767."""
+    reference_y_micro: int = _base.whole(100, 0)
+    """Inertial Reference Y in millionths, exact: -3276800 to 3276700."""
 
     reference_z: int = _base.field("Inertial Reference Z", 32, 16, "int", default=0)
     """Inertial Reference Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`,
     -3.2768 to 3.2767.
 
-    Note ACP-188 (open): Inertial reference: unit vector without a frame.
+    Note ACP-188 (open): see Inertial Reference X.
     """
     reference_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Inertial Reference Z, as a physical value: -3.2768 to 3.2767."""
+    reference_z_micro: int = _base.whole(100, 0)
+    """Inertial Reference Z in millionths, exact: -3276800 to 3276700."""

@@ -23,7 +23,9 @@ class JpgConversionProgress(_base.Message):
     progress_percentage: int = _base.field("Progress Percentage", 0, 8, "uint", default=0, unit="%")
     """Progress Percentage: bits 0 to 7, raw 0 to 255, in %.
 
-    Erratum ACP-065 (certain): JPG progress has its unit in words only.
+    Erratum ACP-065 (certain): JPG progress has its unit in words only. Name and
+    description are of a percentage; the unit of measure is missing, which the frame for
+    images has.
     """
 
     conversion_result: JpgConvertResult = _base.field(

@@ -13,15 +13,15 @@ class MagModeVal(_enumeration.OpenEnum):
     MTM is the magnetometer, Signal and Motor are the microcontrollers that sample it.
 
     Note ACP-050 (open): MagModeVal: one combination is missing, and None is not
-    explained.
+    explained. The redundant magnetometer cannot be sampled through the motor
+    controller, the main one can. What None does to estimation and control is not said.
 
-    Note ACP-051 (certain): Magnetometers have four names for two.
+    Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and
+    none stand for one; redundant, secondary and 2nd for the other.
     """
 
     MAIN_MTM_SAMPLED_THROUGH_SIGNAL = 0, "Main MTM Sampled Through Signal"
     REDUNDANT_MTM_SAMPLED_THROUGH_SIGNAL = 1, "Redundant MTM Sampled Through Signal"
     MAIN_MTM_SAMPLED_THROUGH_MOTOR = 2, "Main MTM Sampled Through Motor"
     NONE = 3, "None"
-    """Note ACP-050 (open): MagModeVal: one combination is missing, and None is not
-    explained.
-    """
+    """Note ACP-050 (open): see MagModeVal."""

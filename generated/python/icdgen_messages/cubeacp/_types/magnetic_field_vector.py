@@ -15,7 +15,10 @@ class MagneticFieldVector(_base.Message):
 
     Bit 9 of the log mask.
 
-    Note ACP-069 (open): Reference frames of measured vectors are not named.
+    Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled
+    vectors are in the orbit frame, estimated rates relative to it. Of the measured
+    field, sun, nadir and rate vectors nothing is said; SBC for the body frame is in the
+    list of acronyms and used nowhere.
     """
 
     NODE = "cubeacp"
@@ -32,6 +35,8 @@ class MagneticFieldVector(_base.Message):
     """
     magnetic_field_x_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetic Field X in uT: -327.68 to 327.67."""
+    magnetic_field_x_nt: int = _base.whole(10, 0)
+    """Magnetic Field X in nT, exact: -327680 to 327670."""
 
     magnetic_field_y: int = _base.field("Magnetic Field Y", 16, 16, "int", default=0, unit="uT")
     """Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
@@ -39,6 +44,8 @@ class MagneticFieldVector(_base.Message):
     """
     magnetic_field_y_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetic Field Y in uT: -327.68 to 327.67."""
+    magnetic_field_y_nt: int = _base.whole(10, 0)
+    """Magnetic Field Y in nT, exact: -327680 to 327670."""
 
     magnetic_field_z: int = _base.field("Magnetic Field Z", 32, 16, "int", default=0, unit="uT")
     """Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
@@ -46,3 +53,5 @@ class MagneticFieldVector(_base.Message):
     """
     magnetic_field_z_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetic Field Z in uT: -327.68 to 327.67."""
+    magnetic_field_z_nt: int = _base.whole(10, 0)
+    """Magnetic Field Z in nT, exact: -327680 to 327670."""

@@ -28,9 +28,12 @@ class MagnetorquerCommand(_base.Message):
     On-time.
 
     Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    on-time.
+    on-time. The telecommand takes thousandths of a duty cycle, the frames give an
+    on-time in units of 10 ms. The conversion depends on the loop period and on a
+    resolution that is a setting.
 
-    Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    Note ACP-071 (likely): 10ms units is a factor, not a unit. The unit holds the scale
+    that a formula should. It is kept as a unit of counts; nothing is converted.
     """
 
     y_magnetorquer_command: int = _base.field("Y Magnetorquer Command", 16, 16, "int", default=0, unit="10ms units")
@@ -38,10 +41,9 @@ class MagnetorquerCommand(_base.Message):
 
     On-time.
 
-    Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    on-time.
+    Note ACP-070 (open): see X Magnetorquer Command.
 
-    Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    Note ACP-071 (likely): see X Magnetorquer Command.
     """
 
     z_magnetorquer_command: int = _base.field("Z Magnetorquer Command", 32, 16, "int", default=0, unit="10ms units")
@@ -49,8 +51,7 @@ class MagnetorquerCommand(_base.Message):
 
     On-time.
 
-    Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    on-time.
+    Note ACP-070 (open): see X Magnetorquer Command.
 
-    Note ACP-071 (likely): 10ms units is a factor, not a unit.
+    Note ACP-071 (likely): see X Magnetorquer Command.
     """

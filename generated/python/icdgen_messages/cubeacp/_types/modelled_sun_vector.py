@@ -30,6 +30,8 @@ class ModelledSunVector(_base.Message):
     """
     modelled_sun_vector_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Modelled Sun Vector X, as a physical value: -3.2768 to 3.2767."""
+    modelled_sun_vector_x_micro: int = _base.whole(100, 0)
+    """Modelled Sun Vector X in millionths, exact: -3276800 to 3276700."""
 
     modelled_sun_vector_y: int = _base.field("Modelled Sun Vector Y", 16, 16, "int", default=0)
     """Modelled Sun Vector Y: bits 16 to 31, raw -32768 to 32767; physical
@@ -37,6 +39,8 @@ class ModelledSunVector(_base.Message):
     """
     modelled_sun_vector_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Modelled Sun Vector Y, as a physical value: -3.2768 to 3.2767."""
+    modelled_sun_vector_y_micro: int = _base.whole(100, 0)
+    """Modelled Sun Vector Y in millionths, exact: -3276800 to 3276700."""
 
     modelled_sun_vector_z: int = _base.field("Modelled Sun Vector Z", 32, 16, "int", default=0)
     """Modelled Sun Vector Z: bits 32 to 47, raw -32768 to 32767; physical
@@ -44,3 +48,5 @@ class ModelledSunVector(_base.Message):
     """
     modelled_sun_vector_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Modelled Sun Vector Z, as a physical value: -3.2768 to 3.2767."""
+    modelled_sun_vector_z_micro: int = _base.whole(100, 0)
+    """Modelled Sun Vector Z in millionths, exact: -3276800 to 3276700."""

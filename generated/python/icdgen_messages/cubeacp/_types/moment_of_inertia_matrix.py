@@ -36,7 +36,9 @@ class MomentOfInertiaMatrix(_base.Message):
     product_of_inertia_ixy: float = _base.field("Product Of Inertia - Ixy", 96, 32, "float", default=0.0, unit="kg.m^2")
     """Product Of Inertia - Ixy: bits 96 to 127, 32-bit float, in kg.m^2.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): Products of inertia: the sign is not given. The products are
+    elements of a matrix by the message and products of inertia by their names, which
+    differ in sign by the usual definitions. Neither is defined.
     """
 
     product_of_inertia_ixz: float = _base.field(
@@ -44,7 +46,7 @@ class MomentOfInertiaMatrix(_base.Message):
     )
     """Product Of Inertia - Ixz: bits 128 to 159, 32-bit float, in kg.m^2.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): see Product Of Inertia - Ixy.
     """
 
     product_of_inertia_iyz: float = _base.field(
@@ -52,5 +54,5 @@ class MomentOfInertiaMatrix(_base.Message):
     )
     """Product Of Inertia - Iyz: bits 160 to 191, 32-bit float, in kg.m^2.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): see Product Of Inertia - Ixy.
     """

@@ -32,6 +32,8 @@ class PowerAndTemperature(_base.Message):
     """
     cubesense1_3v3_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense1 3V3 Current in mA: 0 to 6553.5."""
+    cubesense1_3v3_current_ua: int = _base.whole(100, 0)
+    """CubeSense1 3V3 Current in uA, exact: 0 to 6553500."""
 
     cubesense1_cam_sram_current: int = _base.field("CubeSense1 Cam SRAM Current", 16, 16, "uint", default=0, unit="mA")
     """CubeSense1 Cam SRAM Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0
@@ -39,6 +41,8 @@ class PowerAndTemperature(_base.Message):
     """
     cubesense1_cam_sram_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense1 Cam SRAM Current in mA: 0 to 6553.5."""
+    cubesense1_cam_sram_current_ua: int = _base.whole(100, 0)
+    """CubeSense1 Cam SRAM Current in uA, exact: 0 to 6553500."""
 
     cubesense2_3v3_current: int = _base.field("CubeSense2 3V3 Current", 32, 16, "uint", default=0, unit="mA")
     """CubeSense2 3V3 Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.1`, 0 to
@@ -46,6 +50,8 @@ class PowerAndTemperature(_base.Message):
     """
     cubesense2_3v3_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense2 3V3 Current in mA: 0 to 6553.5."""
+    cubesense2_3v3_current_ua: int = _base.whole(100, 0)
+    """CubeSense2 3V3 Current in uA, exact: 0 to 6553500."""
 
     cubesense2_cam_sram_current: int = _base.field("CubeSense2 Cam SRAM Current", 48, 16, "uint", default=0, unit="mA")
     """CubeSense2 Cam SRAM Current: bits 48 to 63, raw 0 to 65535; physical `raw*0.1`, 0
@@ -53,6 +59,8 @@ class PowerAndTemperature(_base.Message):
     """
     cubesense2_cam_sram_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense2 Cam SRAM Current in mA: 0 to 6553.5."""
+    cubesense2_cam_sram_current_ua: int = _base.whole(100, 0)
+    """CubeSense2 Cam SRAM Current in uA, exact: 0 to 6553500."""
 
     cubecontrol_3v3_current: int = _base.field("CubeControl 3V3 Current", 64, 16, "uint", default=0, unit="mA")
     """CubeControl 3V3 Current: bits 64 to 79, raw 0 to 65535; physical
@@ -79,43 +87,55 @@ class PowerAndTemperature(_base.Message):
     """Wheel1Current: bits 112 to 127, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): Wheel currents: by number, described by axis. The frame is
+    described as XYZ wheel currents, its fields are numbered, and names run together
+    although their descriptions do not.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of
+    0.01 mA sixteen bits reach 655.35 mA, which a wheel motor may well exceed. All other
+    currents have steps of 0.1 mA and more. The factor is held as printed.
     """
     wheel1_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel1Current in mA: 0 to 655.35."""
+    wheel1_current_ua: int = _base.whole(10, 0)
+    """Wheel1Current in uA, exact: 0 to 655350."""
 
     wheel2_current: int = _base.field("Wheel2Current", 128, 16, "uint", default=0, unit="mA")
     """Wheel2Current: bits 128 to 143, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): see Wheel1Current.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): see Wheel1Current.
     """
     wheel2_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel2Current in mA: 0 to 655.35."""
+    wheel2_current_ua: int = _base.whole(10, 0)
+    """Wheel2Current in uA, exact: 0 to 655350."""
 
     wheel3_current: int = _base.field("Wheel3Current", 144, 16, "uint", default=0, unit="mA")
     """Wheel3Current: bits 144 to 159, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): see Wheel1Current.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): see Wheel1Current.
     """
     wheel3_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel3Current in mA: 0 to 655.35."""
+    wheel3_current_ua: int = _base.whole(10, 0)
+    """Wheel3Current in uA, exact: 0 to 655350."""
 
     cubestar_current: int = _base.field("CubeStarCurrent", 160, 16, "uint", default=0, unit="mA")
     """CubeStarCurrent: bits 160 to 175, raw 0 to 65535; physical `raw*0.01`, 0 to
     655.35 mA.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): see Wheel1Current.
     """
     cubestar_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """CubeStarCurrent in mA: 0 to 655.35."""
+    cubestar_current_ua: int = _base.whole(10, 0)
+    """CubeStarCurrent in uA, exact: 0 to 655350."""
 
     magnetorquer_current: int = _base.field("Magnetorquer Current", 176, 16, "uint", default=0, unit="mA")
     """Magnetorquer Current: bits 176 to 191, raw 0 to 65535; physical `raw*0.1`, 0 to
@@ -123,32 +143,41 @@ class PowerAndTemperature(_base.Message):
     """
     magnetorquer_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """Magnetorquer Current in mA: 0 to 6553.5."""
+    magnetorquer_current_ua: int = _base.whole(100, 0)
+    """Magnetorquer Current in uA, exact: 0 to 6553500."""
 
     cubestar_mcu_temperature: int = _base.field("CubeStar MCU temperature", 192, 16, "int", default=0, unit="C")
     """CubeStar MCU temperature: bits 192 to 207, raw -32768 to 32767; physical
     `raw/100.0`, -327.68 to 327.67 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a
+    degree sign. Degrees Celsius are meant.
     """
     cubestar_mcu_temperature_c: float = _base.scaled(1, 0, 100, default=0.0)
     """CubeStar MCU temperature in C: -327.68 to 327.67."""
+    cubestar_mcu_temperature_mc: int = _base.whole(10, 0)
+    """CubeStar MCU temperature in thousandths of C, exact: -327680 to 327670."""
 
     mcu_temperature: int = _base.field("MCU Temperature", 208, 16, "int", default=0, unit="C")
     """MCU Temperature: bits 208 to 223, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and
+    hundredths stand side by side, in one frame even. That the controllers and rate
+    sensors report whole degrees in 16 bits may be a lost factor.
     """
 
     magnetometer_temperature: int = _base.field("Magnetometer Temperature", 224, 16, "int", default=0, unit="C")
     """Magnetometer Temperature: bits 224 to 239, raw -32768 to 32767; physical
     `raw/10.0`, -3276.8 to 3276.7 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
     """
     magnetometer_temperature_c: float = _base.scaled(1, 0, 10, default=0.0)
     """Magnetometer Temperature in C: -3276.8 to 3276.7."""
+    magnetometer_temperature_mc: int = _base.whole(100, 0)
+    """Magnetometer Temperature in thousandths of C, exact: -3276800 to 3276700."""
 
     redundant_mag_temperature: int = _base.field(
         "Redundant Magnetometer Temperature", 240, 16, "int", default=0, unit="C"
@@ -156,31 +185,35 @@ class PowerAndTemperature(_base.Message):
     """Redundant Magnetometer Temperature: bits 240 to 255, raw -32768 to 32767;
     physical `raw/10.0`, -3276.8 to 3276.7 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
     """
     redundant_mag_temperature_c: float = _base.scaled(1, 0, 10, default=0.0)
     """Redundant Magnetometer Temperature in C: -3276.8 to 3276.7."""
+    redundant_mag_temperature_mc: int = _base.whole(100, 0)
+    """Redundant Magnetometer Temperature in thousandths of C, exact: -3276800 to
+    3276700.
+    """
 
     x_rate_sensor_temperature: int = _base.field("X-Rate Sensor Temperature", 256, 16, "int", default=0, unit="C")
     """X-Rate Sensor Temperature: bits 256 to 271, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): see MCU Temperature.
     """
 
     y_rate_sensor_temperature: int = _base.field("Y-Rate Sensor Temperature", 272, 16, "int", default=0, unit="C")
     """Y-Rate Sensor Temperature: bits 272 to 287, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): see MCU Temperature.
     """
 
     z_rate_sensor_temperature: int = _base.field("Z-Rate Sensor Temperature", 288, 16, "int", default=0, unit="C")
     """Z-Rate Sensor Temperature: bits 288 to 303, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): see MCU Temperature.
     """

@@ -13,4 +13,7 @@ class PowerSelect(_enumeration.OpenEnum):
     OFF = 0, "Off"
     ON = 1, "On"
     POWER_STATE_KEPT_THE_SAME = 2, "Power state kept the same"
-    """Note ACP-137 (open): Power state kept the same, when read."""
+    """Note ACP-137 (open): Power state kept the same, when read. The value is a request
+    not to change. What a unit left alone reads as, and what the unassigned value 3
+    does, is not said.
+    """

@@ -26,25 +26,33 @@ class QuaternionCovariance(_base.Message):
     """Quaternion Covariance - Q1 RMS: bits 0 to 15, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): Quaternion covariance: an RMS with a sign. The field is a
+    covariance by its frame, an RMS by its name and signed by its type. Neither
+    quantity, on the diagonal, is negative.
     """
     q1_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Quaternion Covariance - Q1 RMS, as a physical value: -32.768 to 32.767."""
+    q1_rms_milli: int = _base.whole(1, 0)
+    """Quaternion Covariance - Q1 RMS in thousandths, exact: -32768 to 32767."""
 
     q2_rms: int = _base.field("Quaternion Covariance - Q2 RMS", 16, 16, "int", default=0)
     """Quaternion Covariance - Q2 RMS: bits 16 to 31, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
     """
     q2_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Quaternion Covariance - Q2 RMS, as a physical value: -32.768 to 32.767."""
+    q2_rms_milli: int = _base.whole(1, 0)
+    """Quaternion Covariance - Q2 RMS in thousandths, exact: -32768 to 32767."""
 
     q3_rms: int = _base.field("Quaternion Covariance - Q3 RMS", 32, 16, "int", default=0)
     """Quaternion Covariance - Q3 RMS: bits 32 to 47, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
     """
     q3_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Quaternion Covariance - Q3 RMS, as a physical value: -32.768 to 32.767."""
+    q3_rms_milli: int = _base.whole(1, 0)
+    """Quaternion Covariance - Q3 RMS in thousandths, exact: -32768 to 32767."""

@@ -13,7 +13,9 @@ class QuaternionErrorVector(_base.Message):
 
     Bit 39 of the log mask.
 
-    Note ACP-075 (open): Quaternions: the fourth component.
+    Note ACP-075 (open): Quaternions: the fourth component. Three of four components are
+    sent. The fourth follows up to its sign only, and which component is the scalar is
+    not said.
     """
 
     NODE = "cubeacp"
@@ -30,6 +32,8 @@ class QuaternionErrorVector(_base.Message):
     """
     quaternion_error_q1_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Quaternion Error - Q1, as a physical value: -3.2768 to 3.2767."""
+    quaternion_error_q1_micro: int = _base.whole(100, 0)
+    """Quaternion Error - Q1 in millionths, exact: -3276800 to 3276700."""
 
     quaternion_error_q2: int = _base.field("Quaternion Error - Q2", 16, 16, "int", default=0)
     """Quaternion Error - Q2: bits 16 to 31, raw -32768 to 32767; physical `raw*0.0001`,
@@ -37,6 +41,8 @@ class QuaternionErrorVector(_base.Message):
     """
     quaternion_error_q2_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Quaternion Error - Q2, as a physical value: -3.2768 to 3.2767."""
+    quaternion_error_q2_micro: int = _base.whole(100, 0)
+    """Quaternion Error - Q2 in millionths, exact: -3276800 to 3276700."""
 
     quaternion_error_q3: int = _base.field("Quaternion Error - Q3", 32, 16, "int", default=0)
     """Quaternion Error - Q3: bits 32 to 47, raw -32768 to 32767; physical `raw*0.0001`,
@@ -44,3 +50,5 @@ class QuaternionErrorVector(_base.Message):
     """
     quaternion_error_q3_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Quaternion Error - Q3, as a physical value: -3.2768 to 3.2767."""
+    quaternion_error_q3_micro: int = _base.whole(100, 0)
+    """Quaternion Error - Q3 in millionths, exact: -3276800 to 3276700."""

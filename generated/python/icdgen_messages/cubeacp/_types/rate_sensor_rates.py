@@ -15,7 +15,10 @@ class RateSensorRates(_base.Message):
 
     Bit 13 of the log mask.
 
-    Note ACP-069 (open): Reference frames of measured vectors are not named.
+    Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled
+    vectors are in the orbit frame, estimated rates relative to it. Of the measured
+    field, sun, nadir and rate vectors nothing is said; SBC for the body frame is in the
+    list of acronyms and used nowhere.
     """
 
     NODE = "cubeacp"
@@ -32,6 +35,8 @@ class RateSensorRates(_base.Message):
     """
     x_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """X Angular Rate in deg/s: -327.68 to 327.67."""
+    x_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """X Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
 
     y_angular_rate: int = _base.field("Y Angular Rate", 16, 16, "int", default=0, unit="deg/s")
     """Y Angular Rate: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68
@@ -39,6 +44,8 @@ class RateSensorRates(_base.Message):
     """
     y_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """Y Angular Rate in deg/s: -327.68 to 327.67."""
+    y_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Y Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""
 
     z_angular_rate: int = _base.field("Z Angular Rate", 32, 16, "int", default=0, unit="deg/s")
     """Z Angular Rate: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68
@@ -46,3 +53,5 @@ class RateSensorRates(_base.Message):
     """
     z_angular_rate_deg_per_s: float = _base.scaled(1, 0, 100, default=0.0)
     """Z Angular Rate in deg/s: -327.68 to 327.67."""
+    z_angular_rate_mdeg_per_s: int = _base.whole(10, 0)
+    """Z Angular Rate in thousandths of deg/s, exact: -327680 to 327670."""

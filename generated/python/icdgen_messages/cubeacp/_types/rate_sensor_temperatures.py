@@ -25,23 +25,26 @@ class RateSensorTemperatures(_base.Message):
     x_rate_sensor_temperature: int = _base.field("X-Rate Sensor Temperature", 0, 16, "int", default=0, unit="C")
     """X-Rate Sensor Temperature: bits 0 to 15, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a
+    degree sign. Degrees Celsius are meant.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and
+    hundredths stand side by side, in one frame even. That the controllers and rate
+    sensors report whole degrees in 16 bits may be a lost factor.
     """
 
     y_rate_sensor_temperature: int = _base.field("Y-Rate Sensor Temperature", 16, 16, "int", default=0, unit="C")
     """Y-Rate Sensor Temperature: bits 16 to 31, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see X-Rate Sensor Temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): see X-Rate Sensor Temperature.
     """
 
     z_rate_sensor_temperature: int = _base.field("Z-Rate Sensor Temperature", 32, 16, "int", default=0, unit="C")
     """Z-Rate Sensor Temperature: bits 32 to 47, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see X-Rate Sensor Temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): see X-Rate Sensor Temperature.
     """

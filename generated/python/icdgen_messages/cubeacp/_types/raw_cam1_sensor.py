@@ -17,7 +17,9 @@ class RawCam1Sensor(_base.Message):
 
     Bit 48 of the log mask.
 
-    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The
+    telecommand begins with Cam1. Frame 194 and the ids 166 and 167 have Cam2 before
+    Cam1.
     """
 
     NODE = "cubeacp"
@@ -33,7 +35,9 @@ class RawCam1Sensor(_base.Message):
 
     Azimuth angle.
 
-    Note ACP-078 (open): Camera results: centroid or angle.
+    Note ACP-078 (open): Camera results: centroid or angle. The names say centroid X and
+    Y, the descriptions azimuth and elevation angle. Neither pixel nor degree nor a
+    factor is given.
     """
 
     cam1_centroid_y: int = _base.field("Cam1 centroid Y", 16, 16, "int", default=0)
@@ -41,7 +45,7 @@ class RawCam1Sensor(_base.Message):
 
     Elevation angle.
 
-    Note ACP-078 (open): Camera results: centroid or angle.
+    Note ACP-078 (open): see Cam1 centroid X.
     """
 
     cam1_capture_status: CaptureResult = _base.field(

@@ -27,7 +27,9 @@ class RawCss1To6(_base.Message):
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of
+    the sun angle, without full scale, offset or what a sensor in the dark reads. The
+    relative scale and the threshold of the configuration refer to them.
     """
 
     css2: int = _base.field("CSS2", 8, 8, "uint", default=0)
@@ -35,7 +37,7 @@ class RawCss1To6(_base.Message):
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS1.
     """
 
     css3: int = _base.field("CSS3", 16, 8, "uint", default=0)
@@ -43,7 +45,7 @@ class RawCss1To6(_base.Message):
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS1.
     """
 
     css4: int = _base.field("CSS4", 24, 8, "uint", default=0)
@@ -51,7 +53,7 @@ class RawCss1To6(_base.Message):
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS1.
     """
 
     css5: int = _base.field("CSS5", 32, 8, "uint", default=0)
@@ -59,7 +61,7 @@ class RawCss1To6(_base.Message):
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS1.
     """
 
     css6: int = _base.field("CSS6", 40, 8, "uint", default=0)
@@ -67,5 +69,5 @@ class RawCss1To6(_base.Message):
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS1.
     """

@@ -13,7 +13,9 @@ class RawCss7To10(_base.Message):
 
     Bit 50 of the log mask.
 
-    Erratum ACP-081 (likely): Raw CSS 7 to 10: 6 bytes announced, 4 described.
+    Erratum ACP-081 (likely): Raw CSS 7 to 10: 6 bytes announced, 4 described. Four
+    sensors fill four of six bytes. The last two are held as reserved; the frame is
+    probably filled up to the size of the loggable ones.
     """
 
     NODE = "cubeacp"
@@ -29,7 +31,9 @@ class RawCss7To10(_base.Message):
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of
+    the sun angle, without full scale, offset or what a sensor in the dark reads. The
+    relative scale and the threshold of the configuration refer to them.
     """
 
     css8: int = _base.field("CSS8", 8, 8, "uint", default=0)
@@ -37,7 +41,7 @@ class RawCss7To10(_base.Message):
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS7.
     """
 
     css9: int = _base.field("CSS9", 16, 8, "uint", default=0)
@@ -45,7 +49,7 @@ class RawCss7To10(_base.Message):
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS7.
     """
 
     css10: int = _base.field("CSS10", 24, 8, "uint", default=0)
@@ -53,5 +57,5 @@ class RawCss7To10(_base.Message):
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Note ACP-080 (open): CSS raw values have no scale.
+    Note ACP-080 (open): see CSS7.
     """

@@ -29,7 +29,8 @@ class RawGpsMeasurements(_base.Message):
     )
     """Gps Solution Status: bits 0 to 7.
 
-    Note ACP-042 (certain): GPS is spelt Gps in one field.
+    Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands
+    among fields with GPS, and the sun sensors are Css in the same telecommand.
     """
 
     number_of_tracked_gps_satellites: int = _base.field("Number of tracked GPS satellites", 8, 8, "uint", default=0)
@@ -43,7 +44,8 @@ class RawGpsMeasurements(_base.Message):
     counter_for_xyz_log_from_gps: int = _base.field("Counter for XYZ Lof from GPS", 24, 8, "uint", default=0)
     """Counter for XYZ Lof from GPS: bits 24 to 31, raw 0 to 255.
 
-    Erratum ACP-087 (certain): GPS counter: Lof is Log.
+    Erratum ACP-087 (certain): GPS counter: Lof is Log. A letter is wrong in name and
+    description. The identifier is held without the slip.
     """
 
     counter_for_range_log_from_gps: int = _base.field("Counter for RANGE log from GPS", 32, 8, "uint", default=0)
@@ -56,13 +58,17 @@ class RawGpsMeasurements(_base.Message):
 
     Explained on page 656 of the OEMV615 reference manual.
 
-    Note ACP-088 (open): GPS response: explained in another manual.
+    Note ACP-088 (open): GPS response: explained in another manual. The meaning is on
+    page 656 of a reference manual of the receiver, which is not among the documents
+    named at the front. Other receivers have other manuals.
     """
 
     gps_reference_week: int = _base.field("GPS Reference Week", 48, 16, "uint", default=0)
     """GPS Reference Week: bits 48 to 63, raw 0 to 65535.
 
-    Note ACP-089 (open): GPS week: with or without roll-overs.
+    Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the
+    full week, ten of which a receiver sends. A number of roll-overs is a setting, so it
+    is open which of the two this is.
     """
 
     gps_time_milliseconds: int = _base.field("GPS Time Milliseconds", 64, 32, "uint", default=0, unit="ms")
@@ -71,37 +77,41 @@ class RawGpsMeasurements(_base.Message):
     ecef_position_x: int = _base.field("ECEF Position X", 96, 32, "int", default=0, unit="m")
     """ECEF Position X: bits 96 to 127, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z
+    have 16 bits in the state frames and 32 bits in the GPS frames and the simulated
+    data, with the same name, description and unit.
     """
 
     ecef_velocity_x: int = _base.field("ECEF Velocity X", 128, 16, "int", default=0, unit="m/s")
     """ECEF Velocity X: bits 128 to 143, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity
+    from the receiver has a step of 1 m/s, that of the propagator 0.25 m/s. A factor may
+    have been lost; none is made up.
     """
 
     ecef_position_y: int = _base.field("ECEF Position Y", 144, 32, "int", default=0, unit="m")
     """ECEF Position Y: bits 144 to 175, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
 
     ecef_velocity_y: int = _base.field("ECEF Velocity Y", 176, 16, "int", default=0, unit="m/s")
     """ECEF Velocity Y: bits 176 to 191, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): see ECEF Velocity X.
     """
 
     ecef_position_z: int = _base.field("ECEF Position Z", 192, 32, "int", default=0, unit="m")
     """ECEF Position Z: bits 192 to 223, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
 
     ecef_velocity_z: int = _base.field("ECEF Velocity Z", 224, 16, "int", default=0, unit="m/s")
     """ECEF Velocity Z: bits 224 to 239, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): see ECEF Velocity X.
     """
 
     x_pos_standard_deviation: int = _base.field("X-pos Standard Deviation", 240, 8, "uint", default=0, unit="m")
@@ -110,6 +120,8 @@ class RawGpsMeasurements(_base.Message):
     """
     x_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
     """X-pos Standard Deviation in m: 0 to 25.5."""
+    x_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """X-pos Standard Deviation in mm, exact: 0 to 25500."""
 
     y_pos_standard_deviation: int = _base.field("Y-pos Standard Deviation", 248, 8, "uint", default=0, unit="m")
     """Y-pos Standard Deviation: bits 248 to 255, raw 0 to 255; physical `raw*0.1`, 0 to
@@ -117,6 +129,8 @@ class RawGpsMeasurements(_base.Message):
     """
     y_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
     """Y-pos Standard Deviation in m: 0 to 25.5."""
+    y_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """Y-pos Standard Deviation in mm, exact: 0 to 25500."""
 
     z_pos_standard_deviation: int = _base.field("Z-pos Standard Deviation", 256, 8, "uint", default=0, unit="m")
     """Z-pos Standard Deviation: bits 256 to 263, raw 0 to 255; physical `raw*0.1`, 0 to
@@ -124,21 +138,26 @@ class RawGpsMeasurements(_base.Message):
     """
     z_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
     """Z-pos Standard Deviation in m: 0 to 25.5."""
+    z_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """Z-pos Standard Deviation in mm, exact: 0 to 25500."""
 
     x_vel_standard_deviation: int = _base.field("X-vel Standard Deviation", 264, 8, "uint", default=0, unit="m/s")
     """X-vel Standard Deviation: bits 264 to 271, raw 0 to 255, in m/s.
 
     Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    Deviations of the position have a factor of 0.1, those of the velocity none. A whole
+    1 m/s is coarse for a GPS velocity, and the limit that is compared with it is set in
+    hundredths.
     """
 
     y_vel_standard_deviation: int = _base.field("Y-vel Standard Deviation", 272, 8, "uint", default=0, unit="m/s")
     """Y-vel Standard Deviation: bits 272 to 279, raw 0 to 255, in m/s.
 
-    Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043 (open): see X-vel Standard Deviation.
     """
 
     z_vel_standard_deviation: int = _base.field("Z-vel Standard Deviation", 280, 8, "uint", default=0, unit="m/s")
     """Z-vel Standard Deviation: bits 280 to 287, raw 0 to 255, in m/s.
 
-    Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043 (open): see X-vel Standard Deviation.
     """

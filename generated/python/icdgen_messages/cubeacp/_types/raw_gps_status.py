@@ -28,7 +28,8 @@ class RawGpsStatus(_base.Message):
     )
     """Gps Solution Status: bits 0 to 7.
 
-    Note ACP-042 (certain): GPS is spelt Gps in one field.
+    Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands
+    among fields with GPS, and the sun sensors are Css in the same telecommand.
     """
 
     number_of_tracked_gps_satellites: int = _base.field("Number of tracked GPS satellites", 8, 8, "uint", default=0)
@@ -42,7 +43,8 @@ class RawGpsStatus(_base.Message):
     counter_for_xyz_log_from_gps: int = _base.field("Counter for XYZ Lof from GPS", 24, 8, "uint", default=0)
     """Counter for XYZ Lof from GPS: bits 24 to 31, raw 0 to 255.
 
-    Erratum ACP-087 (certain): GPS counter: Lof is Log.
+    Erratum ACP-087 (certain): GPS counter: Lof is Log. A letter is wrong in name and
+    description. The identifier is held without the slip.
     """
 
     counter_for_range_log_from_gps: int = _base.field("Counter for RANGE log from GPS", 32, 8, "uint", default=0)
@@ -55,5 +57,7 @@ class RawGpsStatus(_base.Message):
 
     Explained on page 656 of the OEMV615 reference manual.
 
-    Note ACP-088 (open): GPS response: explained in another manual.
+    Note ACP-088 (open): GPS response: explained in another manual. The meaning is on
+    page 656 of a reference manual of the receiver, which is not among the documents
+    named at the front. Other receivers have other manuals.
     """

@@ -25,7 +25,9 @@ class RawGpsTime(_base.Message):
     gps_reference_week: int = _base.field("GPS Reference Week", 0, 16, "uint", default=0)
     """GPS Reference Week: bits 0 to 15, raw 0 to 65535.
 
-    Note ACP-089 (open): GPS week: with or without roll-overs.
+    Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the
+    full week, ten of which a receiver sends. A number of roll-overs is a setting, so it
+    is open which of the two this is.
     """
 
     gps_time_milliseconds: int = _base.field("GPS Time Milliseconds", 16, 32, "uint", default=0, unit="ms")

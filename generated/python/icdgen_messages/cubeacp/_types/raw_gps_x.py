@@ -27,13 +27,17 @@ class RawGpsX(_base.Message):
     ecef_position_x: int = _base.field("ECEF Position X", 0, 32, "int", default=0, unit="m")
     """ECEF Position X: bits 0 to 31, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
+    Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name. The three
+    frames are described as ECI referenced, their fields are ECEF position and velocity.
+    ECEF is what a receiver delivers.
     """
 
     ecef_velocity_x: int = _base.field("ECEF Velocity X", 32, 16, "int", default=0, unit="m/s")
     """ECEF Velocity X: bits 32 to 47, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity
+    from the receiver has a step of 1 m/s, that of the propagator 0.25 m/s. A factor may
+    have been lost; none is made up.
 
-    Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
+    Note ACP-090 (likely): see ECEF Position X.
     """

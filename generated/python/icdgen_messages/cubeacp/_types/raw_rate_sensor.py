@@ -28,7 +28,7 @@ class RawRateSensor(_base.Message):
     Sampled A/D value.
 
     Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    scale. Neither resolution nor unit of the sampled values is given.
     """
 
     rate_y: int = _base.field("RateY", 16, 16, "int", default=0)
@@ -36,8 +36,7 @@ class RawRateSensor(_base.Message):
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see RateX.
     """
 
     rate_z: int = _base.field("RateZ", 32, 16, "int", default=0)
@@ -45,6 +44,5 @@ class RawRateSensor(_base.Message):
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see RateX.
     """

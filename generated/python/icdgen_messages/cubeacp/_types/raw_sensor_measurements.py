@@ -17,7 +17,9 @@ class RawSensorMeasurements(_base.Message):
     Raw CSS 1 to 6 from byte 12. Repeats Raw CSS 7 to 10 from byte 18. Repeats Raw
     Magnetometer from byte 22. Repeats Raw Rate Sensor from byte 28.
 
-    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The
+    telecommand begins with Cam1. Frame 194 and the ids 166 and 167 have Cam2 before
+    Cam1.
     """
 
     NODE = "cubeacp"
@@ -33,7 +35,9 @@ class RawSensorMeasurements(_base.Message):
 
     Azimuth angle.
 
-    Note ACP-078 (open): Camera results: centroid or angle.
+    Note ACP-078 (open): Camera results: centroid or angle. The names say centroid X and
+    Y, the descriptions azimuth and elevation angle. Neither pixel nor degree nor a
+    factor is given.
     """
 
     cam2_centroid_y: int = _base.field("Cam2 centroid Y", 16, 16, "int", default=0)
@@ -41,7 +45,7 @@ class RawSensorMeasurements(_base.Message):
 
     Elevation angle.
 
-    Note ACP-078 (open): Camera results: centroid or angle.
+    Note ACP-078 (open): see Cam2 centroid X.
     """
 
     cam2_capture_status: CaptureResult = _base.field(
@@ -59,7 +63,7 @@ class RawSensorMeasurements(_base.Message):
 
     Azimuth angle.
 
-    Note ACP-078 (open): Camera results: centroid or angle.
+    Note ACP-078 (open): see Cam2 centroid X.
     """
 
     cam1_centroid_y: int = _base.field("Cam1 centroid Y", 64, 16, "int", default=0)
@@ -67,7 +71,7 @@ class RawSensorMeasurements(_base.Message):
 
     Elevation angle.
 
-    Note ACP-078 (open): Camera results: centroid or angle.
+    Note ACP-078 (open): see Cam2 centroid X.
     """
 
     cam1_capture_status: CaptureResult = _base.field(
@@ -146,10 +150,12 @@ class RawSensorMeasurements(_base.Message):
     Sampled A/D value.
 
     Erratum ACP-105 (certain): Raw Sensor Measurements repeats four of six bytes of one
-    part.
+    part. Frame 194 holds the frame of the sensors 7 to 10 without its last two bytes:
+    the magnetometer begins where they would stand. The whole has 34 bytes, its parts
+    have 36.
 
     Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    scale. Neither resolution nor unit of the sampled values is given.
     """
 
     mag_y: int = _base.field("MagY", 192, 16, "int", default=0)
@@ -157,8 +163,7 @@ class RawSensorMeasurements(_base.Message):
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """
 
     mag_z: int = _base.field("MagZ", 208, 16, "int", default=0)
@@ -166,8 +171,7 @@ class RawSensorMeasurements(_base.Message):
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """
 
     rate_x: int = _base.field("RateX", 224, 16, "int", default=0)
@@ -175,8 +179,7 @@ class RawSensorMeasurements(_base.Message):
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """
 
     rate_y: int = _base.field("RateY", 240, 16, "int", default=0)
@@ -184,8 +187,7 @@ class RawSensorMeasurements(_base.Message):
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """
 
     rate_z: int = _base.field("RateZ", 256, 16, "int", default=0)
@@ -193,6 +195,5 @@ class RawSensorMeasurements(_base.Message):
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """

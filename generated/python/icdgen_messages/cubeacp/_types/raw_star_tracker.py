@@ -31,14 +31,14 @@ class RawStarTracker(_base.Message):
     """Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
 
     Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    pixel value. What is counted stands in place of a unit; noise repeats the name. They
+    are kept as units of counts.
     """
 
     star_image_noise: int = _base.field("Star image noise", 8, 8, "uint", default=0, unit="noise")
     """Star image noise: bits 8 to 15, raw 0 to 255, in noise.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
 
     invalid_stars: int = _base.field("Invalid Stars", 16, 8, "uint", default=0, unit="Invalid stars")
@@ -46,15 +46,13 @@ class RawStarTracker(_base.Message):
 
     How many of the detected stars are invalid.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
 
     number_of_stars_identified: int = _base.field("Number of stars identified", 24, 8, "uint", default=0, unit="stars")
     """Number of stars identified: bits 24 to 31, raw 0 to 255, in stars.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
 
     identification_mode: StarIdModeVal = _base.field(
@@ -67,8 +65,7 @@ class RawStarTracker(_base.Message):
 
     Mean of the centre line of the image.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
 
     image_capture_success: bool = _base.field("Image Capture Success", 48, 1, "bool", default=False)
@@ -83,7 +80,8 @@ class RawStarTracker(_base.Message):
     attitude_success: bool = _base.field("AttitudeSuccess", 51, 1, "bool", default=False)
     """AttitudeSuccess: bit 51.
 
-    Note ACP-115 (certain): AttitudeSuccess is written in one piece.
+    Note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags
+    before it have blanks, as its description has.
     """
 
     processing_time_error: bool = _base.field("Processing Time Error", 52, 1, "bool", default=False)
@@ -101,25 +99,27 @@ class RawStarTracker(_base.Message):
     sample_period: int = _base.field("Sample Period", 56, 16, "uint", default=0)
     """Sample Period: bits 56 to 71, raw 0 to 65535.
 
-    Note ACP-113 (open): Sample period of the star tracker has no unit.
+    Note ACP-113 (open): Sample period of the star tracker has no unit. Other times of
+    the star tracker are in ms.
     """
 
     star_1_confidence: int = _base.field("Star 1 confidence", 72, 8, "uint", default=0, unit="%")
     """Star 1 confidence: bits 72 to 79, raw 0 to 255, in %.
 
-    Erratum ACP-114 (certain): percentage is %.
+    Erratum ACP-114 (certain): percentage is %. The unit is spelt out in two frames and
+    a sign elsewhere.
     """
 
     star_2_confidence: int = _base.field("Star 2 confidence", 80, 8, "uint", default=0, unit="%")
     """Star 2 confidence: bits 80 to 87, raw 0 to 255, in %.
 
-    Erratum ACP-114 (certain): percentage is %.
+    Erratum ACP-114 (certain): see Star 1 confidence.
     """
 
     star_3_confidence: int = _base.field("Star 3 confidence", 88, 8, "uint", default=0, unit="%")
     """Star 3 confidence: bits 88 to 95, raw 0 to 255, in %.
 
-    Erratum ACP-114 (certain): percentage is %.
+    Erratum ACP-114 (certain): see Star 1 confidence.
     """
 
     magnitude_star_1: int = _base.field("Magnitude Star 1", 96, 16, "uint", default=0)
@@ -127,7 +127,8 @@ class RawStarTracker(_base.Message):
 
     Instrument magnitude.
 
-    Note ACP-092 (open): Star magnitudes have no scale.
+    Note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16
+    bits without a factor can be neither fractional nor negative.
     """
 
     magnitude_star_2: int = _base.field("Magnitude Star 2", 112, 16, "uint", default=0)
@@ -135,7 +136,7 @@ class RawStarTracker(_base.Message):
 
     Instrument magnitude.
 
-    Note ACP-092 (open): Star magnitudes have no scale.
+    Note ACP-092 (open): see Magnitude Star 1.
     """
 
     magnitude_star_3: int = _base.field("Magnitude Star 3", 128, 16, "uint", default=0)
@@ -143,7 +144,7 @@ class RawStarTracker(_base.Message):
 
     Instrument magnitude.
 
-    Note ACP-092 (open): Star magnitudes have no scale.
+    Note ACP-092 (open): see Magnitude Star 1.
     """
 
     catalogue_star_1: int = _base.field("Catalogue Star 1", 144, 16, "uint", default=0)
@@ -197,10 +198,13 @@ class RawStarTracker(_base.Message):
 
     Estimated by CubeStar, about its own X axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given
+    without a unit. The other rates are in deg/s; rad/s would fit the range as well.
     """
     x_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """x-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    x_axis_rate_micro: int = _base.whole(100, 0)
+    """x-Axis rate in millionths, exact: -3276800 to 3276700."""
 
     y_axis_rate: int = _base.field("y-Axis rate", 352, 16, "int", default=0)
     """y-Axis rate: bits 352 to 367, raw -32768 to 32767; physical `raw/10000.0`,
@@ -208,10 +212,12 @@ class RawStarTracker(_base.Message):
 
     Estimated by CubeStar, about its own Y axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): see x-Axis rate.
     """
     y_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """y-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    y_axis_rate_micro: int = _base.whole(100, 0)
+    """y-Axis rate in millionths, exact: -3276800 to 3276700."""
 
     z_axis_rate: int = _base.field("z-Axis rate", 368, 16, "int", default=0)
     """z-Axis rate: bits 368 to 383, raw -32768 to 32767; physical `raw/10000.0`,
@@ -219,10 +225,12 @@ class RawStarTracker(_base.Message):
 
     Estimated by CubeStar, about its own Z axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): see x-Axis rate.
     """
     z_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """z-Axis rate, as a physical value: -3.2768 to 3.2767."""
+    z_axis_rate_micro: int = _base.whole(100, 0)
+    """z-Axis rate in millionths, exact: -3276800 to 3276700."""
 
     q0: int = _base.field("Q0", 384, 16, "int", default=0)
     """Q0: bits 384 to 399, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -230,10 +238,14 @@ class RawStarTracker(_base.Message):
 
     Of the attitude estimated by CubeStar, described as Q1.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names
+    and descriptions count differently. Q1 to Q3 agree with the other quaternions; if Q0
+    were the scalar, the third vector component would be missing.
     """
     q0_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q0, as a physical value: -3.2768 to 3.2767."""
+    q0_micro: int = _base.whole(100, 0)
+    """Q0 in millionths, exact: -3276800 to 3276700."""
 
     q1: int = _base.field("Q1", 400, 16, "int", default=0)
     """Q1: bits 400 to 415, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -241,10 +253,12 @@ class RawStarTracker(_base.Message):
 
     Of the attitude estimated by CubeStar, described as Q2.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): see Q0.
     """
     q1_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q1, as a physical value: -3.2768 to 3.2767."""
+    q1_micro: int = _base.whole(100, 0)
+    """Q1 in millionths, exact: -3276800 to 3276700."""
 
     q2: int = _base.field("Q2", 416, 16, "int", default=0)
     """Q2: bits 416 to 431, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -252,7 +266,9 @@ class RawStarTracker(_base.Message):
 
     Of the attitude estimated by CubeStar, described as Q3.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): see Q0.
     """
     q2_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q2, as a physical value: -3.2768 to 3.2767."""
+    q2_micro: int = _base.whole(100, 0)
+    """Q2 in millionths, exact: -3276800 to 3276700."""

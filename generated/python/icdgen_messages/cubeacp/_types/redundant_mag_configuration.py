@@ -12,7 +12,8 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Configuration: configuration, set by telecommand 36, got
     by telemetry 205, 30 bytes. Table 191.
 
-    Note ACP-051 (certain): Magnetometers have four names for two.
+    Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and
+    none stand for one; redundant, secondary and 2nd for the other.
     """
 
     NODE = "cubeacp"
@@ -30,10 +31,15 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Mounting Transform Alpha Angle: bits 0 to 15, raw -32768
     to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need
+    a sequence of axes and a direction. None is given.
     """
     mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
+    """
+    mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg,
+    exact: -327680 to 327670.
     """
 
     mounting_beta: int = _base.field(
@@ -42,10 +48,14 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Mounting Transform Beta Angle: bits 16 to 31, raw -32768
     to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Redundant Magnetometer Mounting Transform Alpha Angle.
     """
     mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
+    """
+    mounting_beta_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg,
+    exact: -327680 to 327670.
     """
 
     mounting_gamma: int = _base.field(
@@ -54,40 +64,55 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, raw -32768
     to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Redundant Magnetometer Mounting Transform Alpha Angle.
     """
     mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
+    """
+    mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg,
+    exact: -327680 to 327670.
     """
 
     channel_1_offset: int = _base.field("Redundant Magnetometer Channel 1 Offset", 48, 16, "int", default=0)
     """Redundant Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-155 (open): Magnetometer offsets have no unit.
+    Note ACP-155 (open): Magnetometer offsets have no unit. Channel offsets have a
+    factor and no unit. The field itself is in uT; the sensitivity that would convert
+    has no unit either.
     """
     channel_1_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767.
+    """
+    channel_1_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767.
     """
 
     channel_2_offset: int = _base.field("Redundant Magnetometer Channel 2 Offset", 64, 16, "int", default=0)
     """Redundant Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-155 (open): Magnetometer offsets have no unit.
+    Note ACP-155 (open): see Redundant Magnetometer Channel 1 Offset.
     """
     channel_2_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767.
+    """
+    channel_2_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767.
     """
 
     channel_3_offset: int = _base.field("Redundant Magnetometer Channel 3 Offset", 80, 16, "int", default=0)
     """Redundant Magnetometer Channel 3 Offset: bits 80 to 95, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-155 (open): Magnetometer offsets have no unit.
+    Note ACP-155 (open): see Redundant Magnetometer Channel 1 Offset.
     """
     channel_3_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767.
+    """
+    channel_3_offset_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767.
     """
 
     sensitivity_s11: int = _base.field("Redundant Magnetometer Sensitivity Matrix S11", 96, 16, "int", default=0)
@@ -98,6 +123,10 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to
     32.767.
     """
+    sensitivity_s11_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to
+    32767.
+    """
 
     sensitivity_s22: int = _base.field("Redundant Magnetometer Sensitivity Matrix S22", 112, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S22: bits 112 to 127, raw -32768 to
@@ -106,6 +135,10 @@ class RedundantMagConfiguration(_base.Message):
     sensitivity_s22_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to
     32.767.
+    """
+    sensitivity_s22_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to
+    32767.
     """
 
     sensitivity_s33: int = _base.field("Redundant Magnetometer Sensitivity Matrix S33", 128, 16, "int", default=0)
@@ -116,6 +149,10 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to
     32.767.
     """
+    sensitivity_s33_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to
+    32767.
+    """
 
     sensitivity_s12: int = _base.field("Redundant Magnetometer Sensitivity Matrix S12", 144, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S12: bits 144 to 159, raw -32768 to
@@ -124,6 +161,10 @@ class RedundantMagConfiguration(_base.Message):
     sensitivity_s12_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to
     32.767.
+    """
+    sensitivity_s12_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to
+    32767.
     """
 
     sensitivity_s13: int = _base.field("Redundant Magnetometer Sensitivity Matrix S13", 160, 16, "int", default=0)
@@ -134,6 +175,10 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to
     32.767.
     """
+    sensitivity_s13_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to
+    32767.
+    """
 
     sensitivity_s21: int = _base.field("Redundant Magnetometer Sensitivity Matrix S21", 176, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S21: bits 176 to 191, raw -32768 to
@@ -142,6 +187,10 @@ class RedundantMagConfiguration(_base.Message):
     sensitivity_s21_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to
     32.767.
+    """
+    sensitivity_s21_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to
+    32767.
     """
 
     sensitivity_s23: int = _base.field("Redundant Magnetometer Sensitivity Matrix S23", 192, 16, "int", default=0)
@@ -152,6 +201,10 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to
     32.767.
     """
+    sensitivity_s23_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to
+    32767.
+    """
 
     sensitivity_s31: int = _base.field("Redundant Magnetometer Sensitivity Matrix S31", 208, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S31: bits 208 to 223, raw -32768 to
@@ -161,6 +214,10 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to
     32.767.
     """
+    sensitivity_s31_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to
+    32767.
+    """
 
     sensitivity_s32: int = _base.field("Redundant Magnetometer Sensitivity Matrix S32", 224, 16, "int", default=0)
     """Redundant Magnetometer Sensitivity Matrix S32: bits 224 to 239, raw -32768 to
@@ -169,4 +226,8 @@ class RedundantMagConfiguration(_base.Message):
     sensitivity_s32_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to
     32.767.
+    """
+    sensitivity_s32_milli: int = _base.whole(1, 0)
+    """Redundant Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to
+    32767.
     """

@@ -28,6 +28,8 @@ class SatellitePositionEci(_base.Message):
     """
     x_position_km: float = _base.scaled(1, 0, 4, default=0.0)
     """X position in km: -8192 to 8191.75."""
+    x_position_m: int = _base.whole(250, 0)
+    """X position in m, exact: -8192000 to 8191750."""
 
     y_position: int = _base.field("Y position", 16, 16, "int", default=0, unit="km")
     """Y position: bits 16 to 31, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -35,6 +37,8 @@ class SatellitePositionEci(_base.Message):
     """
     y_position_km: float = _base.scaled(1, 0, 4, default=0.0)
     """Y position in km: -8192 to 8191.75."""
+    y_position_m: int = _base.whole(250, 0)
+    """Y position in m, exact: -8192000 to 8191750."""
 
     z_position: int = _base.field("Z position", 32, 16, "int", default=0, unit="km")
     """Z position: bits 32 to 47, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -42,3 +46,5 @@ class SatellitePositionEci(_base.Message):
     """
     z_position_km: float = _base.scaled(1, 0, 4, default=0.0)
     """Z position in km: -8192 to 8191.75."""
+    z_position_m: int = _base.whole(250, 0)
+    """Z position in m, exact: -8192000 to 8191750."""

@@ -30,20 +30,30 @@ class SatellitePositionLlh(_base.Message):
     """
     latitude_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Latitude in deg: -327.68 to 327.67."""
+    latitude_mdeg: int = _base.whole(10, 0)
+    """Latitude in thousandths of deg, exact: -327680 to 327670."""
 
     longitude: int = _base.field("Longitude", 16, 16, "int", default=0, unit="deg")
     """Longitude: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     327.67 deg.
 
-    Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
+    Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The
+    datum is missing in one of three rows; the frame is called LLH by name and WGS-84
+    frame by description.
     """
     longitude_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Longitude in deg: -327.68 to 327.67."""
+    longitude_mdeg: int = _base.whole(10, 0)
+    """Longitude in thousandths of deg, exact: -327680 to 327670."""
 
     altitude: int = _base.field("Altitude", 32, 16, "uint", default=0, unit="km")
     """Altitude: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
 
-    Note ACP-067 (open): Position and altitude do not reach equally far.
+    Note ACP-067 (open): Position and altitude do not reach equally far. The inertial
+    position fits orbits up to 1800 km, the altitude of 16 bits ends at 655.35 km. Above
+    that it wraps or sticks; which is not said.
     """
     altitude_km: float = _base.scaled(1, 0, 100, default=0.0)
     """Altitude in km: 0 to 655.35."""
+    altitude_m: int = _base.whole(10, 0)
+    """Altitude in m, exact: 0 to 655350."""

@@ -28,6 +28,8 @@ class SatelliteVelocityEci(_base.Message):
     """
     x_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
     """X Velocity in m/s: -8192 to 8191.75."""
+    x_velocity_mm_per_s: int = _base.whole(250, 0)
+    """X Velocity in mm/s, exact: -8192000 to 8191750."""
 
     y_velocity: int = _base.field("Y Velocity", 16, 16, "int", default=0, unit="m/s")
     """Y Velocity: bits 16 to 31, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -35,6 +37,8 @@ class SatelliteVelocityEci(_base.Message):
     """
     y_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
     """Y Velocity in m/s: -8192 to 8191.75."""
+    y_velocity_mm_per_s: int = _base.whole(250, 0)
+    """Y Velocity in mm/s, exact: -8192000 to 8191750."""
 
     z_velocity: int = _base.field("Z Velocity", 32, 16, "int", default=0, unit="m/s")
     """Z Velocity: bits 32 to 47, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -42,3 +46,5 @@ class SatelliteVelocityEci(_base.Message):
     """
     z_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
     """Z Velocity in m/s: -8192 to 8191.75."""
+    z_velocity_mm_per_s: int = _base.whole(250, 0)
+    """Z Velocity in mm/s, exact: -8192000 to 8191750."""

@@ -15,7 +15,8 @@ class SaveImage(_base.Message):
 
     Takes a picture with a CubeSense or the CubeStar camera and saves it to the SD card.
 
-    Note ACP-055 (certain): Save Image saves before it captures.
+    Note ACP-055 (certain): Save Image saves before it captures. The description has the
+    steps in the wrong order.
     """
 
     NODE = "cubeacp"

@@ -13,7 +13,10 @@ class SaveOrbitParameters(_base.Message):
 
     Keeps the current orbit parameters in flash.
 
-    Note ACP-054 (open): Two saves for three stored sets.
+    Note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS
+    configuration, the orbit parameters and the system configuration. Telecommands save
+    the current configuration and the orbit parameters; which the first covers is not
+    said.
     """
 
     NODE = "cubeacp"

@@ -15,9 +15,12 @@ class SdLog2Configuration(_base.Message):
 
     Which frames go into log 2, how often, and to which card.
 
-    Note ACP-185 (certain): Log1 is LOG1 in its description.
+    Note ACP-185 (certain): Log1 is LOG1 in its description. Names have Log1 and Log2,
+    descriptions LOG1 and LOG2.
 
-    Note ACP-186 (open): A log that is reconfigured while it runs.
+    Note ACP-186 (open): A log that is reconfigured while it runs. The mask in the file
+    header is that of the start. Whether a new selection starts a new file, and which
+    counter it gets, is not said.
     """
 
     NODE = "cubeacp"
@@ -35,6 +38,8 @@ class SdLog2Configuration(_base.Message):
     Mask of up to 80 telemetry frames.
 
     Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
+    Seventeen bits of the mask have no frame: 2, 5, 6 and 66 to 79. What a log with one
+    of them set holds is not said.
     """
 
     log_period: int = _base.field(
@@ -51,7 +56,9 @@ class SdLog2Configuration(_base.Message):
 
     0: logging disabled.
 
-    Note ACP-183 (open): Log period has no unit.
+    Note ACP-183 (open): Log period has no unit. Zero switches logging off; seconds or
+    iterations of the loop are both possible, and equal only while the loop runs at 1
+    Hz.
     """
 
     log_destination: SdLogSelect = _base.field("Log Destination", 96, 8, "enum", default=SdLogSelect.PRIMARY_SD_CARD)

@@ -13,4 +13,6 @@ class SdLogSelect(_enumeration.OpenEnum):
     PRIMARY_SD_CARD = 0, "Primary SD Card"
     """On board."""
     SECONDARY_SD_CARD = 1, "Secondary SD Card"
-    """Note ACP-187 (open): A secondary SD card."""
+    """Note ACP-187 (open): A secondary SD card. Logs can go to a second card. Download,
+    erase, format and the error flags know one card and do not say which.
+    """

@@ -13,9 +13,12 @@ class SecondaryMagnetometerRawMeasurements(_base.Message):
 
     Bit 58 of the log mask.
 
-    Note ACP-051 (certain): Magnetometers have four names for two.
+    Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and
+    none stand for one; redundant, secondary and 2nd for the other.
 
-    Note ACP-118 (likely): Secondary magnetometer: fixed or selected.
+    Note ACP-118 (likely): Secondary magnetometer: fixed or selected. The frame is named
+    for the secondary magnetometer, with the field names of the primary one. A setting
+    selects which magnetometer, sampled how, it shows.
     """
 
     NODE = "cubeacp"
@@ -32,7 +35,7 @@ class SecondaryMagnetometerRawMeasurements(_base.Message):
     Sampled A/D value.
 
     Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    scale. Neither resolution nor unit of the sampled values is given.
     """
 
     mag_y: int = _base.field("MagY", 16, 16, "int", default=0)
@@ -40,8 +43,7 @@ class SecondaryMagnetometerRawMeasurements(_base.Message):
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """
 
     mag_z: int = _base.field("MagZ", 32, 16, "int", default=0)
@@ -49,6 +51,5 @@ class SecondaryMagnetometerRawMeasurements(_base.Message):
 
     Sampled A/D value.
 
-    Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a
-    scale.
+    Note ACP-082 (open): see MagX.
     """

@@ -14,7 +14,9 @@ class SetDetumblingControlParameters(_base.Message):
 
     Gains and references of the detumbling mode.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
 
     NODE = "cubeacp"
@@ -31,7 +33,8 @@ class SetDetumblingControlParameters(_base.Message):
 
     Ks.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): Gains have no units. Controller gains are floats without units,
+    and the control laws are in another document.
     """
 
     detumbling_damping_gain: float = _base.field("Detumbling Damping Gain", 32, 32, "float", default=0.0)
@@ -39,7 +42,7 @@ class SetDetumblingControlParameters(_base.Message):
 
     Kd.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Detumbling Spin Gain.
     """
 
     spin_rate: int = _base.field("Reference spin rate", 64, 16, "int", default=0, unit="deg/s", below=0)
@@ -50,15 +53,19 @@ class SetDetumblingControlParameters(_base.Message):
 
     Must be below 0 deg/s.
 
-    Note ACP-162 (certain): Limits of a sign in words only.
+    Note ACP-162 (certain): Limits of a sign in words only. Two references must always
+    be smaller than 0; the types allow the opposite, and what the program does with it
+    is not said.
     """
     spin_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s."""
+    spin_rate_mdeg_per_s: int = _base.whole(1, 0)
+    """Reference spin rate in thousandths of deg/s, exact: -32768 to 32767."""
 
     fast_bdot_detumbling_gain: float = _base.field("Fast BDot Detumbling Gain", 80, 32, "float", default=0.0)
     """Fast BDot Detumbling Gain: bits 80 to 111, 32-bit float.
 
     Kdf.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Detumbling Spin Gain.
     """

@@ -13,7 +13,9 @@ class SetMagnetorquerConfiguration(_base.Message):
     """Set Magnetorquer Configuration: configuration, set by telecommand 21, got by
     telemetry 136, 3 bytes. Table 179.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
 
     NODE = "cubeacp"
@@ -30,7 +32,9 @@ class SetMagnetorquerConfiguration(_base.Message):
     )
     """Magnetorquer 1 Configuration: bits 0 to 7.
 
-    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output. Each
+    axis is said to need a torquer output 1, 2 or 3. The configuration works the other
+    way round and gives an axis to each torquer, or Not Used.
     """
 
     magnetorquer_2_configuration: AxisSelect = _base.field(
@@ -38,7 +42,7 @@ class SetMagnetorquerConfiguration(_base.Message):
     )
     """Magnetorquer 2 Configuration: bits 8 to 15.
 
-    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    Note ACP-103 (open): see Magnetorquer 1 Configuration.
     """
 
     magnetorquer_3_configuration: AxisSelect = _base.field(
@@ -46,5 +50,5 @@ class SetMagnetorquerConfiguration(_base.Message):
     )
     """Magnetorquer 3 Configuration: bits 16 to 23.
 
-    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    Note ACP-103 (open): see Magnetorquer 1 Configuration.
     """

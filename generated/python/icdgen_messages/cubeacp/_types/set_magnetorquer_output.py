@@ -13,7 +13,9 @@ class SetMagnetorquerOutput(_base.Message):
 
     Only valid while the control mode is None.
 
-    Note ACP-023 (certain): Control mode None does not exist.
+    Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid,
+    and the mode falls back, when the control mode is None. The member with value 0 is
+    called No control.
     """
 
     NODE = "cubeacp"
@@ -28,31 +30,41 @@ class SetMagnetorquerOutput(_base.Message):
     """Commanded X Magnetorquer duty cycle: bits 0 to 15, raw -32768 to 32767; physical
     `raw = value*1000.0`, -32.768 to 32.767.
 
-    Note ACP-030 (certain): Formulas are written in two directions.
+    Note ACP-030 (certain): Formulas are written in two directions. Two telecommands
+    give the raw value as a multiple of the physical one, everything else the physical
+    value from the raw one. Both are held as printed.
 
-    Note ACP-031 (likely): Duty cycle: unit and range are not given.
+    Note ACP-031 (likely): Duty cycle: unit and range are not given. The factor of 1000
+    suggests a fraction of one, so that raw values run from -1000 to 1000. The type
+    allows 32 times that.
     """
     x_duty_cycle_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Commanded X Magnetorquer duty cycle, as a physical value: -32.768 to 32.767."""
+    x_duty_cycle_milli: int = _base.whole(1, 0)
+    """Commanded X Magnetorquer duty cycle in thousandths, exact: -32768 to 32767."""
 
     y_duty_cycle: int = _base.field("Commanded Y Magnetorquer duty cycle", 16, 16, "int", default=0)
     """Commanded Y Magnetorquer duty cycle: bits 16 to 31, raw -32768 to 32767; physical
     `raw = value*1000.0`, -32.768 to 32.767.
 
-    Note ACP-030 (certain): Formulas are written in two directions.
+    Note ACP-030 (certain): see Commanded X Magnetorquer duty cycle.
 
-    Note ACP-031 (likely): Duty cycle: unit and range are not given.
+    Note ACP-031 (likely): see Commanded X Magnetorquer duty cycle.
     """
     y_duty_cycle_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Commanded Y Magnetorquer duty cycle, as a physical value: -32.768 to 32.767."""
+    y_duty_cycle_milli: int = _base.whole(1, 0)
+    """Commanded Y Magnetorquer duty cycle in thousandths, exact: -32768 to 32767."""
 
     z_duty_cycle: int = _base.field("Commanded Z Magnetorquer duty cycle", 32, 16, "int", default=0)
     """Commanded Z Magnetorquer duty cycle: bits 32 to 47, raw -32768 to 32767; physical
     `raw = value*1000.0`, -32.768 to 32.767.
 
-    Note ACP-030 (certain): Formulas are written in two directions.
+    Note ACP-030 (certain): see Commanded X Magnetorquer duty cycle.
 
-    Note ACP-031 (likely): Duty cycle: unit and range are not given.
+    Note ACP-031 (likely): see Commanded X Magnetorquer duty cycle.
     """
     z_duty_cycle_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Commanded Z Magnetorquer duty cycle, as a physical value: -32.768 to 32.767."""
+    z_duty_cycle_milli: int = _base.whole(1, 0)
+    """Commanded Z Magnetorquer duty cycle in thousandths, exact: -32768 to 32767."""

@@ -30,5 +30,7 @@ class SetModeOfMagnetometerOperation(_base.Message):
 
     The magnetometer that estimation and control use.
 
-    Note ACP-049 (open): Magnetometer mode can be set in two places.
+    Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a
+    configuration message set the same mode. Which wins after a restart, and whether the
+    telecommand changes what the configuration returns, is not said.
     """

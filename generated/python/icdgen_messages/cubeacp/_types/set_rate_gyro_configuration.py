@@ -13,9 +13,12 @@ class SetRateGyroConfiguration(_base.Message):
     """Set Rate Gyro Configuration: configuration, set by telecommand 23, got by
     telemetry 138, 10 bytes. Table 182.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
 
-    Note ACP-131 (certain): Gyro, rate sensor and MEMS.
+    Note ACP-131 (certain): Gyro, rate sensor and MEMS. One sensor has three names, two
+    of them in one message.
     """
 
     NODE = "cubeacp"
@@ -40,33 +43,42 @@ class SetRateGyroConfiguration(_base.Message):
     """X-Rate Sensor Offset: bits 24 to 39, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
 
-    Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    Note ACP-132 (open): Rate sensor offset and estimated gyro bias. Whether the offset
+    is added or subtracted, and hence whether the estimated bias can be copied into it,
+    is not said. Both have the same factor.
     """
     x_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """X-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    x_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """X-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
 
     y_rate_sensor_offset: int = _base.field("Y-Rate Sensor Offset", 40, 16, "int", default=0, unit="deg/s")
     """Y-Rate Sensor Offset: bits 40 to 55, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
 
-    Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    Note ACP-132 (open): see X-Rate Sensor Offset.
     """
     y_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Y-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    y_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """Y-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
 
     z_rate_sensor_offset: int = _base.field("Z-Rate Sensor Offset", 56, 16, "int", default=0, unit="deg/s")
     """Z-Rate Sensor Offset: bits 56 to 71, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
 
-    Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    Note ACP-132 (open): see X-Rate Sensor Offset.
     """
     z_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Z-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
+    z_rate_sensor_offset_mdeg_per_s: int = _base.whole(1, 0)
+    """Z-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767."""
 
     rate_sensor_mult: int = _base.field("RateSensorMult", 72, 8, "uint", default=0)
     """RateSensorMult: bits 72 to 79, raw 0 to 255.
 
     Factor on the rate sensor measurements.
 
-    Note ACP-130 (open): RateSensorMult has no scale and no blanks.
+    Note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8
+    bits; whether it is a whole factor, and of which quantity, is not said.
     """

@@ -15,7 +15,9 @@ class SetReactionWheelControlParameters(_base.Message):
 
     Gains and reference of the reaction-wheel mode.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
 
     NODE = "cubeacp"
@@ -32,7 +34,8 @@ class SetReactionWheelControlParameters(_base.Message):
 
     Kp2.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): Gains have no units. Controller gains are floats without units,
+    and the control laws are in another document.
     """
 
     rwheel_derivative_gain: float = _base.field("RWheel Derivative Gain", 32, 32, "float", default=0.0)
@@ -40,7 +43,7 @@ class SetReactionWheelControlParameters(_base.Message):
 
     Kd2.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see RWheel Proportional Gain.
     """
 
     y_wheel_bias_momentum: float = _base.field("Y-Wheel Bias Momentum", 64, 32, "float", default=0.0, unit="Nms")
@@ -48,7 +51,9 @@ class SetReactionWheelControlParameters(_base.Message):
 
     H-bias.
 
-    Note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels.
+    Note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels. The
+    description promises gains and a reference value for the reaction wheels; the
+    reference is a bias of the Y-wheel.
     """
 
     sun_pointing_facet: AxisSelect = _base.field("Sun-pointing Facet", 96, 7, "enum", default=AxisSelect.POSITIVE_X)
@@ -56,9 +61,13 @@ class SetReactionWheelControlParameters(_base.Message):
 
     Body axis that is turned towards the sun.
 
-    Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
+    Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration
+    serves actuators, sensors and facets. A facet that points to the sun or to a target
+    as Not Used is allowed by its table and not explained.
 
-    Note ACP-177 (open): Sun-pointing facet and special control selection.
+    Note ACP-177 (open): Sun-pointing facet and special control selection. Facets can be
+    chosen by a setting, and sun pointing with Z or Y by the system configuration. Which
+    one counts is not said.
     """
 
     control_transition_on_wheel_error: bool = _base.field(

@@ -14,9 +14,12 @@ class SetStarTrackerConfiguration(_base.Message):
 
     Of CubeStar.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
 
     NODE = "cubeacp"
@@ -32,19 +35,28 @@ class SetStarTrackerConfiguration(_base.Message):
     """StarTracker Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need
+    a sequence of axes and a direction. None is given.
     """
     mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
+    mounting_alpha_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     mounting_beta: int = _base.field("StarTracker Mounting Transform Beta Angle", 16, 16, "int", default=0, unit="deg")
     """StarTracker Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see StarTracker Mounting Transform Alpha Angle.
     """
     mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
+    mounting_beta_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     mounting_gamma: int = _base.field(
         "StarTracker Mounting Transform Gamma Angle", 32, 16, "int", default=0, unit="deg"
@@ -52,20 +64,26 @@ class SetStarTrackerConfiguration(_base.Message):
     """StarTracker Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see StarTracker Mounting Transform Alpha Angle.
     """
     mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
+    mounting_gamma_mdeg: int = _base.whole(10, 0)
+    """StarTracker Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    to 327670.
+    """
 
     star_tracker_exposure_time: int = _base.field("StarTracker exposure time", 48, 16, "uint", default=0)
     """StarTracker exposure time: bits 48 to 63, raw 0 to 65535.
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): Exposure and gain are register values. Neither the register nor
+    its scale is given, so times and gains cannot be told from them.
 
     Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star
-    tracking.
+    tracking. Three spellings stand in one message, and one description is a variable
+    name.
     """
 
     star_tracker_analog_gain: int = _base.field("StarTracker analog gain", 64, 16, "uint", default=0)
@@ -73,19 +91,20 @@ class SetStarTrackerConfiguration(_base.Message):
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): see StarTracker exposure time.
     """
 
     star_tracker_detection_threshold: int = _base.field("StarTracker detection threshold", 80, 8, "uint", default=0)
     """StarTracker detection threshold: bits 80 to 87, raw 0 to 255.
 
     Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Names are repeated or a noun is missing, as in maximum of stars.
     """
 
     star_tracker_star_threshold: int = _base.field("StarTracker star threshold", 88, 8, "uint", default=0)
     """StarTracker star threshold: bits 88 to 95, raw 0 to 255.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
     """
 
     maximum_star_matched: int = _base.field("Maximum Star Matched", 96, 8, "uint", default=0)
@@ -93,13 +112,14 @@ class SetStarTrackerConfiguration(_base.Message):
 
     Most stars that are matched.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
     """
 
     detection_timeout_duration: int = _base.field("Detection Timeout duration", 104, 16, "uint", default=0)
     """Detection Timeout duration: bits 104 to 119, raw 0 to 65535.
 
-    Note ACP-141 (open): Detection timeout has no unit.
+    Note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in
+    milliseconds; registers and pixels stand in between.
     """
 
     maximum_star_pixel: int = _base.field("Maximum Star Pixel", 120, 8, "uint", default=0)
@@ -120,18 +140,21 @@ class SetStarTrackerConfiguration(_base.Message):
 
     Of the star identification.
 
-    Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
+    Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit
+    % and a factor of 0.01 give steps of 0.01 % in 8 bits. If the factor already makes a
+    fraction, as in the margins that follow without a unit, the range is 255 %.
     """
     error_margin_percent: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Tracker Error Margin in %: 0 to 2.55."""
+    error_margin_milli_percent: int = _base.whole(10, 0)
+    """Star Tracker Error Margin in thousandths of %, exact: 0 to 2550."""
 
     star_tracker_delay_time: int = _base.field("Star Tracker Delay Time", 144, 16, "uint", default=0, unit="ms")
     """Star Tracker Delay Time: bits 144 to 159, raw 0 to 65535, in ms.
 
-    Erratum ACP-140 (certain): milliseconds is ms.
+    Erratum ACP-140 (certain): milliseconds is ms. The unit is spelt out in one field.
 
-    Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star
-    tracking.
+    Note ACP-147 (certain): see StarTracker exposure time.
     """
 
     star_tracker_centroid_x: float = _base.field(
@@ -140,7 +163,8 @@ class SetStarTrackerConfiguration(_base.Message):
     """Star Tracker Centroid X: bits 160 to 191, 32-bit float, in pixels.
 
     Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words
-    only.
+    only. The fields are described as pixel centroids, without the unit of measure that
+    the boresights of the cameras have.
     """
 
     star_tracker_centroid_y: float = _base.field(
@@ -148,8 +172,7 @@ class SetStarTrackerConfiguration(_base.Message):
     )
     """Star Tracker Centroid Y: bits 192 to 223, 32-bit float, in pixels.
 
-    Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words
-    only.
+    Erratum ACP-202 (likely): see Star Tracker Centroid X.
     """
 
     star_tracker_focal_length: float = _base.field(
@@ -162,7 +185,9 @@ class SetStarTrackerConfiguration(_base.Message):
     )
     """K1 radial distortion coefficient: bits 256 to 287, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain.
+    It is kept as a plain factor; which lens model and which normalisation they belong
+    to is not said.
     """
 
     k2_radial_distortion_coefficient: float = _base.field(
@@ -170,7 +195,7 @@ class SetStarTrackerConfiguration(_base.Message):
     )
     """K2 radial distortion coefficient: bits 288 to 319, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
 
     p1_tangential_distortion_coefficient: float = _base.field(
@@ -178,7 +203,7 @@ class SetStarTrackerConfiguration(_base.Message):
     )
     """P1 tangential distortion coefficient: bits 320 to 351, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
 
     p2_tangential_distortion_coefficient: float = _base.field(
@@ -186,38 +211,41 @@ class SetStarTrackerConfiguration(_base.Message):
     )
     """P2 tangential distortion coefficient: bits 352 to 383, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
 
     star_tracking_window_width: int = _base.field("Star tracking window width", 384, 8, "uint", default=0)
     """Star tracking window width: bits 384 to 391, raw 0 to 255.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
 
-    Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star
-    tracking.
+    Note ACP-147 (certain): see StarTracker exposure time.
     """
 
     tracking_margin: int = _base.field("Star Tracking Margin", 392, 8, "uint", default=0)
     """Star Tracking Margin: bits 392 to 399, raw 0 to 255; physical `raw/100.0`, 0 to
     2.55.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): Margins and search width have no unit. Factors are given, units
+    are not; pixels, fractions and degrees are all possible.
 
-    Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star
-    tracking.
+    Note ACP-147 (certain): see StarTracker exposure time.
     """
     tracking_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Tracking Margin, as a physical value: 0 to 2.55."""
+    tracking_margin_milli: int = _base.whole(10, 0)
+    """Star Tracking Margin in thousandths, exact: 0 to 2550."""
 
     validation_margin: int = _base.field("Star Validation Margin", 400, 8, "uint", default=0)
     """Star Validation Margin: bits 400 to 407, raw 0 to 255; physical `raw/100.0`, 0 to
     2.55.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): see Star Tracking Margin.
     """
     validation_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Validation Margin, as a physical value: 0 to 2.55."""
+    validation_margin_milli: int = _base.whole(10, 0)
+    """Star Validation Margin in thousandths, exact: 0 to 2550."""
 
     star_tracking_module_enable: bool = _base.field("Star Tracking Module Enable", 408, 1, "bool", default=False)
     """Star Tracking Module Enable: bit 408."""
@@ -227,15 +255,16 @@ class SetStarTrackerConfiguration(_base.Message):
     )
     """Star Tracking Location Prediction Enable: bit 409.
 
-    Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star
-    tracking.
+    Note ACP-147 (certain): see StarTracker exposure time.
     """
 
     search_width: int = _base.field("Star Tracking Search Width", 416, 8, "uint", default=0)
     """Star Tracking Search Width: bits 416 to 423, raw 0 to 255; physical `raw/5.0`, 0
     to 51.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): see Star Tracking Margin.
     """
     search_width_physical: float = _base.scaled(1, 0, 5, default=0.0)
     """Star Tracking Search Width, as a physical value: 0 to 51."""
+    search_width_milli: int = _base.whole(200, 0)
+    """Star Tracking Search Width in thousandths, exact: 0 to 51000."""

@@ -15,7 +15,9 @@ class SetTrackingControllerGainParameters(_base.Message):
 
     Gains of the tracking mode.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
 
     NODE = "cubeacp"
@@ -32,7 +34,8 @@ class SetTrackingControllerGainParameters(_base.Message):
 
     Kp3.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): Gains have no units. Controller gains are floats without units,
+    and the control laws are in another document.
     """
 
     tracking_derivative_gain: float = _base.field("Tracking Derivative Gain", 32, 32, "float", default=0.0)
@@ -40,7 +43,7 @@ class SetTrackingControllerGainParameters(_base.Message):
 
     Kd3.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Tracking Proportional Gain.
     """
 
     tracking_integral_gain: float = _base.field("Tracking Integral Gain", 64, 32, "float", default=0.0)
@@ -48,7 +51,7 @@ class SetTrackingControllerGainParameters(_base.Message):
 
     Ki3.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Tracking Proportional Gain.
     """
 
     target_tracking_facet: AxisSelect = _base.field(
@@ -58,5 +61,7 @@ class SetTrackingControllerGainParameters(_base.Message):
 
     Body axis that is pointed at the target.
 
-    Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
+    Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration
+    serves actuators, sensors and facets. A facet that points to the sun or to a target
+    as Not Used is allowed by its table and not explained.
     """

@@ -13,7 +13,9 @@ class SetWheelConfiguration(_base.Message):
     """Set Wheel Configuration: configuration, set by telecommand 22, got by telemetry
     137, 4 bytes. Table 181.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
 
     NODE = "cubeacp"
@@ -28,19 +30,20 @@ class SetWheelConfiguration(_base.Message):
     rw1_configuration: AxisSelect = _base.field("RW1 Configuration", 0, 8, "enum", default=AxisSelect.POSITIVE_X)
     """RW1 Configuration: bits 0 to 7.
 
-    Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    Note ACP-129 (open): Reaction wheels are RW1 and RW-X. Numbers in one message, axes
+    in the other. The two agree only after the wheel configuration has been applied.
     """
 
     rw2_configuration: AxisSelect = _base.field("RW2 Configuration", 8, 8, "enum", default=AxisSelect.POSITIVE_X)
     """RW2 Configuration: bits 8 to 15.
 
-    Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    Note ACP-129 (open): see RW1 Configuration.
     """
 
     rw3_configuration: AxisSelect = _base.field("RW3 Configuration", 16, 8, "enum", default=AxisSelect.POSITIVE_X)
     """RW3 Configuration: bits 16 to 23.
 
-    Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    Note ACP-129 (open): see RW1 Configuration.
     """
 
     rw4_configuration: AxisSelect = _base.field("RW4 Configuration", 24, 8, "enum", default=AxisSelect.POSITIVE_X)
@@ -48,7 +51,10 @@ class SetWheelConfiguration(_base.Message):
 
     Wheel 4 or the momentum wheel.
 
-    Note ACP-127 (open): Four wheels can be configured, three are reported.
+    Note ACP-127 (open): Four wheels can be configured, three are reported. RW4 has a
+    configuration. No state, speed, current, error flag or power switch exists for it,
+    and speeds are by axis while currents are by number.
 
-    Note ACP-128 (open): RW4 or Momentum wheel.
+    Note ACP-128 (open): RW4 or Momentum wheel. One field is for the fourth wheel or for
+    a momentum wheel; how the program tells them apart is not said, perhaps by its type.
     """

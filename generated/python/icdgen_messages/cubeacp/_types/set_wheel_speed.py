@@ -13,7 +13,9 @@ class SetWheelSpeed(_base.Message):
 
     Only valid while the control mode is None.
 
-    Note ACP-023 (certain): Control mode None does not exist.
+    Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid,
+    and the mode falls back, when the control mode is None. The member with value 0 is
+    called No control.
     """
 
     NODE = "cubeacp"

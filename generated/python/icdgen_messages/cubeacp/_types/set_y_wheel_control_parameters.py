@@ -14,7 +14,9 @@ class SetYWheelControlParameters(_base.Message):
 
     Gains and reference of the Y-wheel mode.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
     """
 
     NODE = "cubeacp"
@@ -31,9 +33,11 @@ class SetYWheelControlParameters(_base.Message):
 
     Kh.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): Gains have no units. Controller gains are floats without units,
+    and the control laws are in another document.
 
-    Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel.
+    Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel. The message is for the
+    Y-wheel, its gains are for Y-Momentum and Y-momentum, capital and small.
     """
 
     y_momentum_nutation_damping_gain: float = _base.field(
@@ -43,9 +47,9 @@ class SetYWheelControlParameters(_base.Message):
 
     Kn.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Y-Momentum Control Gain.
 
-    Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel.
+    Note ACP-164 (certain): see Y-Momentum Control Gain.
     """
 
     y_momentum_proportional_gain: float = _base.field("Y-momentum Proportional Gain", 64, 32, "float", default=0.0)
@@ -53,7 +57,7 @@ class SetYWheelControlParameters(_base.Message):
 
     Kp1.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Y-Momentum Control Gain.
     """
 
     y_momentum_derivative_gain: float = _base.field("Y-momentum Derivative Gain", 96, 32, "float", default=0.0)
@@ -61,7 +65,7 @@ class SetYWheelControlParameters(_base.Message):
 
     Kd1.
 
-    Note ACP-163 (open): Gains have no units.
+    Note ACP-163 (open): see Y-Momentum Control Gain.
     """
 
     reference_wheel_momentum: float = _base.field(
@@ -73,5 +77,7 @@ class SetYWheelControlParameters(_base.Message):
 
     Must be below 0 Nms.
 
-    Note ACP-162 (certain): Limits of a sign in words only.
+    Note ACP-162 (certain): Limits of a sign in words only. Two references must always
+    be smaller than 0; the types allow the opposite, and what the program does with it
+    is not said.
     """

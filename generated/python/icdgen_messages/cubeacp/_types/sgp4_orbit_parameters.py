@@ -39,7 +39,8 @@ class Sgp4OrbitParameters(_base.Message):
     b_star_drag_term: float = _base.field("B-Star drag term", 256, 64, "float", default=0.0)
     """B-Star drag term: bits 256 to 319, 64-bit float.
 
-    Note ACP-161 (open): B-Star has no unit.
+    Note ACP-161 (open): B-Star has no unit. The drag term of two-line elements is per
+    earth radius; the table has none.
     """
 
     mean_motion: float = _base.field("Mean Motion", 320, 64, "float", default=0.0, unit="orbits/day")
@@ -53,5 +54,7 @@ class Sgp4OrbitParameters(_base.Message):
 
     Year and day in one number.
 
-    Note ACP-160 (open): Epoch: year.day.
+    Note ACP-160 (open): Epoch: year.day. The unit is a format. Two or four digits of
+    the year, and whether day 1 is the first of January, are left open; as a fraction of
+    a year it would be something else.
     """

@@ -10,14 +10,22 @@ from ... import _enumeration
 class SpecialConSelect(_enumeration.OpenEnum):
     """SpecialConSelect: an enumeration. Table 203.
 
-    Note ACP-024 (open): Control modes that are named and not listed.
+    Note ACP-024 (open): Control modes that are named and not listed. An inertial
+    pointing control mode has a reference vector, and GEO tracking, inertial and two sun
+    pointing modes are special selections. The list of control modes has none of them.
     """
 
     NONE = 0, "None"
     Z_AXIS_SUN_POINTING = 1, "Z-axis Sun pointing"
-    """Note ACP-177 (open): Sun-pointing facet and special control selection."""
+    """Note ACP-177 (open): Sun-pointing facet and special control selection. Facets can
+    be chosen by a setting, and sun pointing with Z or Y by the system configuration.
+    Which one counts is not said.
+    """
     GEO_TRACKING = 2, "GEO Tracking"
-    """Note ACP-176 (open): Satellite position: range against GEO tracking."""
+    """Note ACP-176 (open): Satellite position: range against GEO tracking. Neither
+    position frame can hold a geostationary orbit, while a GEO tracking control exists.
+    It may mean a target on the ground.
+    """
     INERTIAL_POINTING = 3, "Inertial pointing"
     Y_AXIS_SUN_POINTING = 4, "Y-axis Sun pointing"
-    """Note ACP-177 (open): Sun-pointing facet and special control selection."""
+    """Note ACP-177 (open): see Z-axis Sun pointing."""

@@ -28,10 +28,14 @@ class Star1BodyVector(_base.Message):
 
     Vector in the body frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is
+    described as a vector, of which it is one component; names abbreviate body and orbit
+    to a letter.
     """
     star1_body_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1BX, as a physical value: -3.2768 to 3.2767."""
+    star1_body_x_micro: int = _base.whole(100, 0)
+    """Star1BX in millionths, exact: -3276800 to 3276700."""
 
     star1_body_y: int = _base.field("Star1BY", 16, 16, "int", default=0)
     """Star1BY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -39,10 +43,12 @@ class Star1BodyVector(_base.Message):
 
     Vector in the body frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star1BX.
     """
     star1_body_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1BY, as a physical value: -3.2768 to 3.2767."""
+    star1_body_y_micro: int = _base.whole(100, 0)
+    """Star1BY in millionths, exact: -3276800 to 3276700."""
 
     star1_body_z: int = _base.field("Star1BZ", 32, 16, "int", default=0)
     """Star1BZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -50,7 +56,9 @@ class Star1BodyVector(_base.Message):
 
     Vector in the body frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star1BX.
     """
     star1_body_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1BZ, as a physical value: -3.2768 to 3.2767."""
+    star1_body_z_micro: int = _base.whole(100, 0)
+    """Star1BZ in millionths, exact: -3276800 to 3276700."""

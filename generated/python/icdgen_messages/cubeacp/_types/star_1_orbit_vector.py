@@ -28,10 +28,14 @@ class Star1OrbitVector(_base.Message):
 
     Vector in the orbit frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is
+    described as a vector, of which it is one component; names abbreviate body and orbit
+    to a letter.
     """
     star1_orbit_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1OX, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_x_micro: int = _base.whole(100, 0)
+    """Star1OX in millionths, exact: -3276800 to 3276700."""
 
     star1_orbit_y: int = _base.field("Star1OY", 16, 16, "int", default=0)
     """Star1OY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -39,10 +43,12 @@ class Star1OrbitVector(_base.Message):
 
     Vector in the orbit frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star1OX.
     """
     star1_orbit_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1OY, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_y_micro: int = _base.whole(100, 0)
+    """Star1OY in millionths, exact: -3276800 to 3276700."""
 
     star1_orbit_z: int = _base.field("Star1OZ", 32, 16, "int", default=0)
     """Star1OZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -50,7 +56,9 @@ class Star1OrbitVector(_base.Message):
 
     Vector in the orbit frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star1OX.
     """
     star1_orbit_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1OZ, as a physical value: -3.2768 to 3.2767."""
+    star1_orbit_z_micro: int = _base.whole(100, 0)
+    """Star1OZ in millionths, exact: -3276800 to 3276700."""

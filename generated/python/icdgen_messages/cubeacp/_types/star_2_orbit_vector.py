@@ -28,10 +28,14 @@ class Star2OrbitVector(_base.Message):
 
     Vector in the orbit frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is
+    described as a vector, of which it is one component; names abbreviate body and orbit
+    to a letter.
     """
     star2_orbit_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star2OX, as a physical value: -3.2768 to 3.2767."""
+    star2_orbit_x_micro: int = _base.whole(100, 0)
+    """Star2OX in millionths, exact: -3276800 to 3276700."""
 
     star2_orbit_y: int = _base.field("Star2OY", 16, 16, "int", default=0)
     """Star2OY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -39,10 +43,12 @@ class Star2OrbitVector(_base.Message):
 
     Vector in the orbit frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star2OX.
     """
     star2_orbit_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star2OY, as a physical value: -3.2768 to 3.2767."""
+    star2_orbit_y_micro: int = _base.whole(100, 0)
+    """Star2OY in millionths, exact: -3276800 to 3276700."""
 
     star2_orbit_z: int = _base.field("Star2OZ", 32, 16, "int", default=0)
     """Star2OZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -50,7 +56,9 @@ class Star2OrbitVector(_base.Message):
 
     Vector in the orbit frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star2OX.
     """
     star2_orbit_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star2OZ, as a physical value: -3.2768 to 3.2767."""
+    star2_orbit_z_micro: int = _base.whole(100, 0)
+    """Star2OZ in millionths, exact: -3276800 to 3276700."""

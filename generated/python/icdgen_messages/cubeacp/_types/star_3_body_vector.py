@@ -28,10 +28,14 @@ class Star3BodyVector(_base.Message):
 
     Vector in the body frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is
+    described as a vector, of which it is one component; names abbreviate body and orbit
+    to a letter.
     """
     star3_body_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star3BX, as a physical value: -3.2768 to 3.2767."""
+    star3_body_x_micro: int = _base.whole(100, 0)
+    """Star3BX in millionths, exact: -3276800 to 3276700."""
 
     star3_body_y: int = _base.field("Star3BY", 16, 16, "int", default=0)
     """Star3BY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -39,10 +43,12 @@ class Star3BodyVector(_base.Message):
 
     Vector in the body frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star3BX.
     """
     star3_body_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star3BY, as a physical value: -3.2768 to 3.2767."""
+    star3_body_y_micro: int = _base.whole(100, 0)
+    """Star3BY in millionths, exact: -3276800 to 3276700."""
 
     star3_body_z: int = _base.field("Star3BZ", 32, 16, "int", default=0)
     """Star3BZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
@@ -50,7 +56,9 @@ class Star3BodyVector(_base.Message):
 
     Vector in the body frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star3BX.
     """
     star3_body_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star3BZ, as a physical value: -3.2768 to 3.2767."""
+    star3_body_z_micro: int = _base.whole(100, 0)
+    """Star3BZ in millionths, exact: -3276800 to 3276700."""

@@ -10,7 +10,9 @@ from ... import _enumeration
 class StarIdModeVal(_enumeration.OpenEnum):
     """StarIDModeVal: an enumeration. Table 147.
 
-    Note ACP-097 (open): StarIDModeVal is not described.
+    Note ACP-097 (open): StarIDModeVal is not described. The members of the
+    identification mode have no descriptions; Lost Mode may be the lost-in-space search
+    or a lost track.
     """
 
     TRACKING_MODE = 0, "Tracking Mode"

@@ -29,7 +29,8 @@ class StarMagnitude(_base.Message):
 
     Instrument magnitude.
 
-    Note ACP-092 (open): Star magnitudes have no scale.
+    Note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16
+    bits without a factor can be neither fractional nor negative.
     """
 
     magnitude_star_2: int = _base.field("Magnitude Star 2", 16, 16, "uint", default=0)
@@ -37,7 +38,7 @@ class StarMagnitude(_base.Message):
 
     Instrument magnitude.
 
-    Note ACP-092 (open): Star magnitudes have no scale.
+    Note ACP-092 (open): see Magnitude Star 1.
     """
 
     magnitude_star_3: int = _base.field("Magnitude Star 3", 32, 16, "uint", default=0)
@@ -45,5 +46,5 @@ class StarMagnitude(_base.Message):
 
     Instrument magnitude.
 
-    Note ACP-092 (open): Star magnitudes have no scale.
+    Note ACP-092 (open): see Magnitude Star 1.
     """

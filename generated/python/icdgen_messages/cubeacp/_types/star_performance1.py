@@ -17,6 +17,8 @@ class StarPerformance1(_base.Message):
     Bit 52 of the log mask.
 
     Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
+    Both are described as performance parameters of the star measurement; the second
+    holds flags, a period and confidences.
     """
 
     NODE = "cubeacp"
@@ -31,14 +33,14 @@ class StarPerformance1(_base.Message):
     """Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
 
     Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    pixel value. What is counted stands in place of a unit; noise repeats the name. They
+    are kept as units of counts.
     """
 
     star_image_noise: int = _base.field("Star image noise", 8, 8, "uint", default=0, unit="noise")
     """Star image noise: bits 8 to 15, raw 0 to 255, in noise.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
 
     invalid_stars: int = _base.field("Invalid Stars", 16, 8, "uint", default=0, unit="Invalid stars")
@@ -46,15 +48,13 @@ class StarPerformance1(_base.Message):
 
     How many of the detected stars are invalid.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
 
     number_of_stars_identified: int = _base.field("Number of stars identified", 24, 8, "uint", default=0, unit="stars")
     """Number of stars identified: bits 24 to 31, raw 0 to 255, in stars.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """
 
     identification_mode: StarIdModeVal = _base.field(
@@ -67,6 +67,5 @@ class StarPerformance1(_base.Message):
 
     Mean of the centre line of the image.
 
-    Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit
-    pixel value.
+    Note ACP-093 (certain): see Number of stars detected.
     """

@@ -16,6 +16,8 @@ class StarPerformance2(_base.Message):
     Bit 64 of the log mask.
 
     Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
+    Both are described as performance parameters of the star measurement; the second
+    holds flags, a period and confidences.
     """
 
     NODE = "cubeacp"
@@ -38,7 +40,8 @@ class StarPerformance2(_base.Message):
     attitude_success: bool = _base.field("AttitudeSuccess", 3, 1, "bool", default=False)
     """AttitudeSuccess: bit 3.
 
-    Note ACP-115 (certain): AttitudeSuccess is written in one piece.
+    Note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags
+    before it have blanks, as its description has.
     """
 
     processing_time_error: bool = _base.field("Processing Time Error", 4, 1, "bool", default=False)
@@ -56,23 +59,25 @@ class StarPerformance2(_base.Message):
     sample_period: int = _base.field("Sample Period", 8, 16, "uint", default=0)
     """Sample Period: bits 8 to 23, raw 0 to 65535.
 
-    Note ACP-113 (open): Sample period of the star tracker has no unit.
+    Note ACP-113 (open): Sample period of the star tracker has no unit. Other times of
+    the star tracker are in ms.
     """
 
     star_1_confidence: int = _base.field("Star 1 confidence", 24, 8, "uint", default=0, unit="%")
     """Star 1 confidence: bits 24 to 31, raw 0 to 255, in %.
 
-    Erratum ACP-114 (certain): percentage is %.
+    Erratum ACP-114 (certain): percentage is %. The unit is spelt out in two frames and
+    a sign elsewhere.
     """
 
     star_2_confidence: int = _base.field("Star 2 confidence", 32, 8, "uint", default=0, unit="%")
     """Star 2 confidence: bits 32 to 39, raw 0 to 255, in %.
 
-    Erratum ACP-114 (certain): percentage is %.
+    Erratum ACP-114 (certain): see Star 1 confidence.
     """
 
     star_3_confidence: int = _base.field("Star 3 confidence", 40, 8, "uint", default=0, unit="%")
     """Star 3 confidence: bits 40 to 47, raw 0 to 255, in %.
 
-    Erratum ACP-114 (certain): percentage is %.
+    Erratum ACP-114 (certain): see Star 1 confidence.
     """

@@ -13,7 +13,8 @@ class State(_base.Message):
 
     Errors in loading settings from flash and in using the SD card.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
     """
 
     NODE = "cubeacp"
@@ -29,7 +30,10 @@ class State(_base.Message):
 
     Reading it from flash failed.
 
-    Note ACP-054 (open): Two saves for three stored sets.
+    Note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS
+    configuration, the orbit parameters and the system configuration. Telecommands save
+    the current configuration and the orbit parameters; which the first covers is not
+    said.
     """
 
     orbit_parameter_load_error: bool = _base.field("Orbit Parameter Load Error", 1, 1, "bool", default=False)
@@ -37,7 +41,7 @@ class State(_base.Message):
 
     Reading them from flash failed.
 
-    Note ACP-054 (open): Two saves for three stored sets.
+    Note ACP-054 (open): see ADCS Config Load Error.
     """
 
     system_configuration_load_error: bool = _base.field("System Configuration Load Error", 2, 1, "bool", default=False)
@@ -45,7 +49,7 @@ class State(_base.Message):
 
     Reading it from flash failed.
 
-    Note ACP-054 (open): Two saves for three stored sets.
+    Note ACP-054 (open): see ADCS Config Load Error.
     """
 
     sd_card_initialisation_error: bool = _base.field("SD card initialisation error", 3, 1, "bool", default=False)

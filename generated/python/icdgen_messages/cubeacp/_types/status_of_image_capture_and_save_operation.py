@@ -13,7 +13,8 @@ class StatusOfImageCaptureAndSaveOperation(_base.Message):
     """Status of Image Capture and Save Operation: telemetry 233, 2 bytes. Table 176.
 
     Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the
-    bootloader.
+    bootloader. A telecommand or request sent to the wrong program is taken for another
+    one.
     """
 
     NODE = "cubeacp"
@@ -30,5 +31,7 @@ class StatusOfImageCaptureAndSaveOperation(_base.Message):
     status: ImSaveStatus = _base.field("Status", 8, 8, "enum", default=ImSaveStatus.NO_ERROR)
     """Status: bits 8 to 15.
 
-    Note ACP-124 (open): Image status: no value for busy or done.
+    Note ACP-124 (open): Image status: no value for busy or done. The status of the
+    operation lists errors only, so No Error stands for not started, running and
+    finished.
     """

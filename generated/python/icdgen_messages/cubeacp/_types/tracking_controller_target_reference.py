@@ -29,7 +29,10 @@ class TrackingControllerTargetReference(_base.Message):
     )
     """Geocentric longitude of target: bits 0 to 31, 32-bit float, in deg.
 
-    Note ACP-138 (open): Target is geocentric, position is geodetic.
+    Note ACP-138 (open): Target is geocentric, position is geodetic. The target is given
+    by geocentric latitude and altitude, the satellite by WGS-84 ones; and longitude
+    comes first here, latitude there. What a geocentric altitude is measured from is not
+    said.
     """
 
     geocentric_latitude_of_target: float = _base.field(
@@ -37,7 +40,7 @@ class TrackingControllerTargetReference(_base.Message):
     )
     """Geocentric latitude of target: bits 32 to 63, 32-bit float, in deg.
 
-    Note ACP-138 (open): Target is geocentric, position is geodetic.
+    Note ACP-138 (open): see Geocentric longitude of target.
     """
 
     geocentric_altitude_of_target: float = _base.field(
@@ -45,7 +48,7 @@ class TrackingControllerTargetReference(_base.Message):
     )
     """Geocentric altitude of target: bits 64 to 95, 32-bit float, in m.
 
-    Erratum ACP-139 (certain): meter is m.
+    Erratum ACP-139 (certain): meter is m. The unit is spelt out in one field.
 
-    Note ACP-138 (open): Target is geocentric, position is geodetic.
+    Note ACP-138 (open): see Geocentric longitude of target.
     """

@@ -17,7 +17,9 @@ class TriggerSimulatedLoop(_base.Message):
     is Triggered.
 
     Note ACP-032 (open): Simulated data are accepted while triggered, not while
-    simulating.
+    simulating. The telecommand with simulated measurements is valid only in mode
+    Triggered, and there is a mode Simulation that no other text mentions. The sentence
+    was probably taken over from the telecommand before it.
     """
 
     NODE = "cubeacp"
@@ -37,61 +39,63 @@ class TriggerSimulatedLoop(_base.Message):
     css_raw_1: int = _base.field("Css Raw 1", 32, 16, "uint", default=0)
     """Css Raw 1: bits 32 to 47, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8. The
+    raw values of the coarse sun sensors are twice as wide as in the frames that report
+    them. Whether more than 255 may be sent is not said.
     """
 
     css_raw_2: int = _base.field("Css Raw 2", 48, 16, "uint", default=0)
     """Css Raw 2: bits 48 to 63, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
 
     css_raw_3: int = _base.field("Css Raw 3", 64, 16, "uint", default=0)
     """Css Raw 3: bits 64 to 79, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
 
     css_raw_4: int = _base.field("Css Raw 4", 80, 16, "uint", default=0)
     """Css Raw 4: bits 80 to 95, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
 
     css_raw_5: int = _base.field("Css Raw 5", 96, 16, "uint", default=0)
     """Css Raw 5: bits 96 to 111, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
 
     css_raw_6: int = _base.field("Css Raw 6", 112, 16, "uint", default=0)
     """Css Raw 6: bits 112 to 127, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
 
     css_raw_7: int = _base.field("Css Raw 7", 128, 16, "uint", default=0)
     """Css Raw 7: bits 128 to 143, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
 
     css_raw_8: int = _base.field("Css Raw 8", 144, 16, "uint", default=0)
     """Css Raw 8: bits 144 to 159, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
 
     css_raw_9: int = _base.field("Css Raw 9", 160, 16, "uint", default=0)
     """Css Raw 9: bits 160 to 175, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
 
     css_raw_10: int = _base.field("Css Raw 10", 176, 16, "uint", default=0)
     """Css Raw 10: bits 176 to 191, raw 0 to 65535.
 
-    Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033 (open): see Css Raw 1.
     """
 
     cam1_raw_x: int = _base.field("Cam1 Raw X", 192, 16, "int", default=0)
@@ -99,9 +103,13 @@ class TriggerSimulatedLoop(_base.Message):
 
     Raw angle.
 
-    Note ACP-036 (open): Simulated data: raw camera angles.
+    Note ACP-036 (open): Simulated data: raw camera angles. They are called raw angles
+    here, centroids by name and azimuth and elevation by description in the frames. No
+    scale is given in any.
 
-    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The
+    telecommand begins with Cam1. Frame 194 and the ids 166 and 167 have Cam2 before
+    Cam1.
     """
 
     cam1_raw_y: int = _base.field("Cam1 Raw Y", 208, 16, "int", default=0)
@@ -109,7 +117,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Raw angle.
 
-    Note ACP-036 (open): Simulated data: raw camera angles.
+    Note ACP-036 (open): see Cam1 Raw X.
     """
 
     cam1_busy: int = _base.field("Cam1 Busy", 224, 8, "uint", default=0)
@@ -117,7 +125,9 @@ class TriggerSimulatedLoop(_base.Message):
 
     Capture status.
 
-    Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    Note ACP-035 (likely): Simulated data: camera results are plain numbers. Capture
+    status and detection result are unsigned integers here and enumerations in the
+    frames. The first is called Busy although it is a status of six values.
     """
 
     cam1_result: int = _base.field("Cam1 Result", 232, 8, "uint", default=0)
@@ -125,7 +135,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Detection result.
 
-    Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    Note ACP-035 (likely): see Cam1 Busy.
     """
 
     cam2_raw_x: int = _base.field("Cam2 Raw X", 240, 16, "int", default=0)
@@ -133,9 +143,9 @@ class TriggerSimulatedLoop(_base.Message):
 
     Raw angle.
 
-    Note ACP-036 (open): Simulated data: raw camera angles.
+    Note ACP-036 (open): see Cam1 Raw X.
 
-    Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+    Note ACP-038 (certain): see Cam1 Raw X.
     """
 
     cam2_raw_y: int = _base.field("Cam2 Raw Y", 256, 16, "int", default=0)
@@ -143,7 +153,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Raw angle.
 
-    Note ACP-036 (open): Simulated data: raw camera angles.
+    Note ACP-036 (open): see Cam1 Raw X.
     """
 
     cam2_busy: int = _base.field("Cam2 Busy", 272, 8, "uint", default=0)
@@ -151,7 +161,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Capture status.
 
-    Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    Note ACP-035 (likely): see Cam1 Busy.
     """
 
     cam2_result: int = _base.field("Cam2 Result", 280, 8, "uint", default=0)
@@ -159,61 +169,67 @@ class TriggerSimulatedLoop(_base.Message):
 
     Detection result.
 
-    Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+    Note ACP-035 (likely): see Cam1 Busy.
     """
 
     mag_raw_x: int = _base.field("Mag Raw X", 288, 16, "int", default=0)
     """Mag Raw X: bits 288 to 303, raw -32768 to 32767.
 
-    Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+    Note ACP-041 (open): Simulated data: the second magnetometer is missing. One
+    magnetometer can be simulated, and nothing says which one it stands for when the
+    modes select another.
     """
 
     mag_raw_y: int = _base.field("Mag Raw Y", 304, 16, "int", default=0)
     """Mag Raw Y: bits 304 to 319, raw -32768 to 32767.
 
-    Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+    Note ACP-041 (open): see Mag Raw X.
     """
 
     mag_raw_z: int = _base.field("Mag Raw Z", 320, 16, "int", default=0)
     """Mag Raw Z: bits 320 to 335, raw -32768 to 32767.
 
-    Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+    Note ACP-041 (open): see Mag Raw X.
     """
 
     rate_raw_x: int = _base.field("Rate Raw X", 336, 32, "int", default=0)
     """Rate Raw X: bits 336 to 367, raw -2147483648 to 2147483647.
 
-    Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+    Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16. The raw
+    rates are twice as wide as in the frames that report them, without a scale in
+    either.
     """
 
     rate_raw_y: int = _base.field("Rate Raw Y", 368, 32, "int", default=0)
     """Rate Raw Y: bits 368 to 399, raw -2147483648 to 2147483647.
 
-    Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+    Note ACP-034 (open): see Rate Raw X.
     """
 
     rate_raw_z: int = _base.field("Rate Raw Z", 400, 32, "int", default=0)
     """Rate Raw Z: bits 400 to 431, raw -2147483648 to 2147483647.
 
-    Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+    Note ACP-034 (open): see Rate Raw X.
     """
 
     wheel_raw_x: int = _base.field("Wheel Raw X", 432, 16, "int", default=0, unit="rpm")
     """Wheel Raw X: bits 432 to 447, raw -32768 to 32767, in rpm.
 
-    Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+    Note ACP-040 (open): Simulated data: raw wheel speeds in rpm. The wheel speed is
+    called raw and has a unit; the frame with the same unit is among the calibrated
+    measurements.
     """
 
     wheel_raw_y: int = _base.field("Wheel Raw Y", 448, 16, "int", default=0, unit="rpm")
     """Wheel Raw Y: bits 448 to 463, raw -32768 to 32767, in rpm.
 
-    Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+    Note ACP-040 (open): see Wheel Raw X.
     """
 
     wheel_raw_z: int = _base.field("Wheel Raw Z", 464, 16, "int", default=0, unit="rpm")
     """Wheel Raw Z: bits 464 to 479, raw -32768 to 32767, in rpm.
 
-    Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+    Note ACP-040 (open): see Wheel Raw X.
     """
 
     star1_camera_x: int = _base.field("Star1CameraX", 480, 16, "int", default=0)
@@ -222,7 +238,8 @@ class TriggerSimulatedLoop(_base.Message):
     Vector in the camera frame.
 
     Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    frames. Star vectors have a factor in telemetry and none here, and are in camera and
+    inertial instead of body and orbit axes.
     """
 
     star1_camera_y: int = _base.field("Star1CameraY", 496, 16, "int", default=0)
@@ -230,8 +247,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star1_camera_z: int = _base.field("Star1CameraZ", 512, 16, "int", default=0)
@@ -239,8 +255,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star1_inertial_x: int = _base.field("Star1InertialX", 528, 16, "int", default=0)
@@ -248,8 +263,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star1_inertial_y: int = _base.field("Star1InertialY", 544, 16, "int", default=0)
@@ -257,8 +271,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star1_inertial_z: int = _base.field("Star1InertialZ", 560, 16, "int", default=0)
@@ -266,8 +279,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star2_camera_x: int = _base.field("Star2CameraX", 576, 16, "int", default=0)
@@ -275,8 +287,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star2_camera_y: int = _base.field("Star2CameraY", 592, 16, "int", default=0)
@@ -284,8 +295,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star2_camera_z: int = _base.field("Star2CameraZ", 608, 16, "int", default=0)
@@ -293,8 +303,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star2_inertial_x: int = _base.field("Star2InertialX", 624, 16, "int", default=0)
@@ -302,8 +311,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star2_inertial_y: int = _base.field("Star2InertialY", 640, 16, "int", default=0)
@@ -311,8 +319,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star2_inertial_z: int = _base.field("Star2InertialZ", 656, 16, "int", default=0)
@@ -320,8 +327,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star3_camera_x: int = _base.field("Star3CameraX", 672, 16, "int", default=0)
@@ -329,8 +335,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star3_camera_y: int = _base.field("Star3CameraY", 688, 16, "int", default=0)
@@ -338,8 +343,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star3_camera_z: int = _base.field("Star3CameraZ", 704, 16, "int", default=0)
@@ -347,8 +351,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the camera frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star3_inertial_x: int = _base.field("Star3InertialX", 720, 16, "int", default=0)
@@ -356,8 +359,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star3_inertial_y: int = _base.field("Star3InertialY", 736, 16, "int", default=0)
@@ -365,8 +367,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     star3_inertial_z: int = _base.field("Star3InertialZ", 752, 16, "int", default=0)
@@ -374,8 +375,7 @@ class TriggerSimulatedLoop(_base.Message):
 
     Vector in the inertial frame.
 
-    Note ACP-037 (open): Simulated data: star vectors without a formula, in other
-    frames.
+    Note ACP-037 (open): see Star1CameraX.
     """
 
     gps_solution_status: GpsSolutionStatus = _base.field(
@@ -383,13 +383,16 @@ class TriggerSimulatedLoop(_base.Message):
     )
     """Gps Solution Status: bits 768 to 775.
 
-    Note ACP-042 (certain): GPS is spelt Gps in one field.
+    Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands
+    among fields with GPS, and the sun sensors are Css in the same telecommand.
     """
 
     gps_reference_week: int = _base.field("GPS Reference Week", 776, 16, "uint", default=0)
     """GPS Reference Week: bits 776 to 791, raw 0 to 65535.
 
-    Note ACP-089 (open): GPS week: with or without roll-overs.
+    Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the
+    full week, ten of which a receiver sends. A number of roll-overs is a setting, so it
+    is open which of the two this is.
     """
 
     gps_time_milliseconds: int = _base.field("GPS Time Milliseconds", 792, 32, "uint", default=0, unit="ms")
@@ -398,80 +401,95 @@ class TriggerSimulatedLoop(_base.Message):
     ecef_position_x: int = _base.field("ECEF Position X", 824, 32, "int", default=0, unit="m")
     """ECEF Position X: bits 824 to 855, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z
+    have 16 bits in the state frames and 32 bits in the GPS frames and the simulated
+    data, with the same name, description and unit.
     """
 
     ecef_velocity_x: int = _base.field("ECEF Velocity X", 856, 16, "int", default=0, unit="m/s")
     """ECEF Velocity X: bits 856 to 871, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity
+    from the receiver has a step of 1 m/s, that of the propagator 0.25 m/s. A factor may
+    have been lost; none is made up.
     """
 
     ecef_position_y: int = _base.field("ECEF Position Y", 872, 32, "int", default=0, unit="m")
     """ECEF Position Y: bits 872 to 903, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
 
     ecef_velocity_y: int = _base.field("ECEF Velocity Y", 904, 16, "int", default=0, unit="m/s")
     """ECEF Velocity Y: bits 904 to 919, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): see ECEF Velocity X.
     """
 
     ecef_position_z: int = _base.field("ECEF Position Z", 920, 32, "int", default=0, unit="m")
     """ECEF Position Z: bits 920 to 951, raw -2147483648 to 2147483647, in m.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
 
     ecef_velocity_z: int = _base.field("ECEF Velocity Z", 952, 16, "int", default=0, unit="m/s")
     """ECEF Velocity Z: bits 952 to 967, raw -32768 to 32767, in m/s.
 
-    Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044 (open): see ECEF Velocity X.
     """
 
     x_pos_standard_deviation: int = _base.field("X-pos Standard Deviation", 968, 8, "uint", default=0, unit="m")
     """X-pos Standard Deviation: bits 968 to 975, raw 0 to 255; physical `raw =
     value*10.0`, 0 to 25.5 m.
 
-    Note ACP-030 (certain): Formulas are written in two directions.
+    Note ACP-030 (certain): Formulas are written in two directions. Two telecommands
+    give the raw value as a multiple of the physical one, everything else the physical
+    value from the raw one. Both are held as printed.
     """
     x_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
     """X-pos Standard Deviation in m: 0 to 25.5."""
+    x_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """X-pos Standard Deviation in mm, exact: 0 to 25500."""
 
     y_pos_standard_deviation: int = _base.field("Y-pos Standard Deviation", 976, 8, "uint", default=0, unit="m")
     """Y-pos Standard Deviation: bits 976 to 983, raw 0 to 255; physical `raw =
     value*10.0`, 0 to 25.5 m.
 
-    Note ACP-030 (certain): Formulas are written in two directions.
+    Note ACP-030 (certain): see X-pos Standard Deviation.
     """
     y_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
     """Y-pos Standard Deviation in m: 0 to 25.5."""
+    y_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """Y-pos Standard Deviation in mm, exact: 0 to 25500."""
 
     z_pos_standard_deviation: int = _base.field("Z-pos Standard Deviation", 984, 8, "uint", default=0, unit="m")
     """Z-pos Standard Deviation: bits 984 to 991, raw 0 to 255; physical `raw =
     value*10.0`, 0 to 25.5 m.
 
-    Note ACP-030 (certain): Formulas are written in two directions.
+    Note ACP-030 (certain): see X-pos Standard Deviation.
     """
     z_pos_standard_deviation_m: float = _base.scaled(1, 0, 10, default=0.0)
     """Z-pos Standard Deviation in m: 0 to 25.5."""
+    z_pos_standard_deviation_mm: int = _base.whole(100, 0)
+    """Z-pos Standard Deviation in mm, exact: 0 to 25500."""
 
     x_vel_standard_deviation: int = _base.field("X-vel Standard Deviation", 992, 8, "uint", default=0, unit="m/s")
     """X-vel Standard Deviation: bits 992 to 999, raw 0 to 255, in m/s.
 
     Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    Deviations of the position have a factor of 0.1, those of the velocity none. A whole
+    1 m/s is coarse for a GPS velocity, and the limit that is compared with it is set in
+    hundredths.
     """
 
     y_vel_standard_deviation: int = _base.field("Y-vel Standard Deviation", 1000, 8, "uint", default=0, unit="m/s")
     """Y-vel Standard Deviation: bits 1000 to 1007, raw 0 to 255, in m/s.
 
-    Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043 (open): see X-vel Standard Deviation.
     """
 
     z_vel_standard_deviation: int = _base.field("Z-vel Standard Deviation", 1008, 8, "uint", default=0, unit="m/s")
     """Z-vel Standard Deviation: bits 1008 to 1015, raw 0 to 255, in m/s.
 
-    Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043 (open): see X-vel Standard Deviation.
     """

@@ -30,6 +30,8 @@ class UartLogConfiguration(_base.Message):
     Mask of up to 80 telemetry frames.
 
     Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
+    Seventeen bits of the mask have no frame: 2, 5, 6 and 66 to 79. What a log with one
+    of them set holds is not said.
     """
 
     log_period: int = _base.field(
@@ -46,5 +48,7 @@ class UartLogConfiguration(_base.Message):
 
     0: logging disabled.
 
-    Note ACP-183 (open): Log period has no unit.
+    Note ACP-183 (open): Log period has no unit. Zero switches logging off; seconds or
+    iterations of the loop are both possible, and equal only while the loop runs at 1
+    Hz.
     """

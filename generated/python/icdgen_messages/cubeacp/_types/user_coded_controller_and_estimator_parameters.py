@@ -28,7 +28,8 @@ class UserCodedControllerAndEstimatorParameters(_base.Message):
     )
     """User Coded Controller Settings: bytes 0 to 47.
 
-    Note ACP-178 (open): User coded settings: content of the arrays.
+    Note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes
+    without types; what they hold depends on code that the user supplies.
     """
 
     user_coded_estimator_settings: bytes = _base.field(
@@ -36,5 +37,5 @@ class UserCodedControllerAndEstimatorParameters(_base.Message):
     )
     """User Coded Estimator Settings: bytes 48 to 95.
 
-    Note ACP-178 (open): User coded settings: content of the arrays.
+    Note ACP-178 (open): see User Coded Controller Settings.
     """

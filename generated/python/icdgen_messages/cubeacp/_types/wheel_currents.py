@@ -27,31 +27,41 @@ class WheelCurrents(_base.Message):
     wheel1_current: int = _base.field("Wheel1Current", 0, 16, "uint", default=0, unit="mA")
     """Wheel1Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): Wheel currents: by number, described by axis. The frame is
+    described as XYZ wheel currents, its fields are numbered, and names run together
+    although their descriptions do not.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of
+    0.01 mA sixteen bits reach 655.35 mA, which a wheel motor may well exceed. All other
+    currents have steps of 0.1 mA and more. The factor is held as printed.
     """
     wheel1_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel1Current in mA: 0 to 655.35."""
+    wheel1_current_ua: int = _base.whole(10, 0)
+    """Wheel1Current in uA, exact: 0 to 655350."""
 
     wheel2_current: int = _base.field("Wheel2Current", 16, 16, "uint", default=0, unit="mA")
     """Wheel2Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): see Wheel1Current.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): see Wheel1Current.
     """
     wheel2_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel2Current in mA: 0 to 655.35."""
+    wheel2_current_ua: int = _base.whole(10, 0)
+    """Wheel2Current in uA, exact: 0 to 655350."""
 
     wheel3_current: int = _base.field("Wheel3Current", 32, 16, "uint", default=0, unit="mA")
     """Wheel3Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): see Wheel1Current.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): see Wheel1Current.
     """
     wheel3_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel3Current in mA: 0 to 655.35."""
+    wheel3_current_ua: int = _base.whole(10, 0)
+    """Wheel3Current in uA, exact: 0 to 655350."""

@@ -25,17 +25,19 @@ class WheelSpeedCommands(_base.Message):
     commanded_x_wheel_speed: int = _base.field("Commanded X Wheel Speed", 0, 16, "int", default=0, unit="rpm")
     """Commanded X Wheel Speed: bits 0 to 15, raw -32768 to 32767, in rpm.
 
-    Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds. The
+    descriptions are those of the measured speeds; the names tell the difference. The
+    telecommand names them again in another way.
     """
 
     commanded_y_wheel_speed: int = _base.field("Commanded Y Wheel Speed", 16, 16, "int", default=0, unit="rpm")
     """Commanded Y Wheel Speed: bits 16 to 31, raw -32768 to 32767, in rpm.
 
-    Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072 (certain): see Commanded X Wheel Speed.
     """
 
     commanded_z_wheel_speed: int = _base.field("Commanded Z Wheel Speed", 32, 16, "int", default=0, unit="rpm")
     """Commanded Z Wheel Speed: bits 32 to 47, raw -32768 to 32767, in rpm.
 
-    Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072 (certain): see Commanded X Wheel Speed.
     """

@@ -14,9 +14,12 @@ class DeploymentStatus(_base.Message):
     Only for the CubeMag of type Deploy.
 
     Note MAG-011 (open): Deployment Status: how to tell the type, and what other types
-    answer.
+    answer. The frame applies to the deployable CubeMag only. Nothing in the excerpt
+    tells the types apart, or says whether the others refuse the request.
 
     Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
+    Three bits of the status and seven of each measurement are not described. They are
+    held as reserved.
     """
 
     NODE = "cubemag"
@@ -32,7 +35,10 @@ class DeploymentStatus(_base.Message):
 
     Through the burn wire.
 
-    Note MAG-012 (open): Burn Current: 32 bits of whole milliamperes.
+    Note MAG-012 (open): Burn Current: 32 bits of whole milliamperes. An unsigned
+    integer of 32 bits in mA reaches 4.3 million amperes. A float, as in the other
+    measurements of the node, or a scale that was lost would be more plausible; nothing
+    is converted.
     """
 
     deployment_pin_state: bool = _base.field("Deployment Pin State", 32, 1, "bool", default=False)
@@ -40,7 +46,8 @@ class DeploymentStatus(_base.Message):
 
     Pin that detects the deployment.
 
-    Note MAG-013 (open): Polarity of the deployment pins is not given.
+    Note MAG-013 (open): Polarity of the deployment pins is not given. Whether a set bit
+    means deployed, a high level or an active burn wire is not said.
     """
 
     burn_pin_state: bool = _base.field("Burn Pin State", 33, 1, "bool", default=False)
@@ -48,7 +55,7 @@ class DeploymentStatus(_base.Message):
 
     Pin that enables the burn wire.
 
-    Note MAG-013 (open): Polarity of the deployment pins is not given.
+    Note MAG-013 (open): see Deployment Pin State.
     """
 
     burn_under_current: bool = _base.field("Burn UnderCurrent", 34, 1, "bool", default=False)
@@ -56,7 +63,9 @@ class DeploymentStatus(_base.Message):
 
     Too little current through the burn wire.
 
-    Note MAG-014 (open): Limits of the burn current and the configured time-out.
+    Note MAG-014 (open): Limits of the burn current and the configured time-out. Under-
+    and overcurrent have no limits, and the time-out is called configured without a
+    message that configures it.
     """
 
     burn_over_current: bool = _base.field("Burn OverCurrent", 35, 1, "bool", default=False)
@@ -64,7 +73,7 @@ class DeploymentStatus(_base.Message):
 
     Too much current through the burn wire.
 
-    Note MAG-014 (open): Limits of the burn current and the configured time-out.
+    Note MAG-014 (open): see Burn UnderCurrent.
     """
 
     deployment_timeout: bool = _base.field("Deployment Timeout", 36, 1, "bool", default=False)
@@ -72,5 +81,5 @@ class DeploymentStatus(_base.Message):
 
     No deployment was detected within the configured time.
 
-    Note MAG-014 (open): Limits of the burn current and the configured time-out.
+    Note MAG-014 (open): see Burn UnderCurrent.
     """

@@ -12,7 +12,9 @@ class MagState(_enumeration.OpenEnum):
 
     State of the CubeMag service.
 
-    Note MAG-008 (open): MagState has no deployed state.
+    Note MAG-008 (open): MagState has no deployed state. The service can be armed,
+    deploying, idle or in error. A deployed boom shows as idle at best, and what a unit
+    without a boom reports is not said.
     """
 
     DEPLOY_ARM = 0, "Deploy Arm"

@@ -12,7 +12,8 @@ class MntState(_enumeration.OpenEnum):
 
     State of a magnetometer service.
 
-    Note MAG-009 (open): MntState: Mnt is not explained.
+    Note MAG-009 (open): MntState: Mnt is not explained. The states belong to the
+    magnetometers by the table that uses them; Mnt stands nowhere else.
     """
 
     OFF = 0, "Off"
@@ -21,8 +22,9 @@ class MntState(_enumeration.OpenEnum):
     AUTO = 3, "Auto"
     """Sampling automatically.
 
-    Note MAG-010 (open): MntState: Auto and Sample.
+    Note MAG-010 (open): MntState: Auto and Sample. Both mean sampling; when a single
+    sample is taken, and how automatic sampling is started, is not in the excerpt.
     """
     SAMPLE = 4, "Sample"
-    """Note MAG-010 (open): MntState: Auto and Sample."""
+    """Note MAG-010 (open): see Auto."""
     ERROR = 5, "Error"

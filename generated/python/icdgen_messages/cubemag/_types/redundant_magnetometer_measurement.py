@@ -12,6 +12,8 @@ class RedundantMagnetometerMeasurement(_base.Message):
     """Redundant Magnetometer Measurement: telemetry 193, 13 bytes. Table 64.
 
     Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
+    Three bits of the status and seven of each measurement are not described. They are
+    held as reserved.
     """
 
     NODE = "cubemag"
@@ -25,31 +27,36 @@ class RedundantMagnetometerMeasurement(_base.Message):
     x_axis: float = _base.field("X_axis", 0, 32, "float", default=0.0, unit="nT")
     """X_axis: bits 0 to 31, 32-bit float, in nT.
 
-    Note MAG-016 (likely): FLOAT is not defined.
+    Note MAG-016 (likely): FLOAT is not defined. IEEE 754 of 32 bits, least significant
+    byte first, is held.
 
-    Note MAG-017 (open): Axes of the measurements are not defined.
+    Note MAG-017 (open): Axes of the measurements are not defined. Whether they are
+    those of the sensor, of the deployed boom or of the satellite is not said. The names
+    carry an underscore that no other name has.
 
-    Note MAG-018 (certain): nT here, uT there.
+    Note MAG-018 (certain): nT here, uT there. The node measures in nT as a float, the
+    control program reports the same field in uT with a step of 0.01. A reader who mixes
+    them is wrong by a factor of 1000.
     """
 
     y_axis: float = _base.field("Y_axis", 32, 32, "float", default=0.0, unit="nT")
     """Y_axis: bits 32 to 63, 32-bit float, in nT.
 
-    Note MAG-016 (likely): FLOAT is not defined.
+    Note MAG-016 (likely): see X_axis.
 
-    Note MAG-017 (open): Axes of the measurements are not defined.
+    Note MAG-017 (open): see X_axis.
 
-    Note MAG-018 (certain): nT here, uT there.
+    Note MAG-018 (certain): see X_axis.
     """
 
     z_axis: float = _base.field("Z_axis", 64, 32, "float", default=0.0, unit="nT")
     """Z_axis: bits 64 to 95, 32-bit float, in nT.
 
-    Note MAG-016 (likely): FLOAT is not defined.
+    Note MAG-016 (likely): see X_axis.
 
-    Note MAG-017 (open): Axes of the measurements are not defined.
+    Note MAG-017 (open): see X_axis.
 
-    Note MAG-018 (certain): nT here, uT there.
+    Note MAG-018 (certain): see X_axis.
     """
 
     data_valid: bool = _base.field("Data Valid", 96, 1, "bool", default=False)

@@ -15,7 +15,9 @@ class State(_base.Message):
 
     States of all services.
 
-    Note MAG-004 (certain): Number 57 is used twice in the addendum.
+    Note MAG-004 (certain): Number 57 is used twice in the addendum. Both parts have a
+    Table 57, State here and Motor Power there. They come from two documents, and the
+    source does not say where one ends.
     """
 
     NODE = "cubemag"
@@ -31,7 +33,9 @@ class State(_base.Message):
 
     Of the CubeMag service.
 
-    Note MAG-007 (certain): State: names are cut short in three ways.
+    Note MAG-007 (certain): State: names are cut short in three ways. MagSvc, Primary
+    Mag and Red Mag stand for service, primary and redundant magnetometer; the
+    measurement frames spell redundant out.
     """
 
     primary_mag_state: MntState = _base.field("Primary Mag State", 8, 8, "enum", default=MntState.OFF)
@@ -39,7 +43,7 @@ class State(_base.Message):
 
     Of the primary magnetometer.
 
-    Note MAG-007 (certain): State: names are cut short in three ways.
+    Note MAG-007 (certain): see MagSvc State.
     """
 
     red_mag_state: MntState = _base.field("Red Mag State", 16, 8, "enum", default=MntState.OFF)
@@ -47,5 +51,5 @@ class State(_base.Message):
 
     Of the redundant magnetometer.
 
-    Note MAG-007 (certain): State: names are cut short in three ways.
+    Note MAG-007 (certain): see MagSvc State.
     """

@@ -14,12 +14,15 @@ class MotorPower(_base.Message):
     Whether the motor is switched on.
 
     Note WHL-005 (certain): Table numbers collide with those of the manual and of
-    CubeMag.
+    CubeMag. Tables 47, 48, 56 and 57 exist in the manual with other contents, 57 also
+    in the first part of the addendum.
 
     Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled
-    word.
+    word. The frame tells whether the motor is on; its text switches it, and its field
+    is a power switch that is switched.
 
-    Note WHL-016 (open): Motor Power: seven bits are not described.
+    Note WHL-016 (open): Motor Power: seven bits are not described. One bit of the byte
+    is explained; the others are held as reserved.
     """
 
     NODE = "cubewheel"
@@ -33,6 +36,5 @@ class MotorPower(_base.Message):
     motor_power_switch: bool = _base.field("Motor Power Switch", 0, 1, "bool", default=False)
     """Motor Power Switch: bit 0.
 
-    Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled
-    word.
+    Note WHL-015 (likely): see Motor Power.
     """

@@ -17,5 +17,7 @@ class WheelErrorState(_enumeration.OpenEnum):
     SPEED_NOT_REACHED_TIMEOUT = 3, "Speed Not Reached Timeout"
     """The speed asked for was not reached in time.
 
-    Note WHL-011 (open): Speed Not Reached Timeout: the time allowed is not given.
+    Note WHL-011 (open): Speed Not Reached Timeout: the time allowed is not given. The
+    period is called allocated; neither a figure nor a message that sets it is in the
+    excerpt.
     """

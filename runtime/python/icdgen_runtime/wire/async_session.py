@@ -1,0 +1,113 @@
+"""A client over streams of asyncio, for programs that do other things while they wait."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable
+from typing import Optional, TypeVar
+
+from .._base import Message
+from .client import Client, Request
+from .events import Event, Outcome, OutcomeOf
+from .exchanges import Exchange, Exchanges, P, Progress, T, executed, outcome_of
+from .link import Link, Settings
+
+M = TypeVar("M", bound=Message)
+
+_PIECE = 4096  # bytes that are read at a time
+
+
+class AsyncSession(Exchanges):
+    """Asks, and awaits the outcome, over the bytes of a UART: `Session` for asyncio.
+
+    The streams are yours: those of `asyncio.open_connection`, or of a serial port
+    (pyserial-asyncio). What they raise ends the request, as does its cancellation, and
+    `ConnectionResetError` tells that the other side closed. Requests of several tasks
+    wait for each other. ``clock`` gives seconds; ``on_event`` is told of what comes
+    unasked.
+    """
+
+    def __init__(
+        self,
+        link: Link,
+        reader: asyncio.StreamReader,
+        writer: asyncio.StreamWriter,
+        crc: bool = False,
+        settings: Optional[Settings] = None,
+        on_event: Optional[Callable[[Event], object]] = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        super().__init__(Client(link, "uart", crc, settings=settings), on_event, clock)
+        self._reader, self._writer = reader, writer
+        self._turn: Optional[asyncio.Lock] = None
+
+    async def get(self, message: type[M]) -> M:
+        """Requests telemetry, or reads a setting.
+
+        Raises `RefusedError`, `ReplyTimeoutError` and what `Client.request` does.
+        """
+        outcome = await self._run(self._exchange(self.client.request, message))
+        return message.from_bytes(executed(outcome).data)
+
+    async def ask(self, message: type[M]) -> OutcomeOf[M]:
+        """Requests telemetry, or reads a setting; its outcome.
+
+        Raises what `Client.request` does.
+        """
+        outcome = await self._run(self._exchange(self.client.request, message))
+        return outcome_of(outcome, message)
+
+    async def send(self, message: Message, repeat: bool = False) -> None:
+        """Sends a telecommand or a setting; raises like `get` and `Client.send`."""
+        executed(await self._run(self._exchange(self.client.send, message, repeat)))
+
+    async def start(self, request: Request) -> Outcome:
+        """Any request; its outcome. Raises what `Client.start` does."""
+        return await self._run(self._exchange(self.client.start, request))
+
+    async def run(self, procedure: P, progress: Optional[Progress] = None) -> P:
+        """Runs a procedure to its end, as `Session.run` does. Raises `FailedError`."""
+        return await self._run(self._procedure(procedure, progress))
+
+    async def wait(self, until: Optional[float] = None) -> list[Event]:
+        """What happens next, by ``until`` at the latest (milliseconds of the clock).
+
+        Without ``until`` it waits as long as the client wants to, and a second at most.
+        """
+        await self._flush()
+        try:
+            reading = self._reader.read(_PIECE)
+            data = await asyncio.wait_for(reading, self._seconds(until))
+        except asyncio.TimeoutError:  # which is `TimeoutError` only since 3.11
+            events = self.client.tick(self._now())
+        else:
+            if not data:
+                raise ConnectionResetError("the other side closed the connection")
+            events = self.client.received(self._now(), data)
+        await self._flush()
+        return self._tell_unasked(events)
+
+    async def _run(self, exchange: Exchange[T]) -> T:
+        if self._turn is None:
+            self._turn = asyncio.Lock()
+        async with self._turn:
+            try:
+                step = next(exchange)
+                while True:
+                    if step == "send":
+                        await self._flush()
+                        step = exchange.send([])
+                    else:
+                        step = exchange.send(await self.wait(step))
+            except StopIteration as end:
+                result: T = end.value
+                return result
+            finally:
+                exchange.close()
+
+    async def _flush(self) -> None:
+        data = self.client.output()
+        if data:
+            self._writer.write(data)
+            await self._writer.drain()

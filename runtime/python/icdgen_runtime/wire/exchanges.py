@@ -1,0 +1,144 @@
+"""What blocking and asyncio sessions share: how a request, or a procedure, is driven to its end by whoever can wait."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Generator
+from typing import Any, Literal, Optional, TypeVar, Union, cast
+
+from .client import Client, Request
+from .events import (
+    AnyDone,
+    Done,
+    Event,
+    Outcome,
+    OutcomeOf,
+    R_co,
+    Refused,
+    Timeout,
+)
+from .failures import FailedError, RefusedError, ReplyTimeoutError
+from .procedures import Procedure
+
+P = TypeVar("P", bound=Procedure)
+T = TypeVar("T")
+Step = Union[Literal["send"], float, None]
+Exchange = Generator[Step, list[Event], T]
+"""Wants what the client has to be sent, or what happens next, by a time in milliseconds
+if it says one; returns how it ended."""
+Progress = Callable[[int, Optional[int]], object]
+
+_LONGEST_WAIT = 1000.0  # ms in one go
+
+
+class Exchanges:
+    """A client, a clock, and whom to tell what comes unasked."""
+
+    def __init__(
+        self,
+        client: Client,
+        on_event: Optional[Callable[[Event], object]] = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.client = client
+        self._clock, self._on_event = clock, on_event
+
+    def _now(self) -> float:
+        return self._clock() * 1000
+
+    def _seconds(self, until: Optional[float]) -> float:
+        """How long to wait at most."""
+        now = self._now()
+        times = [time for time in (until, self.client.deadline) if time is not None]
+        return max(0.0, min([_LONGEST_WAIT, *(time - now for time in times)])) / 1000
+
+    def _tell(self, event: Event) -> None:
+        if self._on_event:
+            self._on_event(event)
+
+    def _tell_unasked(self, events: list[Event]) -> list[Event]:
+        for event in events:
+            if not isinstance(event, (Done, Refused, Timeout)):
+                self._tell(event)
+        return events
+
+    def _exchange(
+        self, start: Callable[..., list[Event]], *arguments: Any
+    ) -> Exchange[Outcome]:
+        """A request, which a method of the client begins, to its outcome."""
+        try:
+            events = start(self._now(), *arguments)
+            while True:
+                for event in events:
+                    if isinstance(event, (Done, Refused, Timeout)):
+                        yield "send"
+                        return event
+                events = yield None
+        finally:
+            self.client.cancel()  # else a port that fails leaves it busy
+
+    def _procedure(
+        self, procedure: P, progress: Optional[Progress] = None
+    ) -> Exchange[P]:
+        """A procedure to its end. Raises `FailedError`."""
+        try:
+            return (yield from self._driven(procedure, progress))
+        finally:
+            self.client.cancel()
+
+    def _driven(self, procedure: P, progress: Optional[Progress] = None) -> Exchange[P]:
+        events: list[Event] = []
+        shown: Optional[tuple[int, Optional[int]]] = None
+        asked: Optional[Request] = None
+        refused: Optional[Refused] = None
+        left = 0
+        while True:
+            is_again = False
+            for event in events:
+                if isinstance(event, Refused):
+                    refused = event
+                    if _may_be_damaged(event):
+                        self._tell(event)
+                        is_again = bool(asked and asked.repeat) and left > 0
+                        if is_again:
+                            continue
+                        event = Timeout(event.id, event.attempts)
+                procedure.event(self._now(), event)
+            events = []
+            if is_again:
+                left -= 1
+            elif not self.client.busy:
+                asked = procedure.next(self._now())
+                left = self.client.settings.retries
+            if asked and not self.client.busy:
+                events = self.client.start(self._now(), asked)
+            yield "send"
+            if progress and procedure.progress != shown:
+                shown = procedure.progress
+                progress(*shown)
+            if procedure.result == "done":
+                return procedure
+            if procedure.result:
+                why = refused if procedure.result == "refused" else None
+                raise FailedError(procedure.result, why)
+            if not events:
+                events = yield procedure.deadline
+
+
+def executed(outcome: Outcome) -> AnyDone:
+    """What was done. Raises `RefusedError` and `ReplyTimeoutError`."""
+    if isinstance(outcome, Refused):
+        raise RefusedError(outcome)
+    if isinstance(outcome, Timeout):
+        raise ReplyTimeoutError(outcome)
+    return outcome
+
+
+def outcome_of(outcome: Outcome, message: type[R_co]) -> OutcomeOf[R_co]:
+    """The outcome of a request of such a message: the client has seen to it."""
+    return cast(OutcomeOf[R_co], outcome)
+
+
+def _may_be_damaged(event: Refused) -> bool:
+    """Whether the code is one that the ICD does not have."""
+    return event.code is not None and event.reason is None

@@ -1,0 +1,67 @@
+"""What comments say, in every language: of errata once with the reason, of parts of units by the name of the part."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.describe import describe
+from icdgen.describe.wholes import part_of_unit
+from icdgen.icd.model import Field
+from icdgen.icd.units import STANDARD, Unit
+from tests.conformance.icds import shipped
+
+
+def parts():
+    """Every message and enumeration, and what is in it."""
+    for node in describe(shipped()).nodes:
+        yield from ((one, (one, *one.members)) for one in (*node.messages, *node.enums))
+
+
+def test_an_erratum_is_told_with_its_reason_where_it_is_met_first_and_else_where_that_is():
+    repeated = 0
+    for whole, things in parts():
+        full: dict[str, str] = {}
+        for thing in things:
+            for erratum, text in zip(thing.model.errata, thing.comment.errata, strict=True):
+                assert text.startswith(f"{erratum.label} {erratum.id}{erratum.sureness}: ")
+                if erratum.id in full:
+                    assert text.endswith(f": see {full[erratum.id]}."), whole.model.name
+                    repeated += 1
+                else:
+                    full[erratum.id] = thing.model.name
+                    assert erratum.title in text
+    assert repeated > 100
+
+
+def test_the_reason_stands_with_the_title():
+    message = next(
+        one for one in describe(shipped()).node("cubeacp").messages if one.model.name == "ADCS Configuration"
+    )
+    (radius,) = (one for one in message.members if one.model.name == "Nadir Max Radius")
+    assert radius.comment.errata == (
+        "Erratum ACP-148 (certain): Degree sign is deg. Two fields have the sign, all other angles deg.",
+    )
+
+
+@pytest.mark.parametrize(
+    ("symbol", "per", "name", "words"),
+    [
+        ("km", 1000, "m", "m"),
+        ("km", 1_000_000, "mm", "mm"),
+        ("km/s", 1000, "m_per_s", "m/s"),
+        ("m/s", 1000, "mm_per_s", "mm/s"),
+        ("uT", 1000, "nt", "nT"),
+        ("mA", 1000, "ua", "uA"),
+        ("deg", 1000, "mdeg", "thousandths of deg"),
+        ("C", 1000, "mc", "thousandths of C"),
+        ("%", 1000, "milli_percent", "thousandths of %"),
+    ],
+)
+def test_a_part_of_a_unit_is_called_what_people_call_it(symbol, per, name, words):
+    field = Field(name="One", at=0, bits=8, type="uint", unit=STANDARD[symbol])
+    assert part_of_unit(field, per) == (name, words)
+
+
+def test_a_unit_of_the_icd_itself_is_not_taken_apart():
+    field = Field(name="One", at=0, bits=8, type="uint", unit=Unit("klick", "km", "length"))
+    assert part_of_unit(field, 1000) == ("m", "thousandths of klick")

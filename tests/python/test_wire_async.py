@@ -1,0 +1,157 @@
+"""The asyncio session over a connection to a simulator, and over connections that fail."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import asynccontextmanager
+from urllib.parse import urlsplit
+
+import pytest
+
+from tests.sim.device import simulator
+
+
+@pytest.fixture(scope="module")
+def wire(shipped):
+    return shipped.module("wire")
+
+
+@pytest.fixture(scope="module")
+def acp(shipped):
+    return shipped.module("cubeacp")
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    """Where a simulator listens that holds a file."""
+    file = tmp_path_factory.mktemp("files") / "file.bin"
+    file.write_bytes(bytes(range(256)) * 3)
+    options = "--set", "Estimated Attitude Angles", "roll=-12.34", "--file", f"2:5={file}"
+    with simulator("--node", "cubeacp", "--tcp", "0", *options) as (place, _):
+        yield urlsplit(place)
+
+
+@asynccontextmanager
+async def session(wire, acp, place, **options):
+    reader, writer = await asyncio.open_connection(place.hostname, place.port)
+    try:
+        yield wire.AsyncSession(acp.LINK, reader, writer, **options)
+    finally:
+        writer.close()
+        await writer.wait_closed()
+
+
+@asynccontextmanager
+async def served(wire, acp, answer):
+    """A session over a connection to whatever ``answer(reader, writer)`` does."""
+
+    async def handle(reader, writer):
+        await answer(reader, writer)
+        writer.close()
+
+    server = await asyncio.start_server(handle, "127.0.0.1", 0)
+    async with server:
+        reader, writer = await asyncio.open_connection(*server.sockets[0].getsockname())
+        try:
+            settings = acp.LINK.settings._replace(reply_timeout=50, retries=1)
+            yield wire.AsyncSession(acp.LINK, reader, writer, settings=settings)
+        finally:
+            writer.close()
+
+
+def test_a_command_is_acknowledged_and_a_frame_comes(wire, acp, place):
+    async def talk():
+        async with session(wire, acp, place) as device:
+            await device.send(acp.SetAdcsRunMode(enabled=acp.AdcsRunMode.ENABLED))
+            outcome = await device.ask(acp.EstimatedAttitudeAngles)
+            return await device.get(acp.EstimatedAttitudeAngles), outcome
+
+    angles, outcome = asyncio.run(talk())
+    assert angles.estimated_roll_angle_deg == -12.34
+    assert isinstance(outcome, wire.Done) and outcome.message == angles
+    assert outcome.of(acp.EstimatedAttitudeAngles) == angles and outcome.of(acp.Identification) is None
+
+
+def test_requests_of_several_tasks_wait_for_each_other(wire, acp, place):
+    async def talk():
+        async with session(wire, acp, place) as device:
+            return await asyncio.gather(*(device.get(acp.Identification) for _ in range(5)))
+
+    assert [one.node_type for one in asyncio.run(talk())] == [acp.NODE_TYPE] * 5
+
+
+def test_a_file_is_downloaded_while_the_loop_goes_on(wire, acp, place):
+    shown, turns = [], 0
+
+    async def count():
+        nonlocal turns
+        while True:
+            turns += 1
+            await asyncio.sleep(0)
+
+    async def talk():
+        async with session(wire, acp, place) as device:
+            counting = asyncio.create_task(count())
+            download = wire.Download(acp.LINK, "uart", 2, 5, 768)
+            done = await device.run(download, lambda *progress: shown.append(progress))
+            counting.cancel()
+            return done.data
+
+    assert asyncio.run(talk()) == bytes(range(256)) * 3
+    assert shown[-1] == (768, 768) and turns > 10
+
+
+def test_a_request_that_is_cancelled_leaves_the_session_free(wire, acp, place):
+    async def silent(reader, writer):
+        await reader.read()
+
+    async def talk():
+        async with served(wire, acp, silent) as device:
+            task = asyncio.create_task(device.get(acp.Identification))
+            await asyncio.sleep(0.01)
+            task.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await task
+            return device.client.busy
+
+    assert asyncio.run(talk()) is False
+
+
+def test_silence_is_a_time_out_and_a_connection_that_closes_is_told(wire, acp):
+    async def silent(reader, writer):
+        await reader.read()
+
+    async def deaf(reader, writer):
+        await reader.read(1)
+
+    async def talk():
+        async with served(wire, acp, silent) as device:
+            with pytest.raises(wire.ReplyTimeoutError, match="after 2 attempts"):
+                await device.get(acp.Identification)
+            assert isinstance(await device.start(wire.Request("telemetry", 128)), wire.Timeout)
+        async with served(wire, acp, deaf) as device:
+            with pytest.raises(ConnectionResetError, match="closed"):
+                await device.get(acp.Identification)
+            assert not device.client.busy
+
+    asyncio.run(talk())
+
+
+def test_a_message_of_another_node_is_refused_at_once(shipped, wire, acp, place):
+    boot = shipped.module("bootloader")
+    assert boot.State.ID in acp.TELEMETRY and acp.TELEMETRY[boot.State.ID] is not boot.State
+
+    async def talk():
+        async with session(wire, acp, place) as device:
+            for asked in (device.get(boot.State), device.ask(boot.State), device.send(boot.SetBootIndex())):
+                with pytest.raises(shipped.module().UnknownIdError, match="cubeacp has no"):
+                    await asked
+
+    asyncio.run(talk())
+    for bus in ("uart", "i2c", "can"):
+        client = wire.Client(acp.LINK, bus)
+        with pytest.raises(shipped.module().UnknownIdError):
+            client.request(0, boot.State)
+        with pytest.raises(shipped.module().UnknownIdError):
+            client.send(0, boot.SetBootIndex())
+        assert not client.busy
