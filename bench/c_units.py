@@ -4,7 +4,8 @@
 
 The unit includes the header of a node, begins a client on the UART, requests a frame, sends, receives, and decodes what came.
 It is compiled as it is (every unit has functions and tables of its own) and with ICDGEN_SHARED (they are in `icdgen_wire.c`
-and `link.c`).
+and `link.c`). Then whole programs of that kind, on each bus, linked with --gc-sections: with the C library's memory functions,
+without start-up code.
 """
 
 from __future__ import annotations
@@ -52,6 +53,50 @@ void unit_receive(icd_client_t *client, uint32_t now, const uint8_t *bytes, size
     icd_client_received(client, now, bytes, count, on_event, NULL);
 }
 """
+OUTPUT = {
+    "uart": (
+        "const uint8_t *bytes; size_t count;",
+        "icd_client_output(&acp.client, &bytes, &count)",
+        "(uintptr_t)bytes + count",
+    ),
+    "i2c": (
+        "const uint8_t *bytes; size_t count, read;",
+        "icd_client_transfer(&acp.client, &bytes, &count, &read)",
+        "(uintptr_t)bytes + count + read",
+    ),
+    "can": ("icd_can_packet_t packet;", "icd_client_next_packet(&acp.client, &packet)", "packet.id + packet.data[0]"),
+}
+INPUT = {
+    "uart": "icd_client_received(&acp.client, 1, (const uint8_t *)port, *port, on_event, NULL)",
+    "i2c": "icd_client_transferred(&acp.client, 1, (const uint8_t *)port, *port, on_event, NULL)",
+    "can": "icd_client_packet(&acp.client, 1, (const icd_can_packet_t *)port, on_event, NULL)",
+}
+PROGRAM = """\
+#include "cubeacp.h"
+int32_t program_roll;
+static void on_event(void *context, const icd_event_t *event)
+{{
+    cubeacp_estimated_attitude_angles_t angles;
+    (void)context;
+    if (cubeacp_receive_estimated_attitude_angles(&angles, event) == ICD_OK) {{
+        program_roll = angles.estimated_roll_angle;
+    }}
+}}
+void program(volatile uint32_t *place);
+void program(volatile uint32_t *place)
+{{
+    static cubeacp_client_t acp;
+    static uint8_t buffer[CUBEACP_CLIENT_BYTES];
+    const uint32_t *const port = (const uint32_t *)(uintptr_t)place;
+    {declared}
+    (void)cubeacp_client_{bus}(&acp, {address}buffer, sizeof buffer);
+    (void)cubeacp_request_estimated_attitude_angles(&acp, 0);
+    while ({output}) {{
+        *place = (uint32_t)({used});
+    }}
+    {input};
+}}
+"""
 WAYS = {"header only": [], "ICDGEN_SHARED": ["-DICDGEN_SHARED"]}
 
 
@@ -61,6 +106,22 @@ def text_bytes(cc: str, folder: Path, source: str, *options: str) -> int:
     subprocess.run([cc, *flags, f"-I{folder}", "-c", str(folder / source), "-o", str(folder / "unit.o")], check=True)
     size = cc.removesuffix("gcc") + "size" if cc.endswith("-gcc") else "size"
     found = subprocess.run([size, str(folder / "unit.o")], check=True, capture_output=True, text=True).stdout
+    return int(found.splitlines()[1].split()[0])
+
+
+def linked_bytes(cc: str, folder: Path, bus: str, *options: str) -> int:
+    """Bytes of code and constants of a program with a client on a bus, which holds what it uses."""
+    declared, output, used = OUTPUT[bus]
+    address = "1, " if bus == "can" else ""
+    text = PROGRAM.format(bus=bus, declared=declared, output=output, used=used, input=INPUT[bus], address=address)
+    (folder / "program.c").write_text(text, encoding="utf-8")
+    flags = ["-std=c99", "-Os", "-ffunction-sections", "-fdata-sections", "-DICDGEN_SHARED", f"-I{folder}", *options]
+    target = ["-mcpu=cortex-m4", "-mthumb", "-nostartfiles"] if "arm" in cc else ["-nostartfiles", "-static"]
+    sources = [str(folder / one) for one in ("program.c", "icdgen_wire.c", "cubeacp/link.c")]
+    out = str(folder / "program.elf")
+    subprocess.run([cc, *flags, *target, "-Wl,--gc-sections,-e,program", *sources, "-o", out], check=True)
+    size = cc.removesuffix("gcc") + "size" if cc.endswith("-gcc") else "size"
+    found = subprocess.run([size, out], check=True, capture_output=True, text=True).stdout
     return int(found.splitlines()[1].split()[0])
 
 
@@ -79,6 +140,9 @@ def main() -> None:
         for source in ("icdgen_wire.c", "cubeacp/link.c"):
             if (folder / source).exists():
                 print(f"{source}, once: {text_bytes(cc, folder, source)} bytes")
+        for bus in OUTPUT:
+            for options in ((), ("-DICDGEN_NO_TABLES",)):
+                print(f"a program on {bus} {' '.join(options)}: {linked_bytes(cc, folder, bus, *options)} bytes")
 
 
 if __name__ == "__main__":

@@ -70,8 +70,8 @@ typedef struct {
     uint16_t packed;
     icdgen_selftest_type_t type;
     void (*view)(const void *message, void *value); /* reads a view, which is no member; NULL if it is one */
-    uint64_t fresh;        /* raw value of a fresh message */
-    const uint64_t *unfit; /* raw values that the member can hold, but not the field */
+    uint64_t fresh;                                 /* raw value of a fresh message */
+    const uint64_t *unfit;                          /* raw values that the member can hold, but not the field */
     uint16_t unfit_count;
     int64_t (*get_whole)(const void *message); /* NULL if it has no integer accessor */
     icd_status_t (*set_whole)(void *message, int64_t value);

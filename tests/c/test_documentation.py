@@ -32,6 +32,41 @@ def test_clang_would_complain(tmp_path):
     assert done.returncode != 0
 
 
+DOXYGEN = """\
+INPUT = {folder}
+OUTPUT_DIRECTORY = {folder}/doxygen
+RECURSIVE = YES
+FILE_PATTERNS = *.h *.c
+OPTIMIZE_OUTPUT_FOR_C = YES
+PREDEFINED = ICDGEN_SHARED
+GENERATE_LATEX = NO
+HAVE_DOT = NO
+QUIET = YES
+WARN_IF_UNDOCUMENTED = NO
+"""
+
+
+def doxygen(folder):
+    """What Doxygen has to say about a folder; its pages lie in ``doxygen/html``."""
+    configuration = folder / "Doxyfile"
+    configuration.write_text(DOXYGEN.format(folder=folder))
+    return subprocess.run(["doxygen", configuration], capture_output=True, text=True, check=True).stderr
+
+
+@pytest.mark.parametrize("which", ["shipped", "hostile"])
+def test_doxygen_builds_a_site_without_a_warning(which, tmp_path):
+    icd = harness.shipped() if which == "shipped" else harness.read(hostile_words.write(tmp_path))
+    folder = harness.generate(icd, tmp_path / "c")
+    assert doxygen(folder) == ""
+    page = "estimated__attitude__angles_8h.html" if which == "shipped" else "index.html"
+    assert (folder / "doxygen" / "html" / page).exists()
+
+
+def test_doxygen_would_complain(tmp_path):
+    (tmp_path / "bad.h").write_text("/** @file */\n/** @param other what there is not */\nint bad(int one);\n")
+    assert "other" in doxygen(tmp_path)
+
+
 @pytest.mark.parametrize("word", hostile_words.WORDS)
 def test_without_its_backslashes_a_comment_says_what_the_icd_says(word):
     text = comment([words(word)]).removeprefix("/** ").removesuffix(" */")

@@ -87,3 +87,45 @@ def test_external_names_differ_in_the_31_characters_that_c_warrants(folder):
     layer = objects(folder, SHARED, "gcc", "c99", "-O1")
     names = [name for path in layer for name in symbols(path, "T")]
     assert len(names) > 50 and len({name[:31] for name in names}) == len(names)
+
+
+CLIENT = """\
+#include "cubeacp.h"
+int main(void);
+int main(void)
+{{
+    static cubeacp_client_t acp;
+    static uint8_t buffer[CUBEACP_CLIENT_BYTES];
+    return cubeacp_client_{bus}(&acp, {address}buffer, sizeof buffer) == ICD_OK &&
+            cubeacp_request_identification(&acp, 0) == ICD_OK
+        ? 0
+        : 1;
+}}
+"""
+
+
+def linked(folder, bus, *options):
+    """The symbols of a program that begins a client on one bus, as the linker leaves them."""
+    (folder / "client.c").write_text(CLIENT.format(bus=bus, address="1, " if bus == "can" else ""))
+    flags = ["-std=c99", "-Os", "-ffunction-sections", "-fdata-sections", "-DICDGEN_SHARED", *options]
+    made = [
+        harness.compile(folder / name, *flags, *harness.WARNINGS, "-c", f"-I{folder}", output=folder / f"{place}.o")
+        for place, name in enumerate(("client.c", "icdgen_wire.c", "cubeacp/link.c"))
+    ]
+    subprocess.run(["gcc", *made, "-Wl,--gc-sections", "-o", folder / "client"], check=True)
+    subprocess.run([folder / "client"], check=True)
+    lines = subprocess.run(["nm", folder / "client"], capture_output=True, text=True, check=True).stdout.splitlines()
+    return {line.split()[-1] for line in lines}
+
+
+def test_a_program_has_nothing_of_the_buses_that_it_does_not_begin(folder):
+    uart, can = linked(folder, "uart"), linked(folder, "can")
+    assert "icd_uart_decoder_init" in uart and "icd_can_split" not in uart and "icd_can_joiner_init" not in uart
+    assert "icd_can_split" in can and "icd_uart_decoder_init" not in can
+
+
+def test_a_program_without_tables_of_checksums_has_none(folder):
+    def with_tables(*options):
+        return {name for name in linked(folder, "uart", *options) if "_table" in name and name.startswith("crc")}
+
+    assert with_tables() and not with_tables("-DICDGEN_NO_TABLES")

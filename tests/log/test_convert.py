@@ -154,6 +154,10 @@ messages:
       - {at: 216, bits: 17, name: i, type: enum, enum: Way}
       - {at: 233, bits: 23, name: j, type: int, unit: deg, formula: raw/7.0}
       - {at: 256, bits: 32, name: k, type: text}
+      - {at: 16, bits: 32, name: l, type: uint, view: true, formula: raw*0.5}
+      - {at: 187, bits: 40, name: m, type: int, view: true}
+      - {at: 50, bits: 1, name: p, type: bool, view: true}
+      - {at: 256, bits: 32, name: o, type: float, view: true}
 """
 
 

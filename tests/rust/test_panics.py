@@ -31,6 +31,10 @@ SCALED = """\
 #[no_mangle] pub fn get_{name}(message: &{type}) -> f64 {{ message.{getter}() }}
 #[no_mangle] pub fn set_{name}(message: &mut {type}, to: f64) -> Result<(), icd::Error> {{ message.{setter}(to) }}
 """
+ELEMENT = """\
+#[no_mangle] pub fn get_{name}(message: &{type}, at: usize) -> Option<f64> {{ message.{getter}(at) }}
+#[no_mangle] pub fn set_{name}(message: &mut {type}, at: usize, to: f64) -> Result<(), icd::Error> {{ message.{setter}(at, to) }}
+"""
 DISPATCHER = """\
 #[no_mangle] pub fn dispatch_{name}(id: {id}, bytes: &[u8]) -> Result<{type}, icd::Error> {{ {type}::from_bytes(id, bytes) }}
 #[no_mangle] pub fn write_{name}(it: &{type}, to: &mut [u8]) -> Result<usize, icd::Error> {{ it.write_to(to) }}
@@ -50,15 +54,16 @@ def everything(icd: Icd) -> Iterator[str]:
         for message in node.messages:
             name, type_ = f"{node.name}_{message.name}", f"icd::{node.name}::{type_name(message)}"
             yield MESSAGE.format(name=name, type=type_)
-            for one in (field.physical_name for field in message.fields if field.steps):
-                yield SCALED.format(name=f"{name}_{one}", type=type_, getter=one, setter=f"set_{one}")
+            for field in (field for field in message.members if field.steps):
+                one, template = field.physical_name, ELEMENT if field.count else SCALED
+                yield template.format(name=f"{name}_{one}", type=type_, getter=one, setter=f"set_{one}")
         for way, messages in (("telecommand", node.telecommands), ("telemetry", node.telemetry)):
             if messages:
                 type_ = f"icd::{node.name}::{way.capitalize()}"
                 yield DISPATCHER.format(name=f"{node.name}_{way}", type=type_, id=f"u{described.id_bits}")
         for enum in node.enums:
             name, type_ = f"{node.name}_{type_name(enum)}", f"icd::{node.name}::enums::{type_name(enum)}"
-            yield ENUM.format(name=name, type=type_, raw=f"u{enum.storage.bits}")
+            yield ENUM.format(name=name, type=type_, raw=f"{'i' if enum.storage.signed else 'u'}{enum.storage.bits}")
 
 
 def symbols(subject, toolchain: str, level: str, folder: Path, more: str = "") -> set[str]:

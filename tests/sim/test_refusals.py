@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
+from icdgen.errors import UserError
 from icdgen.protocol import transfer
+from icdgen.sim.control import _check_wave, fitting
+from icdgen.sim.values import Values
 from tests.sim.device import ICD
 from tests.sim.port import Refusing
 from tests.sim.reference import Session
@@ -43,6 +48,25 @@ def test_a_refusal_that_the_icd_does_not_know_is_a_time_out_at_last():
     result, heard, acknowledged = uploading(ODD, 100)
     assert result == "timeout"
     assert [event["code"] for event in heard] == [ODD] * 4 and acknowledged == 4
+
+
+def test_a_view_is_not_set_and_follows_what_is():
+    node = ICD.node("cubeacp")
+    frame = next(m for m in ICD.messages_of(node) if m.name == "Estimated Attitude Angles")
+    own = frame.fields[0]
+    view = replace(own, name="Seen", bits=8, type="int", scale=None, unit=None, view=True)
+    both = replace(frame, fields=(*frame.fields, view))
+    values = Values(replace(ICD, nodes=tuple(_with(node, frame, both) for node in ICD.nodes)), node)
+    values.update(both, {own.name: -2})
+    assert values.raw(both)["Seen"] == -2
+    for wrong in (lambda: fitting(both, view, "1"), lambda: _check_wave("step 1", view, {"wave": "sine"})):
+        with pytest.raises(UserError, match="a view has no bits of its own"):
+            wrong()
+
+
+def _with(node, frame, other):
+    messages = tuple(other if one is frame else one for one in node.messages)
+    return replace(node, messages=messages)
 
 
 def test_a_refusal_that_the_icd_knows_is_not_asked_again():

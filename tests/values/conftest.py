@@ -69,6 +69,13 @@ messages:
     fields:
       - {at: 0,  bits: 80, name: Software, type: text}
       - {at: 80, bits: 16, name: Hardware, type: text}
+  - name: Set Heaters
+    id: 22
+    kind: telecommand
+    length: 9
+    fields:
+      - {at: 0,  bits: 16, count: 3, name: Temperatures, identifier: temps, type: int, unit: C, formula: raw*0.01, max: 80}
+      - {at: 48, bits: 12, count: 2, name: Levels, type: uint}
   - name: Seen Twice
     id: 152
     kind: telemetry

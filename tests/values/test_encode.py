@@ -246,3 +246,32 @@ def test_a_view_says_what_the_fields_make_of_its_bits_and_is_not_set(icd):
 def test_a_text_that_does_not_fit_is_refused(icd, text):
     refused = refusal(encode, icd, "top", "Version", [f"software={text}", "hardware=1"], kind="telemetry")
     assert str(refused) == f"Software: `{text}` is not of up to 10 ASCII characters"
+
+
+def test_an_array_takes_all_of_its_values_in_brackets(icd):
+    frame = encode(icd, "top", "Set Heaters", ["temperatures=[1, 2.5, -3]", "Levels=[1,4095]"])
+    assert frame.data.hex(" ") == "64 00 fa 00 d4 fe 01 f0 ff"
+    assert [row.text for row in frame.rows] == ["1", "2.5", "-3", "1", "4095"]
+
+
+@pytest.mark.parametrize("name", ["Temperatures", "temperatures", "temps"])
+def test_an_element_of_an_array_is_given_by_its_index(icd, name):
+    values = [f"{name}[{index}]={index}" for index in range(3)]
+    assert encode(icd, "top", "Set Heaters", [*values, "levels=[0, 0]"]).data.hex(" ") == "00 00 64 00 c8 00 00 00 00"
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        (["temperatures=[1, 2]", "levels=[0,0]"], "`temperatures` takes 3 values in brackets, 2 given"),
+        (["temperatures=7", "levels=[0,0]"], "`temperatures` takes 3 values in brackets, not 7"),
+        (["temperatures=[1, 2, 81]", "levels=[0,0]"], "Temperatures[2]: 81 is not allowed: above the maximum 80 C"),
+        (["temperatures=[1, 2, 3]", "levels=[0,4096]"], "Levels[1]: takes 0 to 4095, not 4096"),
+        (["temps=[1,2,3]", "temps[1]=1", "levels=[0,0]"], "`Temperatures[1]` is given twice: 2 and 1"),
+        (["temps=[1,2,3]", "levels[0]=1"], "no value for `Levels[1]`"),
+    ],
+)
+def test_what_an_array_does_not_take_is_said_of_the_array_or_of_its_element(icd, values, said):
+    with pytest.raises(BadValue) as caught:
+        encode(icd, "top", "Set Heaters", values)
+    assert said in str(caught.value)

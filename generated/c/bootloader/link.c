@@ -149,6 +149,7 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
         &can_extended, /* messages of several packets */
     };
+#ifndef ICDGEN_NO_TABLES
     static const uint16_t crc16_table[] = {
         0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u,
         0x8108u, 0x9129u, 0xa14au, 0xb16bu, 0xc18cu, 0xd1adu, 0xe1ceu, 0xf1efu,
@@ -183,8 +184,9 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         0xef1fu, 0xff3eu, 0xcf5du, 0xdf7cu, 0xaf9bu, 0xbfbau, 0x8fd9u, 0x9ff8u,
         0x6e17u, 0x7e36u, 0x4e55u, 0x5e74u, 0x2e93u, 0x3eb2u, 0x0ed1u, 0x1ef0u,
     };
+#endif
     static const icd_crc_form_t crc16 = {
-        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, crc16_table,
+        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, ICDGEN_TABLE(crc16_table),
     };
     static const icd_time_form_t packed_time = {
         {25u, 7u, 1u, 1980u}, /* year */

@@ -281,6 +281,7 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
         &can_extended, /* messages of several packets */
     };
+#ifndef ICDGEN_NO_TABLES
     static const uint16_t crc8_table[] = {
         0x00u, 0x12u, 0x24u, 0x36u, 0x48u, 0x5au, 0x6cu, 0x7eu,
         0x90u, 0x82u, 0xb4u, 0xa6u, 0xd8u, 0xcau, 0xfcu, 0xeeu,
@@ -315,6 +316,7 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         0x1cu, 0x0eu, 0x38u, 0x2au, 0x54u, 0x46u, 0x70u, 0x62u,
         0x8cu, 0x9eu, 0xa8u, 0xbau, 0xc4u, 0xd6u, 0xe0u, 0xf2u,
     };
+#endif
     /**
      * Assumed covers_id: Whether the id counts among the bytes of a command is not said. The extra byte of a frame can
      * cover the frame only. Assumed telecommand: The checksum is offered for commands in general, CAN included. None is
@@ -325,8 +327,9 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         3u, /* telecommand_buses */
         2u, /* telemetry_buses */
         1u, /* bytes */
-        {8u, 0x12u, 0x0u, true, true, 0x0u, true, 0xffu, crc8_table}, /* CRC */
+        {8u, 0x12u, 0x0u, true, true, 0x0u, true, 0xffu, ICDGEN_TABLE(crc8_table)}, /* CRC */
     };
+#ifndef ICDGEN_NO_TABLES
     static const uint16_t crc16_table[] = {
         0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u,
         0x8108u, 0x9129u, 0xa14au, 0xb16bu, 0xc18cu, 0xd1adu, 0xe1ceu, 0xf1efu,
@@ -361,8 +364,9 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         0xef1fu, 0xff3eu, 0xcf5du, 0xdf7cu, 0xaf9bu, 0xbfbau, 0x8fd9u, 0x9ff8u,
         0x6e17u, 0x7e36u, 0x4e55u, 0x5e74u, 0x2e93u, 0x3eb2u, 0x0ed1u, 0x1ef0u,
     };
+#endif
     static const icd_crc_form_t crc16 = {
-        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, crc16_table,
+        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, ICDGEN_TABLE(crc16_table),
     };
     static const icd_log_bit_t log_bits[] = {
         {144, 6u}, /* bit 0: Communication Status */

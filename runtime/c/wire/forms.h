@@ -63,6 +63,13 @@ typedef struct {
     uint32_t code;
 } icd_error_code_t;
 
+/* A table of checksums, unless there are to be none. */
+#ifdef ICDGEN_NO_TABLES
+#define ICDGEN_TABLE(table) NULL
+#else
+#define ICDGEN_TABLE(table) (table)
+#endif
+
 /** Parameters of a CRC in the notation of the usual catalogues. */
 typedef struct {
     /** Bits of the checksum. */

@@ -23,6 +23,7 @@ class Table(NamedTuple):
     type: str
     name: str
     rows: Sequence[str]
+    unless: str = ""  # the macro that leaves it out
 
 
 class Row(NamedTuple):
@@ -216,7 +217,8 @@ class _Tables:
         table = "NULL"
         if one.width <= 16:
             entries = (f"{value:#0{2 + -(-one.width // 4)}x}u" for value in crc_table(one))
-            table = self.numbers(f"{name}_table", "uint16_t", entries, 8)
+            table = f"ICDGEN_TABLE({self.numbers(f'{name}_table', 'uint16_t', entries, 8)})"
+            self.tables[-1] = self.tables[-1]._replace(unless="ICDGEN_NO_TABLES")
         return f"{self.values(name, one)}, {table}"
 
     def checksum(self) -> str:

@@ -93,11 +93,8 @@ pub(crate) fn words<T: Copy + Default, const SIZE: usize, const N: usize>(
     value: impl Fn([u8; SIZE]) -> T,
 ) -> [T; N] {
     let mut values = [T::default(); N];
-    let rest = bytes.get(at..).unwrap_or_default();
-    for (target, word) in values.iter_mut().zip(rest.chunks_exact(SIZE)) {
-        if let Ok(word) = word.try_into() {
-            *target = value(word);
-        }
+    for (index, target) in values.iter_mut().enumerate() {
+        *target = value(array(bytes, at + index * SIZE));
     }
     values
 }
@@ -110,9 +107,8 @@ pub(crate) fn put_words<T: Copy, const SIZE: usize, const N: usize>(
     values: &[T; N],
     word: impl Fn(T) -> [u8; SIZE],
 ) {
-    let rest = bytes.get_mut(at..).unwrap_or_default();
-    for (target, value) in rest.chunks_exact_mut(SIZE).zip(values) {
-        target.copy_from_slice(&word(*value));
+    for (index, value) in values.iter().enumerate() {
+        put_array(bytes, at + index * SIZE, &word(*value));
     }
 }
 

@@ -1,0 +1,55 @@
+"""Arrays: one line for people, one object for programs."""
+
+from __future__ import annotations
+
+import json
+
+import jsonschema_rs
+
+from icdgen.diff.inputs import shown
+from icdgen.loading import load
+from icdgen.show.fields import field_table
+from icdgen.show.machine import SCHEMA, to_json
+
+ICD = """\
+icdgen: 1
+node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}
+messages:
+  - name: Heat
+    id: 1
+    kind: telemetry
+    length: 9
+    fields:
+      - {at: 0, bits: 16, count: 3, name: Temperatures, type: int, unit: C, formula: raw*0.01}
+      - {at: 48, bits: 12, count: 2, name: Levels, type: uint, byte_order: big, bit_order: msb0}
+"""
+
+
+def read(folder):
+    (folder / "demo.yaml").write_text(ICD, encoding="utf-8")
+    loaded = load([folder])
+    assert loaded.findings == []
+    return loaded.icd
+
+
+def test_an_array_is_one_line_of_the_table(tmp_path):
+    node = read(tmp_path).node("demo")
+    lines = field_table(node.messages[0], node).splitlines()[2:]
+    assert [line.split()[:5] for line in lines] == [
+        ["0", "3", "x", "16", "int"],
+        ["48", "2", "x", "12", "uint"],
+    ]
+
+
+def test_what_is_shown_for_programs_is_read_back_with_every_element(tmp_path):
+    icd = read(tmp_path)
+    tree = to_json(icd)
+    jsonschema_rs.validator_for(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(tree)
+    fields = tree["nodes"][0]["messages"][0]["fields"]
+    assert [(one["name"], one["offset"], one["bits"], one["count"]) for one in fields] == [
+        ("Temperatures", 0, 16, 3),
+        ("Levels", 48, 12, 2),
+    ]
+    again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
+    key = lambda one: (one.name, one.at, one.bits, one.element, one.scale, one.byte_order)  # noqa: E731
+    assert list(map(key, again.nodes[0].messages[0].fields)) == list(map(key, icd.nodes[0].messages[0].fields))
