@@ -7,7 +7,7 @@ import json
 import pytest
 
 from icdgen.loading import load
-from tests.assurance.measure import coverage, misra, rest, sizes
+from tests.assurance.measure import coverage, misra, python_coverage, rest, sizes
 from tests.assurance.measure.measurement import Measured, share
 from tests.assurance.test_pack import make
 
@@ -80,3 +80,26 @@ def test_measurements_of_an_icd_that_changed_are_refused(demo, tmp_path):
     assert load([demo]).ok
     with pytest.raises(UserError, match="it measures other ICDs"):
         make(demo, tmp_path / "pack", "--measured", str(tmp_path / "measured"))
+
+
+def test_the_vectors_execute_every_line_of_the_python_of_an_icd(demo, tmp_path):
+    assert python_coverage.main(["--out", str(tmp_path / "measured"), str(demo)]) == 0
+    rows = {name: (lines, executed) for name, lines, executed in of(tmp_path / "measured", "coverage-python")["rows"]}
+    made = {name: pair for name, pair in rows.items() if "/demo/" in name}
+    assert len(made) > 3 and all(lines == executed for lines, executed in made.values())
+    assert 0 < int(rows["icdgen_messages/_compiled.py"][1]) < int(rows["icdgen_messages/_compiled.py"][0])
+    make(demo, tmp_path / "pack", "--measured", str(tmp_path / "measured"))
+
+
+def test_a_line_of_python_that_is_not_executed_is_told_and_fails(demo, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(python_coverage, "by_id", lambda icd, built: [])
+    assert python_coverage.main(["--out", str(tmp_path), str(demo)]) == 1
+    assert "icdgen_messages/demo/__init__.py:44: not executed" in capsys.readouterr().err
+
+
+def test_branches_of_python_are_found():
+    assert python_coverage.branches("if TYPE_CHECKING:\n    import a\nx = 1 if y else 2\nfor z in y:\n    pass\n") == [
+        3,
+        4,
+    ]
+    assert python_coverage.executable("if TYPE_CHECKING:\n    import a\nx = 1\n") == {1, 3}

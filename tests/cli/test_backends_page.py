@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import os
 import re
 import shutil
@@ -128,5 +129,13 @@ def test_two_packages_of_one_name_are_refused(icdgen, changed):
 def test_help_lists_it_beside_ours_and_no_testee(icdgen, tmp_path):
     for arguments in (["--help"], ["generate", "--help"]):
         there = " ".join(icdgen(*arguments).stdout.split())
-        assert "c, python, rust, vectors, c-selftest, html, and of other packages lua (icdgen-lua)." in there
+        assert "c, python, rust, vectors, c-selftest, html, assurance, and of other packages lua (icdgen-lua)." in there
         assert "html." in " ".join(icdgen(*arguments, site=tmp_path).stdout.split())
+
+
+def test_its_names_stand_in_the_trace_of_the_assurance_pack(icdgen, tmp_path):
+    result = icdgen("--lang", "assurance", "--out", "pack", "demo.yaml")
+    assert result.returncode == 0, result.stderr
+    head, *rows = csv.reader((tmp_path / "pack" / "trace.csv").read_text("utf-8").splitlines())
+    message = next(row for row in rows if row[0] == "message" and row[3] == "Estimated Roll")
+    assert message[head.index("lua")] == "estimated_roll (fields of the module demo)"

@@ -100,7 +100,7 @@ def test_without_icds_the_shipped_ones_are_meant(icdgen, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--lang", "cobol"], "there is no backend `cobol`; there are: c, "),
+        (["--lang", "cobol"], "there is no backend `cobol`; there are: assurance, c, "),
         ([], "say what to generate"),
         (["--lang"], "requires an argument"),
         (["--langs", "c"], "No such option"),

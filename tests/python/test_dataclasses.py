@@ -18,6 +18,11 @@ def acp(shipped):
     return shipped.module("cubeacp")
 
 
+def raw(message) -> dict:
+    """What a message is made of: its values but for those of views."""
+    return {info.attribute: getattr(message, info.attribute) for info in message.FIELDS}
+
+
 def test_defaults_stand_in_the_fields(package):
     for case in cases(package):
         fresh = case.cls()
@@ -74,7 +79,7 @@ def test_dictionaries_and_json_bring_messages_back(package):
     for case in cases(package):
         for frame in frames(case.message.length, 2):
             message = case.cls.from_bytes(frame)
-            assert dataclasses.asdict(message).keys() == message.as_dict().keys()
+            assert dataclasses.asdict(message) == raw(message)
             assert case.cls.from_dict(message.as_dict()).to_bytes() == message.to_bytes()
             if all(info.type != "float" for info in case.cls.FIELDS):  # NaN
                 assert case.cls.from_json(message.to_json()) == message
@@ -113,8 +118,8 @@ def test_pydantic_reads_and_checks_messages(package):
     for case in cases(package):
         message = case.cls.from_bytes(bytes(case.message.length))
         adapter = pydantic.TypeAdapter(case.cls)
-        assert adapter.validate_python(message.as_dict()) == message
-        assert adapter.dump_python(message) == message.as_dict()
+        assert adapter.validate_python(raw(message)) == message
+        assert adapter.dump_python(message) == raw(message)
 
 
 def test_pydantic_refuses_other_types(acp):

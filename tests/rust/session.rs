@@ -1,9 +1,8 @@
-//! A session whose port fails, and clients that are asked for what is not the node's; any surprise is a panic.
+//! A session whose port fails, requests that are given up, messages that nodes share; any surprise is a panic.
 
-use icd::bootloader::State as BootloaderState;
 use icd::common::{Identification, Reset};
-use icd::cubeacp::{ClearErrors, CurrentAdcsState, EstimatedAngularRates, EstimatedAttitudeAngles, LINK, LONGEST};
-use icd::wire::{uart, Client, Error, Event, Session, Started, Telemetry};
+use icd::cubeacp::{ClearErrors, EstimatedAngularRates, EstimatedAttitudeAngles, Node, LINK, LONGEST};
+use icd::wire::{uart, Client, NodeLink, Session, Started, TelecommandOf, TelemetryOf};
 use icd::wire::session::Failure;
 use std::cell::{Cell, RefCell};
 use std::io::{self, ErrorKind, Read, Write};
@@ -11,7 +10,6 @@ use std::rc::Rc;
 
 fn main() {
     failing();
-    foreign();
     shared();
     late();
     cancelled();
@@ -43,7 +41,7 @@ impl Read for Line {
 impl Write for Line {
     fn write(&mut self, line: &[u8]) -> io::Result<usize> {
         let id = line[2];
-        let size = if id == Identification::TELEMETRY_ID { Identification::LENGTH } else { 1 };
+        let size = if id == Identification::ID { Identification::LENGTH } else { 1 };
         let mut message = vec![id];
         message.resize(1 + size, 0);
         let mut answer = [0; 64];
@@ -59,49 +57,44 @@ impl Write for Line {
 
 fn failing() {
     let line = Line::default();
-    let mut session = Session::<_, LONGEST>::new(&LINK, line.clone()).unwrap();
+    let mut session = Session::<Node, _, LONGEST>::new(&LINK, line.clone()).unwrap();
     session.get::<Identification>().unwrap();
     line.fails.set(true);
     for _ in 0..2 {
         assert!(matches!(session.get::<EstimatedAttitudeAngles>(), Err(Failure::Port(_)))); // and not Busy
         assert!(matches!(session.send(&ClearErrors::default()), Err(Failure::Port(_))));
     }
+    let failure = session.get::<EstimatedAttitudeAngles>().unwrap_err();
+    let source = std::error::Error::source(&failure).unwrap();
+    assert_eq!(source.downcast_ref::<io::Error>().unwrap().kind(), ErrorKind::BrokenPipe);
     line.fails.set(false);
     line.answer.borrow_mut().clear();
     session.get::<Identification>().unwrap();
 }
 
-fn foreign() {
-    let id = CurrentAdcsState::TELEMETRY_ID;
-    assert_eq!(id, BootloaderState::TELEMETRY_ID, "what makes the mistake possible");
-    let mut client = Client::<LONGEST>::uart(&LINK).unwrap();
-    assert_eq!(client.request::<BootloaderState>(0), Err(Error::UnknownId { id }));
-    let other = icd::bootloader::SetBootIndex::default();
-    assert!(matches!(client.send(0, &other), Err(Error::UnknownId { .. })));
-    assert!(client.output().is_none() && client.deadline().is_none());
-    let mut session = Session::<_, LONGEST>::new(&LINK, Line::default()).unwrap();
-    assert!(matches!(session.get::<BootloaderState>(), Err(Failure::Wire(Error::UnknownId { .. }))));
-    let data = &[0; 6][..];
-    let done = Event::Done { id, attempts: 1, data, nodes: LINK.nodes };
-    assert!(done.message::<BootloaderState>().is_none());
-    assert!(done.message::<CurrentAdcsState>().is_some());
+fn shared() {
+    shares(&icd::bootloader::LINK);
+    shares(&icd::cubeacp::LINK);
+    shares(&icd::common::LINK);
 }
 
-fn shared() {
-    for link in [&icd::bootloader::LINK, &icd::cubeacp::LINK, &icd::common::LINK] {
-        let mut client = Client::<LONGEST>::uart(link).unwrap();
-        client.request::<Identification>(0).unwrap();
-        while client.output().is_some() {}
-        let (mut line, mut found) = ([0; 64], None);
-        let count = uart::encode(link, &[Identification::TELEMETRY_ID, 1, 2, 3, 4, 5, 6, 7, 8], &mut line).unwrap();
-        client.received(1, &line[..count], |event| found = event.message::<Identification>());
-        assert!(found.is_some());
-        assert_eq!(client.send(2, &Reset::default()), Ok(Started::Done));
-    }
+fn shares<T>(link: &'static NodeLink<T>)
+where
+    Identification: TelemetryOf<T>,
+    Reset: TelecommandOf<T>,
+{
+    let mut client = Client::<T, LONGEST>::uart(link).unwrap();
+    client.request::<Identification>(0).unwrap();
+    while client.output().is_some() {}
+    let (mut line, mut found) = ([0; 64], None);
+    let count = uart::encode(link, &[Identification::ID, 1, 2, 3, 4, 5, 6, 7, 8], &mut line).unwrap();
+    client.received(1, &line[..count], |event| found = event.message::<Identification>());
+    assert!(found.is_some());
+    assert_eq!(client.send(2, &Reset::default()), Ok(Started::Done));
 }
 
 fn late() {
-    let mut client = Client::<LONGEST>::i2c(&LINK).unwrap();
+    let mut client = Client::<Node, LONGEST>::i2c(&LINK).unwrap();
     let mut events = Vec::new();
     client.request::<EstimatedAttitudeAngles>(0).unwrap();
     assert!(client.output_transaction().is_some());
@@ -115,7 +108,7 @@ fn late() {
 }
 
 fn cancelled() {
-    let mut client = Client::<LONGEST>::uart(&LINK).unwrap();
+    let mut client = Client::<Node, LONGEST>::uart(&LINK).unwrap();
     client.cancel();
     client.request::<EstimatedAttitudeAngles>(0).unwrap();
     client.cancel();
@@ -123,7 +116,7 @@ fn cancelled() {
     client.request::<EstimatedAngularRates>(1).unwrap();
     while client.output().is_some() {}
     let (mut line, mut events) = ([0; 64], Vec::new());
-    let count = uart::encode(&LINK, &[EstimatedAttitudeAngles::TELEMETRY_ID, 0, 0, 0, 0, 0, 0], &mut line).unwrap();
+    let count = uart::encode(&LINK, &[EstimatedAttitudeAngles::ID, 0, 0, 0, 0, 0, 0], &mut line).unwrap();
     client.received(2, &line[..count], |event| events.push(format!("{event:?}")));
     assert!(events.remove(0).starts_with("Stray") && events.is_empty() && client.deadline().is_some());
 }

@@ -1,7 +1,8 @@
 //! A session with a simulated node: in a hurry, and patient with what happens to acknowledges.
 
 use icd::wire::session::Failure;
-use icd::wire::{Error, Link, Session, Settings, Telecommand};
+use icd::wire::{Link, NodeLink, Session, Settings, TelecommandOf};
+use icd::{Error, Telecommand};
 use std::net::TcpStream;
 use std::ops::{Deref, DerefMut};
 use std::time::Duration;
@@ -18,14 +19,14 @@ pub const TRIES: u32 = 10;
 
 pub type Problem = Box<dyn std::error::Error>;
 
-pub struct Device<const N: usize> {
-    pub link: &'static Link,
+pub struct Device<const N: usize, T: 'static> {
+    pub link: &'static NodeLink<T>,
     port: TcpStream,
-    session: Session<TcpStream, N>,
+    session: Session<T, TcpStream, N>,
 }
 
-impl<const N: usize> Device<N> {
-    pub fn connect(place: &str, link: &Link) -> Result<Self, Problem> {
+impl<const N: usize, T: 'static> Device<N, T> {
+    pub fn connect(place: &str, link: &NodeLink<T>) -> Result<Self, Problem> {
         let port = TcpStream::connect(place)?;
         port.set_nodelay(true)?;
         port.set_read_timeout(Some(Duration::from_millis(5)))?;
@@ -33,18 +34,18 @@ impl<const N: usize> Device<N> {
     }
 
     /// The same device, while the program of that link runs.
-    pub fn running(&self, link: &Link) -> Result<Self, Problem> {
-        Self::over(self.port.try_clone()?, link)
+    pub fn running<U: 'static>(&self, link: &NodeLink<U>) -> Result<Device<N, U>, Problem> {
+        Device::over(self.port.try_clone()?, link)
     }
 
-    fn over(port: TcpStream, link: &Link) -> Result<Self, Problem> {
-        let link: &'static Link = Box::leak(Box::new(hasty(*link)));
+    fn over(port: TcpStream, link: &NodeLink<T>) -> Result<Self, Problem> {
+        let link: &'static NodeLink<T> = Box::leak(Box::new(link.changed(hasty)));
         let session = Session::new(link, port.try_clone()?)?.with_settings(SETTINGS);
         Ok(Self { link, port, session })
     }
 
     /// Sends a telecommand until it is acknowledged, or refused twice: an acknowledge may be lost or spoilt.
-    pub fn insist<M: Telecommand>(&mut self, message: &M) -> Result<(), Failure> {
+    pub fn insist<M: TelecommandOf<T>>(&mut self, message: &M) -> Result<(), Failure> {
         let mut refused = false;
         for _ in 1..TRIES {
             match self.send(message) {
@@ -57,15 +58,15 @@ impl<const N: usize> Device<N> {
     }
 }
 
-impl<const N: usize> Deref for Device<N> {
-    type Target = Session<TcpStream, N>;
+impl<const N: usize, T> Deref for Device<N, T> {
+    type Target = Session<T, TcpStream, N>;
 
     fn deref(&self) -> &Self::Target {
         &self.session
     }
 }
 
-impl<const N: usize> DerefMut for Device<N> {
+impl<const N: usize, T> DerefMut for Device<N, T> {
     fn deref_mut(&mut self) -> &mut Self::Target {
         &mut self.session
     }
@@ -73,14 +74,11 @@ impl<const N: usize> DerefMut for Device<N> {
 
 /// The data of a message.
 pub fn data_of<M: Telecommand>(message: &M) -> Result<Vec<u8>, Error> {
-    let mut buffer = vec![0; 1 << 16];
-    let size = message.write_frame(&mut buffer)?;
-    buffer.truncate(size);
-    Ok(buffer)
+    Ok(message.to_bytes()?.as_ref().to_vec())
 }
 
 /// The facts with short waits, for a device that is never slow.
-fn hasty(mut link: Link) -> Link {
+fn hasty(link: &mut Link) {
     if let Some(files) = &mut link.files {
         if let Some(download) = &mut files.download {
             download.silence_ms = 60;
@@ -93,5 +91,4 @@ fn hasty(mut link: Link) -> Link {
     for operation in [&mut link.program_copy, &mut link.program_information].into_iter().flatten() {
         operation.poll_interval_ms = 5;
     }
-    link
 }

@@ -1,15 +1,54 @@
-"""Sessions of the crate over ports that fail, requests that are given up, and messages of other nodes."""
+"""Sessions of the crate over ports that fail, requests that are given up; and messages of other nodes, which do not compile."""
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
-from tests.rust.tools import STD, Toolchain, run
+import pytest
+
+from tests.rust.tools import STD, Toolchain, run, toolchains
 
 PROGRAM = Path(__file__).with_name("session.rs")
+WHOLE = """\
+use icd::cubeacp::{Node, LINK, LONGEST};
+
+fn main() {
+    let mut client = icd::wire::Client::<Node, LONGEST>::uart(&LINK).unwrap();
+    %s;
+}
+"""
+STATEMENTS = {
+    "request": "client.request::<icd::%s::State>(0).unwrap()",
+    "send": "client.send(0, &icd::%s::default()).unwrap()",
+    "message": "client.tick(0, |event| assert!(event.message::<icd::%s::State>().is_none()))",
+}
+OWN = {"request": "cubeacp", "send": "cubeacp::ClearErrors", "message": "cubeacp"}
+OTHERS = {"request": "bootloader", "send": "bootloader::SetBootIndex", "message": "bootloader"}
 
 
-def test_sessions_outlive_their_port_and_clients_take_no_message_of_another_node(shipped, tmp_path):
+def test_sessions_outlive_their_port_and_requests_are_given_up(shipped, tmp_path):
     tools = Toolchain("default")
     library = tools.library(shipped.crate, tmp_path, "0", *STD)
     run(tools.program(PROGRAM, library, tmp_path / "program"))
+
+
+@pytest.mark.parametrize("name", list(toolchains()))
+def test_a_message_of_another_node_does_not_compile(shipped, name, tmp_path):
+    """Telemetry 132 is `State` on both nodes; it is refused where it is requested, and where it is taken from an event."""
+    tools = Toolchain(name)
+    library = tools.library(shipped.crate, tmp_path, "0")
+
+    def compiled(text: str) -> str:
+        source = tmp_path / "main.rs"
+        source.write_text(WHOLE % text)
+        command = (*tools.start, "rustc", "--edition", "2021", "--emit", "metadata", "-C", "panic=abort")
+        options = ("--extern", f"icd={library}", "--out-dir", tmp_path, source)
+        return subprocess.run([*command, *map(str, options)], capture_output=True, text=True).stderr
+
+    for use, statement in STATEMENTS.items():
+        assert "error" not in compiled(statement % OWN[use]), use
+        said = compiled(statement % OTHERS[use])
+        assert "error[E0277]" in said and "Of<icd::cubeacp::Node>` is not satisfied" in said.replace(
+            "Of<Node>", "Of<icd::cubeacp::Node>"
+        ), (use, said)

@@ -5,10 +5,11 @@ use icd::cubeacp::enums::{ConModeSelect, EstimModeSelect};
 use icd::cubeacp::{AdcsConfiguration, CurrentAdcsState, EstimatedAttitudeAngles, SetAttitudeControlMode, Telecommand, Telemetry};
 use icd::wire::files::{Download, End, Procedure};
 use icd::wire::{crc16, identify, uart, Bus, Client, Crc, Event, Link, Reason, Started, Table};
-use icd::{Coded, Error};
+use icd::{Coded, Error, Message};
 
 fn main() {
     reading();
+    describing();
     writing();
     enumerations();
     dispatching();
@@ -32,12 +33,45 @@ fn reading() {
         assert_eq!(error, Error::Range { field: "Estimated Yaw Angle" });
         assert_eq!(angles.estimated_yaw_angle, 3);
     }
+    assert_eq!(angles.estimated_roll_angle_mdeg(), -12_340);
+    assert_eq!(angles.estimated_roll_angle_deg_f32(), -12.34_f32);
+    assert_eq!(angles.set_estimated_roll_angle_mdeg(12_345), Ok(()));
+    assert_eq!(angles.estimated_roll_angle, 1234, "a tie goes to the even one");
+    assert_eq!(angles.set_estimated_roll_angle_mdeg(327_676), Err(Error::Range { field: "Estimated Roll Angle" }));
+    assert_eq!(angles.set_estimated_roll_angle_mdeg(-327_685), Ok(()), "a tie again");
+    assert_eq!(angles.estimated_roll_angle, -32_768);
     for length in [0, 5, 7, 512] {
         let error = EstimatedAttitudeAngles::from_bytes(&vec![0; length]).unwrap_err();
         assert_eq!(error, Error::Length { expected: 6, actual: length });
         assert_eq!(error.to_string(), format!("6 bytes expected, {} given", length));
     }
     assert_eq!(EstimatedAttitudeAngles::from_array(&angles.to_bytes().unwrap()), angles);
+}
+
+/// What is generic over messages.
+fn describing() {
+    fn told<M: Message>(bytes: &[u8]) -> String {
+        let message = M::from_bytes(bytes).unwrap();
+        assert_eq!(message.to_bytes().unwrap().as_ref(), bytes);
+        format!("{message}")
+    }
+    let roll = EstimatedAttitudeAngles::FIELDS[0];
+    assert_eq!((roll.name, roll.at, roll.bits, roll.unit), ("Estimated Roll Angle", 0, 16, "deg"));
+    assert_eq!((roll.physical(-1234), roll.raw(-12.34)), (Some(-12.34), Some(Ok(-1234))));
+    assert_eq!(
+        told::<EstimatedAttitudeAngles>(&[0x2e, 0xfb, 0x0a, 0, 0, 0]),
+        "Estimated Attitude Angles: Estimated Roll Angle -12.34 deg, Estimated Pitch Angle 0.1 deg, Estimated Yaw Angle 0 deg"
+    );
+    assert_eq!(<EstimatedAttitudeAngles as icd::Telemetry>::TELEMETRY_ID, 146);
+    let frame: &[u8] = &[3, 0, 0];
+    let command: SetAttitudeControlMode = frame.try_into().unwrap();
+    let mode = ConModeSelect::from(3);
+    assert_eq!((command.control_mode.known(), command.control_mode.to_string()), (Some(mode), mode.to_string()));
+    assert_eq!(mode.to_string(), mode.name().unwrap());
+    let unknown = Coded::<ConModeSelect>::from_raw(200);
+    assert_eq!((unknown.known(), unknown.to_string()), (None, "200".into()));
+    let limited = icd::cubeacp::AdcsConfiguration::FIELDS.iter().filter(|field| !field.limits.is_empty());
+    assert!(limited.count() > 0);
 }
 
 fn writing() {
@@ -98,7 +132,7 @@ fn floats() {
 }
 
 fn requesting() {
-    let mut client = Client::<{ icd::cubeacp::LONGEST }>::uart(&icd::cubeacp::LINK).unwrap();
+    let mut client = Client::<icd::cubeacp::Node, { icd::cubeacp::LONGEST }>::uart(&icd::cubeacp::LINK).unwrap();
     let before = u32::MAX - 5; // time wraps while the reply is awaited
     client.request::<EstimatedAttitudeAngles>(before).unwrap();
     assert_eq!(client.request::<CurrentAdcsState>(before), Err(icd::wire::Error::Busy));
@@ -112,16 +146,16 @@ fn requesting() {
     }
     assert_eq!(angles.unwrap().estimated_roll_angle, -1234);
     assert_eq!(client.deadline(), None);
-    assert!(Client::<16>::uart(&icd::cubeacp::LINK).is_err(), "a buffer that is too small");
+    assert!(Client::<icd::cubeacp::Node, 16>::uart(&icd::cubeacp::LINK).is_err(), "a buffer that is too small");
 }
 
 fn sending() {
-    let mut client = Client::<{ icd::cubeacp::LONGEST }>::can(&icd::cubeacp::LINK, 7).unwrap();
+    let mut client = Client::<icd::cubeacp::Node, { icd::cubeacp::LONGEST }>::can(&icd::cubeacp::LINK, 7).unwrap();
     assert_eq!(client.send(0, &Reset::default()), Ok(Started::Done), "it is answered by a reset");
     let packet = client.output_packet().unwrap();
     assert_eq!((packet.id, packet.data()), (0x0101_0701, &[90][..]));
     assert!(client.output_packet().is_none());
-    let mut client = Client::<{ icd::cubeacp::LONGEST }>::uart(&icd::cubeacp::LINK).unwrap().with_checksums();
+    let mut client = Client::<icd::cubeacp::Node, { icd::cubeacp::LONGEST }>::uart(&icd::cubeacp::LINK).unwrap().with_checksums();
     let command = SetAttitudeControlMode::default();
     assert_eq!(client.send(10, &command), Ok(Started::Waiting));
     let mut sent = Vec::new();
@@ -131,7 +165,7 @@ fn sending() {
     assert_eq!(sent.len(), 4 + 1 + 3 + 1);
     let mut seen = Vec::new();
     client.received(20, &[0x1f, 0x7f, 13, 3, 0x1f, 0xff], |event| {
-        if let Event::Refused { id, code, reason, .. } = event {
+        if let Event::Refused { id, code, reason, .. } = *event {
             seen.push((id, code, reason));
         }
     });
@@ -179,7 +213,7 @@ impl Node {
 
 fn downloading() {
     let link = &icd::cubeacp::LINK;
-    let mut client = Client::<{ icd::cubeacp::LONGEST }>::uart(link).unwrap();
+    let mut client = Client::<icd::cubeacp::Node, { icd::cubeacp::LONGEST }>::uart(link).unwrap();
     let file: Vec<u8> = (0..45_000_u32).map(|n| (n * n >> 3) as u8).collect();
     let mut node = Node { file: file.clone(), block: Vec::new(), burst: false, sent: 0 };
     let (mut buffer, mut found) = (vec![0; 20_480], Vec::new());

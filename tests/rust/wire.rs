@@ -1,11 +1,12 @@
 // Calls everything of the wire layer that a user can call, so that the linker sees it all.
 
 use icd::wire::files::{self, Download, Erase, Format, HoleMap, IndexEntries, IndexEntry, List, Procedure, Upload};
-use icd::wire::{can, i2c, log, uart, Bus, Client, Crc, DosTime, Error, Event, Identity, Link, Request, Started, Table};
+use icd::wire::{can, i2c, log, uart, Bus, Client, Crc, DosTime, Error, Event, Identity, Link, NodeEvent, NodeLink, Request, Started, Table};
 
 const LONGEST: usize = icd::cubeacp::LONGEST;
-type ClientOf = Client<LONGEST>;
-type Hear = fn(Event<'_>);
+type ClientOf = Client<icd::cubeacp::Node, LONGEST>;
+type LinkOf = NodeLink<icd::cubeacp::Node>;
+type Hear = fn(NodeEvent<'_, icd::cubeacp::Node>);
 
 #[no_mangle] pub fn wire_crc8(link: &Link, bytes: &[u8]) -> Result<u32, Error> { icd::wire::crc8(link, bytes) }
 #[no_mangle] pub fn wire_crc16(link: &Link, bytes: &[u8]) -> Result<u32, Error> { icd::wire::crc16(link, bytes) }
@@ -36,9 +37,9 @@ type Hear = fn(Event<'_>);
 #[no_mangle] pub fn wire_index_encode(entry: &IndexEntry<'_>, link: &Link, out: &mut [u8]) -> Result<usize, Error> { entry.encode(link, out) }
 #[no_mangle] pub fn wire_identify(link: &Link, frame: &[u8]) -> Result<Identity, Error> { icd::wire::identify(link, frame) }
 
-#[no_mangle] pub fn wire_client_uart(link: &'static Link, to: &mut Option<ClientOf>) { *to = Client::uart(link).ok().map(Client::with_checksums); }
-#[no_mangle] pub fn wire_client_i2c(link: &'static Link, to: &mut Option<ClientOf>) { *to = Client::i2c(link).ok(); }
-#[no_mangle] pub fn wire_client_can(link: &'static Link, to: &mut Option<ClientOf>) { *to = Client::can(link, 2).ok(); }
+#[no_mangle] pub fn wire_client_uart(link: &'static LinkOf, to: &mut Option<ClientOf>) { *to = Client::uart(link).ok().map(Client::with_checksums); }
+#[no_mangle] pub fn wire_client_i2c(link: &'static LinkOf, to: &mut Option<ClientOf>) { *to = Client::i2c(link).ok(); }
+#[no_mangle] pub fn wire_client_can(link: &'static LinkOf, to: &mut Option<ClientOf>) { *to = Client::can(link, 2).ok(); }
 #[no_mangle] pub fn wire_client_start(client: &mut ClientOf, now: u32, request: &Request<'_>) -> Result<Started, Error> { client.start(now, request) }
 #[no_mangle] pub fn wire_client_request(client: &mut ClientOf, now: u32) -> Result<(), Error> { client.request::<icd::cubeacp::EstimatedAttitudeAngles>(now) }
 #[no_mangle] pub fn wire_client_send(client: &mut ClientOf, now: u32, message: &icd::cubeacp::AdcsConfiguration) -> Result<Started, Error> { client.send(now, message) }

@@ -12,6 +12,8 @@ from icdgen.icd.model import Field
 
 EXACT_DOUBLE = 1 << 53
 """Up to this size every whole number is a double."""
+EXACT_SINGLE = 1 << 24
+"""Up to this size every whole number is a float of 32 bits."""
 
 
 def wide_parts(value: int, bits: int) -> list[int]:
@@ -55,8 +57,12 @@ class Steps(NamedTuple):
     @property
     def exact_in_doubles(self) -> bool:
         """Whether every step but the division is exact in doubles, so that the division alone rounds."""
+        return self.exact_up_to(EXACT_DOUBLE)
+
+    def exact_up_to(self, most: int) -> bool:
+        """The same for floats in which every whole number of that size is exact."""
         products = self.raw_min * self.p, self.raw_max * self.p
-        return all(abs(n) <= EXACT_DOUBLE for n in (*products, *(n + self.c for n in products), self.c, self.q))
+        return all(abs(n) <= most for n in (*products, *(n + self.c for n in products), self.c, self.q))
 
 
 def steps(field: Field) -> Steps | None:

@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from icdgen.describe.steps import Steps
+from icdgen.describe.storage import Storage
 from icdgen.icd.model import Field
 from icdgen.icd.units import STANDARD
 
@@ -52,6 +53,24 @@ def _whole(per: int, factor: int, offset: int, steps: Steps) -> Whole:
     least += least == bottom and low[1] % 2  # ties go to the even raw value
     most -= most == top and high[1] % 2
     return Whole(per, factor, offset, low[0], high[0], least, most)
+
+
+def whole_bits(found: Whole, storage: Storage) -> int | None:
+    """32 or 64: bits of the integer that holds them, whatever the raw value's own holds; None where no such integer does."""
+    bits = 32 if _computable(found, storage, 32) else 64
+    ends = Storage(bits, True)
+    differences = max(found.least, ends.min) - found.offset, min(found.most, ends.max) - found.offset
+    return bits if _computable(found, storage, bits) and _within(64, *differences) else None
+
+
+def _computable(found: Whole, storage: Storage, bits: int) -> bool:
+    products = storage.min * found.factor, storage.max * found.factor
+    return _within(bits, *products, *(product + found.offset for product in products), found.factor, found.offset)
+
+
+def _within(bits: int, *values: int) -> bool:
+    most = (1 << bits - 1) - 1
+    return all(-most <= value <= most for value in values)
 
 
 def part_of_unit(field: Field, per: int) -> tuple[str, str]:

@@ -21,7 +21,14 @@
 //!
 //! Fields with a scale formula have a getter and a checked setter of the physical value, whose names
 //! end in the unit. The getter gives the double that is nearest to the exact value; the setter takes
-//! the nearest raw value, ties to even, and refuses what does not fit.
+//! the nearest raw value, ties to even, and refuses what does not fit. For targets without doubles there
+//! is the same as an `f32`, the nearest one (a setter takes an `f32` with `into`), and, where each raw value
+//! gives a whole number of thousandths or millionths of the unit, the exact integer, both ways.
+//!
+//! [`Message`] is what all messages have in common, for generic code: name, ids, length, the fields with
+//! their places, units and limits as data, `from_bytes` and `to_bytes`. Messages can be printed (`Display`)
+//! and made with `try_from` from a slice; an enumeration is made from any number with `from`, and
+//! [`Coded::known`] gives it only if the number has a name.
 //!
 //! Messages with floats compare as floats do: a message that holds a NaN differs from itself. Its
 //! bits are kept nevertheless.
@@ -32,6 +39,7 @@
 //! Nothing here panics or allocates, whatever the bytes.
 //!
 //! Features, none of them on by default: `std` (`std::error::Error` for errors, and `wire::Session`),
+//! `core_error` (`core::error::Error` without `std`; Rust 1.81, all else needs 1.63),
 //! `serde` (`Serialize` and `Deserialize`; enumerations as their number), `defmt` (`defmt::Format`).
 
 #![no_std]
@@ -58,6 +66,8 @@
     clippy::similar_names,
     // without an allocator a large variant cannot be boxed;
     clippy::large_enum_variant,
+    // setters say in a sentence what they refuse;
+    clippy::missing_errors_doc,
     // functions that only name some bytes must vanish when optimising for size, too.
     clippy::inline_always
 )]
@@ -67,7 +77,7 @@ extern crate std;
 
 mod support;
 
-pub use support::{Coded, Enumeration, Error};
+pub use support::{Coded, Enumeration, Error, Field, Message, Telecommand, Telemetry};
 
 #[rustfmt::skip] // It is laid out by icdgen.
 pub mod common;

@@ -19,7 +19,11 @@ REFUSED = (
 
 
 def signed(value: int, bits: int) -> int:
-    """The number that ``bits`` bits of two's complement stand for."""
+    """The number that ``bits`` bits of two's complement stand for.
+
+    >>> signed(0b1111, 4)
+    -1
+    """
     return value - (1 << bits) if value >> (bits - 1) else value
 
 
@@ -102,7 +106,11 @@ def sized(value: _lazy.Buffer, size: int) -> bytes:
 
 
 def text(value: _lazy.Buffer) -> str:
-    """What stands before the first NUL; U+FFFD for each byte that is not ASCII."""
+    """What stands before the first NUL; U+FFFD for each byte that is not ASCII.
+
+    >>> text(bytes([0x31, 0x2E, 0x32, 0, 0]))
+    '1.2'
+    """
     said = bytes(value).split(b"\0", 1)[0]
     return said.decode("ascii", "replace")
 

@@ -12,6 +12,9 @@ def nearest_raw(value: float, field: str, terms: Terms, limits: tuple[int, int])
 
     The physical value is ``(raw * p + c) / q``. ``value`` is taken exactly: a float,
     an integer, or anything else that has ``as_integer_ratio``. Raises `RangeError`.
+
+    >>> nearest_raw(0.5, "angle", (1, 0, 100), (-32768, 32767))
+    50
     """
     (p, c, q), (low, high) = terms, limits
     try:

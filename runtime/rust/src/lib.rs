@@ -25,4 +25,4 @@ extern crate std;
 mod support;
 pub mod wire;
 
-pub use support::{Coded, Enumeration, Error};
+pub use support::{Coded, Enumeration, Error, Field, Message, Telecommand, Telemetry};

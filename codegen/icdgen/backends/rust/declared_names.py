@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.backends import Identifier
 from icdgen.backends.rust import names
+from icdgen.backends.rust.accessors import single_name, whole_name, whole_of
 from icdgen.describe import Description, MessageDescription, NodeDescription
 from icdgen.naming import DEVICES
 
@@ -69,5 +70,13 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
             yield field.identifier(methods, field.physical_name)
             if not is_view:
                 yield field.identifier(methods, f"set_{field.physical_name}")
+        if field.steps is not None:
+            yield field.identifier(methods, single_name(field))
+        known = whole_of(field)
+        if known is not None:
+            name = whole_name(field, known[0])
+            yield field.identifier(methods, name)
+            if not is_view:
+                yield field.identifier(methods, f"set_{name}")
         for constant in field.constants:
             yield field.identifier(associated, constant.name.upper())

@@ -95,7 +95,6 @@ class _Literal:
         return struct(
             "Link",
             part("node", string(known.node.name)),
-            part("nodes", rows(map(string, known.owners))),
             part("node_type", some(known.node.node_type)),
             part("interface_version", some(known.node.interface_version)),
             part("longest", integer(known.longest)),

@@ -28,6 +28,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "array": any("array(" in reading for reading in readings),
         "element_of": has_elements,
         "flags": bool(tables),
+        "message": True,
         "put": any("put!(" in line for line in writings),
         "put_array": any("put_array(" in line for line in writings),
         "put_element": has_elements,
@@ -55,8 +56,6 @@ def values(message: MessageDescription) -> dict[str, object]:
         "derives": ", ".join(derived + ([] if message.has_floats else ["Eq", "Hash"])),
         "imports": f"{{{', '.join(names)}}}" if len(names) > 1 else names[0],
         "uses_enums": any(field.enum is not None and field.enum.node is message.node for field in message.all_fields),
-        "telecommand_id": _byte(message.model.telecommand_id),
-        "telemetry_id": _byte(message.model.telemetry_id),
     }
 
 
@@ -65,11 +64,6 @@ def _is_long(field: FieldDescription) -> bool:
     if field.count:
         return field.count > DERIVES_DEFAULT
     return field.model.is_bytes and field.model.bits > DERIVES_DEFAULT * 8
-
-
-def _byte(id: int | None) -> int | None:
-    """The id under which a client knows the message: one of a byte."""
-    return id if id is not None and id < 256 else None
 
 
 def _fresh(field: FieldDescription) -> str:

@@ -19,7 +19,7 @@ NEVER = frozenset(("self", "Self", "super", "crate", "_"))
 _RAW = RESERVED - NEVER
 
 # Types and traits that the generated modules call by their bare name, in the scope where a message's type stands.
-USED_TYPES = ("Result", "Error", "Default", "Coded", "Scale", "Telemetry", "Telecommand")
+USED_TYPES = ("Result", "Error", "Default", "Coded", "Scale", "Telemetry", "Telecommand", "Node")
 # What stands beside the modules of the nodes.
 USED_MODULES = ("support", "std", "wire")
 # What a folder of that name in `src` means to Cargo and rustc.

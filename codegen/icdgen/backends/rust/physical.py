@@ -5,7 +5,7 @@ from __future__ import annotations
 from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.text import mask, whole_double
 from icdgen.describe import FieldDescription
-from icdgen.describe.steps import wide_parts
+from icdgen.describe.steps import EXACT_SINGLE, Steps, wide_parts
 
 
 def big_parts(value: int) -> list[str]:
@@ -17,7 +17,8 @@ def has_constant(field: FieldDescription) -> bool:
     """Whether code needs the constant of its scale: to set it, to see whether it fits, or to compute its physical value."""
     if not field.model.view:
         return field.steps is not None or field.is_narrow
-    return field.steps is not None and physical(field).startswith(f"{field.declared.upper()}.")
+    start = f"{field.declared.upper()}."
+    return field.steps is not None and (physical(field).startswith(start) or single(field).startswith(start))
 
 
 def raw_value(field: FieldDescription) -> str:
@@ -33,8 +34,19 @@ def physical(field: FieldDescription) -> str:
     assert field.steps is not None
     if field.storage.bits > 32 or field.steps.is_wide or not field.steps.exact_in_doubles:
         return f"{field.declared.upper()}.physical({raw_value(field)})"
-    p, c, q = field.steps.terms
-    raw = f"f64::from({raw_value(field)})"
+    return _quotient(field.steps, f"f64::from({raw_value(field)})")
+
+
+def single(field: FieldDescription) -> str:
+    """The same in single precision."""
+    assert field.steps is not None
+    if field.storage.bits > 16 or field.steps.is_wide or not field.steps.exact_up_to(EXACT_SINGLE):
+        return f"{field.declared.upper()}.single({raw_value(field)})"
+    return _quotient(field.steps, f"f32::from({raw_value(field)})")
+
+
+def _quotient(steps: Steps, raw: str) -> str:
+    p, c, q = steps.terms
     value = raw if abs(p) == 1 else f"{raw} * {whole_double(abs(p))}"
     if p < 0:
         value = f"{whole_double(c)} - {value}"  # so that a zero comes out positive, whatever the signs

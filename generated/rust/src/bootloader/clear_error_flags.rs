@@ -2,7 +2,7 @@
 
 //! Clear Error Flags, a message of node `bootloader`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Clear Error Flags: telecommand 7, 0 bytes. Table 61.
 ///
@@ -69,12 +69,9 @@ impl ClearErrorFlags {
     }
 }
 
-impl crate::wire::Telecommand for ClearErrorFlags {
-    const NODE: &'static str = "bootloader";
-    const TELECOMMAND_ID: u8 = 7;
+message!(ClearErrorFlags {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for ClearErrorFlags {
+    const TELECOMMAND_ID: u32 = 7;
 }

@@ -3,7 +3,7 @@
 //! Copy Program to Internal Flash, a message of node `bootloader`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Copy Program to Internal Flash: telecommand 103, 2 bytes. Table 67.
 ///
@@ -80,12 +80,11 @@ impl CopyToInternalFlash {
     }
 }
 
-impl crate::wire::Telecommand for CopyToInternalFlash {
-    const NODE: &'static str = "bootloader";
-    const TELECOMMAND_ID: u8 = 103;
+message!(CopyToInternalFlash {
+    source_program_index: ("Source Program Index", 0, 8),
+    overwrite: ("Bootloader overwrite flag", 8, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for CopyToInternalFlash {
+    const TELECOMMAND_ID: u32 = 103;
 }

@@ -2,7 +2,7 @@
 
 //! Copy To Internal Flash Progress, a message of node `bootloader`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Copy To Internal Flash Progress: telemetry 233, 1 byte. Table 71.
 ///
@@ -68,12 +68,11 @@ impl CopyToInternalFlashProgress {
     }
 }
 
-impl crate::wire::Telemetry for CopyToInternalFlashProgress {
-    const NODE: &'static str = "bootloader";
-    const TELEMETRY_ID: u8 = 233;
+message!(CopyToInternalFlashProgress {
+    busy: ("Busy", 0, 1),
+    error: ("Error", 1, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for CopyToInternalFlashProgress {
+    const TELEMETRY_ID: u32 = 233;
 }

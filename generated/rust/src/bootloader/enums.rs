@@ -2,7 +2,7 @@
 
 //! Enumerations. Every one keeps values that have no name.
 
-use crate::support::Enumeration;
+use crate::support::enumeration;
 
 /// BootSetProgramsList: an enumeration. Table 63.
 ///
@@ -48,14 +48,6 @@ impl Default for BootSetProgramsList {
     }
 }
 
-impl Enumeration for BootSetProgramsList {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for BootSetProgramsList {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -66,12 +58,7 @@ impl From<u8> for BootSetProgramsList {
     }
 }
 
-impl From<BootSetProgramsList> for u8 {
-    #[inline]
-    fn from(value: BootSetProgramsList) -> Self {
-        value.raw()
-    }
-}
+enumeration!(BootSetProgramsList: u8);
 
 /// ProgramsList: an enumeration. Table 66.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -202,14 +189,6 @@ impl ProgramsList {
     }
 }
 
-impl Enumeration for ProgramsList {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for ProgramsList {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -237,9 +216,4 @@ impl From<u8> for ProgramsList {
     }
 }
 
-impl From<ProgramsList> for u8 {
-    #[inline]
-    fn from(value: ProgramsList) -> Self {
-        value.raw()
-    }
-}
+enumeration!(ProgramsList: u8);

@@ -37,6 +37,10 @@ pub use self::copy_to_internal_flash_progress::CopyToInternalFlashProgress;
 
 pub use crate::wire::links::bootloader::{LINK, LONGEST};
 
+/// The node as a type: [`LINK`], a client for it and the messages that the client takes have it in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Node {}
+
 /// What the node answers when asked for its type.
 pub const NODE_TYPE: u8 = 110;
 /// Version of the interface described here.
@@ -405,6 +409,77 @@ impl Telecommand {
     }
 }
 
+/// Its name and the values of its fields: physical ones, with their units.
+impl ::core::fmt::Display for Telecommand {
+    fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+        match self {
+            Self::Reset(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ResetLogPointer(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdvanceLogPointer(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ResetBootRegisters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FormatSdCard(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EraseFile(message) => ::core::fmt::Display::fmt(message, out),
+            Self::LoadFileDownloadBlock(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdvanceFileListReadPointer(message) => ::core::fmt::Display::fmt(message, out),
+            Self::InitiateFileUpload(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FileUploadPacket(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FinalizeUploadBlock(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ResetUploadBlock(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ResetFileListReadPointer(message) => ::core::fmt::Display::fmt(message, out),
+            Self::InitiateDownloadBurst(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CacheEnabledState(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SramScrubParameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CurrentUnixTime(message) => ::core::fmt::Display::fmt(message, out),
+            Self::UnixTimeSaveToFlash(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap1(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap2(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap3(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap4(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap5(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap6(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap7(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap8(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ClearErrorFlags(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetBootIndex(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RunSelectedProgram(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ReadProgramInformation(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CopyToInternalFlash(message) => ::core::fmt::Display::fmt(message, out),
+        }
+    }
+}
+
+impl crate::wire::TelecommandOf<Node> for crate::common::Reset {}
+impl crate::wire::TelecommandOf<Node> for crate::common::ResetLogPointer {}
+impl crate::wire::TelecommandOf<Node> for crate::common::AdvanceLogPointer {}
+impl crate::wire::TelecommandOf<Node> for crate::common::ResetBootRegisters {}
+impl crate::wire::TelecommandOf<Node> for crate::common::FormatSdCard {}
+impl crate::wire::TelecommandOf<Node> for crate::common::EraseFile {}
+impl crate::wire::TelecommandOf<Node> for crate::common::LoadFileDownloadBlock {}
+impl crate::wire::TelecommandOf<Node> for crate::common::AdvanceFileListReadPointer {}
+impl crate::wire::TelecommandOf<Node> for crate::common::InitiateFileUpload {}
+impl crate::wire::TelecommandOf<Node> for crate::common::FileUploadPacket {}
+impl crate::wire::TelecommandOf<Node> for crate::common::FinalizeUploadBlock {}
+impl crate::wire::TelecommandOf<Node> for crate::common::ResetUploadBlock {}
+impl crate::wire::TelecommandOf<Node> for crate::common::ResetFileListReadPointer {}
+impl crate::wire::TelecommandOf<Node> for crate::common::InitiateDownloadBurst {}
+impl crate::wire::TelecommandOf<Node> for crate::common::CacheEnabledState {}
+impl crate::wire::TelecommandOf<Node> for crate::common::SramScrubParameters {}
+impl crate::wire::TelecommandOf<Node> for crate::common::CurrentUnixTime {}
+impl crate::wire::TelecommandOf<Node> for crate::common::UnixTimeSaveToFlash {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap1 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap2 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap3 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap4 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap5 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap6 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap7 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap8 {}
+impl crate::wire::TelecommandOf<Node> for ClearErrorFlags {}
+impl crate::wire::TelecommandOf<Node> for SetBootIndex {}
+impl crate::wire::TelecommandOf<Node> for RunSelectedProgram {}
+impl crate::wire::TelecommandOf<Node> for ReadProgramInformation {}
+impl crate::wire::TelecommandOf<Node> for CopyToInternalFlash {}
+
 /// Every telemetry of the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -767,3 +842,74 @@ impl Telemetry {
         }
     }
 }
+
+/// Its name and the values of its fields: physical ones, with their units.
+impl ::core::fmt::Display for Telemetry {
+    fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+        match self {
+            Self::Identification(message) => ::core::fmt::Display::fmt(message, out),
+            Self::BootAndRunningProgramStatus(message) => ::core::fmt::Display::fmt(message, out),
+            Self::BootIndexAndStatus(message) => ::core::fmt::Display::fmt(message, out),
+            Self::LastLoggedEvent(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SramLatchupCounters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EdacErrorCounters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CommunicationStatus(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SdCardFormatEraseProgress(message) => ::core::fmt::Display::fmt(message, out),
+            Self::TelecommandAcknowledge(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FileDownloadBufferWithFileContents(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::DownloadBlockReady(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FileInformation(message) => ::core::fmt::Display::fmt(message, out),
+            Self::InitializeUploadComplete(message) => ::core::fmt::Display::fmt(message, out),
+            Self::UploadBlockComplete(message) => ::core::fmt::Display::fmt(message, out),
+            Self::BlockChecksum(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CacheEnabledState(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SramScrubParameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CurrentUnixTime(message) => ::core::fmt::Display::fmt(message, out),
+            Self::UnixTimeSaveToFlash(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap1(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap2(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap3(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap4(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap5(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap6(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap7(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap8(message) => ::core::fmt::Display::fmt(message, out),
+            Self::State(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ProgramInformation(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CopyToInternalFlashProgress(message) => ::core::fmt::Display::fmt(message, out),
+        }
+    }
+}
+
+impl crate::wire::TelemetryOf<Node> for crate::common::Identification {}
+impl crate::wire::TelemetryOf<Node> for crate::common::BootAndRunningProgramStatus {}
+impl crate::wire::TelemetryOf<Node> for crate::common::BootIndexAndStatus {}
+impl crate::wire::TelemetryOf<Node> for crate::common::LastLoggedEvent {}
+impl crate::wire::TelemetryOf<Node> for crate::common::SramLatchupCounters {}
+impl crate::wire::TelemetryOf<Node> for crate::common::EdacErrorCounters {}
+impl crate::wire::TelemetryOf<Node> for crate::common::CommunicationStatus {}
+impl crate::wire::TelemetryOf<Node> for crate::common::SdCardFormatEraseProgress {}
+impl crate::wire::TelemetryOf<Node> for crate::common::TelecommandAcknowledge {}
+impl crate::wire::TelemetryOf<Node> for crate::common::FileDownloadBufferWithFileContents {}
+impl crate::wire::TelemetryOf<Node> for crate::common::DownloadBlockReady {}
+impl crate::wire::TelemetryOf<Node> for crate::common::FileInformation {}
+impl crate::wire::TelemetryOf<Node> for crate::common::InitializeUploadComplete {}
+impl crate::wire::TelemetryOf<Node> for crate::common::UploadBlockComplete {}
+impl crate::wire::TelemetryOf<Node> for crate::common::BlockChecksum {}
+impl crate::wire::TelemetryOf<Node> for crate::common::CacheEnabledState {}
+impl crate::wire::TelemetryOf<Node> for crate::common::SramScrubParameters {}
+impl crate::wire::TelemetryOf<Node> for crate::common::CurrentUnixTime {}
+impl crate::wire::TelemetryOf<Node> for crate::common::UnixTimeSaveToFlash {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap1 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap2 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap3 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap4 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap5 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap6 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap7 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap8 {}
+impl crate::wire::TelemetryOf<Node> for State {}
+impl crate::wire::TelemetryOf<Node> for ProgramInformation {}
+impl crate::wire::TelemetryOf<Node> for CopyToInternalFlashProgress {}

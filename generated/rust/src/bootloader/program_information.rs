@@ -3,7 +3,7 @@
 //! Program Information, a message of node `bootloader`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error};
+use crate::support::{message, put, take, Coded, Error};
 
 /// Program Information: telemetry 232, 8 bytes. Table 70.
 ///
@@ -93,12 +93,13 @@ impl ProgramInformation {
     }
 }
 
-impl crate::wire::Telemetry for ProgramInformation {
-    const NODE: &'static str = "bootloader";
-    const TELEMETRY_ID: u8 = 232;
+message!(ProgramInformation {
+    program_index: ("Program Index", 0, 8),
+    busy: ("Busy", 8, 1),
+    file_size: ("File Size", 16, 32).unit("byte"),
+    checksum: ("Checksum", 48, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for ProgramInformation {
+    const TELEMETRY_ID: u32 = 232;
 }

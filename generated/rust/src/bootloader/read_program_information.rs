@@ -3,7 +3,7 @@
 //! Read Program Information, a message of node `bootloader`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Read Program Information: telecommand 102, 1 byte. Table 65.
 ///
@@ -60,12 +60,10 @@ impl ReadProgramInformation {
     }
 }
 
-impl crate::wire::Telecommand for ReadProgramInformation {
-    const NODE: &'static str = "bootloader";
-    const TELECOMMAND_ID: u8 = 102;
+message!(ReadProgramInformation {
+    program_index: ("Program Index", 0, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for ReadProgramInformation {
+    const TELECOMMAND_ID: u32 = 102;
 }

@@ -2,7 +2,7 @@
 
 //! Run Selected Program, a message of node `bootloader`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Run Selected Program: telecommand 101, 0 bytes. Table 64.
 ///
@@ -57,12 +57,9 @@ impl RunSelectedProgram {
     }
 }
 
-impl crate::wire::Telecommand for RunSelectedProgram {
-    const NODE: &'static str = "bootloader";
-    const TELECOMMAND_ID: u8 = 101;
+message!(RunSelectedProgram {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for RunSelectedProgram {
+    const TELECOMMAND_ID: u32 = 101;
 }

@@ -3,7 +3,7 @@
 //! Set Boot Index, a message of node `bootloader`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Set Boot Index: telecommand 100, 1 byte. Table 62.
 ///
@@ -64,12 +64,10 @@ impl SetBootIndex {
     }
 }
 
-impl crate::wire::Telecommand for SetBootIndex {
-    const NODE: &'static str = "bootloader";
-    const TELECOMMAND_ID: u8 = 100;
+message!(SetBootIndex {
+    program_index: ("Program Index", 0, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetBootIndex {
+    const TELECOMMAND_ID: u32 = 100;
 }

@@ -2,7 +2,7 @@
 
 //! Bootloader State, a message of node `bootloader`.
 
-use crate::support::{flags, put, take, Error};
+use crate::support::{flags, message, put, take, Error};
 
 /// Bootloader State: telemetry 132, 6 bytes. Table 69.
 ///
@@ -137,12 +137,22 @@ impl State {
     }
 }
 
-impl crate::wire::Telemetry for State {
-    const NODE: &'static str = "bootloader";
-    const TELEMETRY_ID: u8 = 132;
+message!(State {
+    uptime: ("Up-time (s)", 0, 16).unit("s"),
+    sram1_is_enabled: ("SRAM1 is enabled", 16, 1),
+    sram2_is_enabled: ("SRAM2 is enabled", 17, 1),
+    sram_latchup_error: ("SRAM Latch-up Error occurred and could not be recovered", 18, 1),
+    sram_latchup_recovered: ("SRAM Latch-up Occurred but recovered after power cycle", 19, 1),
+    sd_card_initialisation_error: ("SD card initialisation error", 20, 1),
+    sd_card_read_error: ("SD card read error", 21, 1),
+    sd_card_write_error: ("SD card write error", 22, 1),
+    external_flash_error: ("External Flash Error", 23, 1),
+    internal_flash_error: ("Internal Flash Error", 24, 1),
+    eeprom_error: ("EEPROM Error", 25, 1),
+    boot_register_corrupt: ("Boot Register Corrupt", 26, 1),
+    communications_error_with_radio: ("Communications Error with Radio", 27, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for State {
+    const TELEMETRY_ID: u32 = 132;
 }

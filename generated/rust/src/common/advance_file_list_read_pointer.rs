@@ -2,7 +2,7 @@
 
 //! Advance File List Read Pointer, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Advance File List Read Pointer: telecommand 113, 0 bytes. Table 18.
 ///
@@ -54,12 +54,9 @@ impl AdvanceFileListReadPointer {
     }
 }
 
-impl crate::wire::Telecommand for AdvanceFileListReadPointer {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 113;
+message!(AdvanceFileListReadPointer {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for AdvanceFileListReadPointer {
+    const TELECOMMAND_ID: u32 = 113;
 }

@@ -2,7 +2,7 @@
 
 //! Advance Log Pointer, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Advance Log Pointer: telecommand 5, 0 bytes. Table 12.
 ///
@@ -58,12 +58,9 @@ impl AdvanceLogPointer {
     }
 }
 
-impl crate::wire::Telecommand for AdvanceLogPointer {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 5;
+message!(AdvanceLogPointer {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for AdvanceLogPointer {
+    const TELECOMMAND_ID: u32 = 5;
 }

@@ -2,7 +2,7 @@
 
 //! Block Checksum, a message of node `common`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Block Checksum: telemetry 246, 2 bytes. Table 46.
 ///
@@ -67,12 +67,10 @@ impl BlockChecksum {
     }
 }
 
-impl crate::wire::Telemetry for BlockChecksum {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 246;
+message!(BlockChecksum {
+    checksum: ("Checksum", 0, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for BlockChecksum {
+    const TELEMETRY_ID: u32 = 246;
 }

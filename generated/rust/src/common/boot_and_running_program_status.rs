@@ -3,7 +3,7 @@
 //! Boot And Running Program Status, a message of node `common`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error, Scale};
+use crate::support::{message, put, take, Coded, Error, Scale};
 
 /// Boot And Running Program Status: telemetry 129, 6 bytes. Table 28.
 ///
@@ -109,30 +109,19 @@ impl BootAndRunningProgramStatus {
     }
 }
 
-const CAUSE_OF_MCU_RESET: Scale = Scale {
-    field: "Cause of MCU Reset",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CAUSE_OF_MCU_RESET: Scale = Scale::new("Cause of MCU Reset", (0, 15), (1, 0, 1));
 
-const BOOT_CAUSE: Scale = Scale {
-    field: "Boot Cause",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const BOOT_CAUSE: Scale = Scale::new("Boot Cause", (0, 15), (1, 0, 1));
 
-impl crate::wire::Telemetry for BootAndRunningProgramStatus {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 129;
+message!(BootAndRunningProgramStatus {
+    cause_of_mcu_reset: ("Cause of MCU Reset", 0, 4),
+    boot_cause: ("Boot Cause", 4, 4),
+    boot_counter: ("Boot Counter", 8, 16),
+    boot_program_index: ("Boot Program Index", 24, 8),
+    firmware_version_major: ("Firmware version (Major)", 32, 8),
+    firmware_version_minor: ("Firmware version (Minor)", 40, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for BootAndRunningProgramStatus {
+    const TELEMETRY_ID: u32 = 129;
 }

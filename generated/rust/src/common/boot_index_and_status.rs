@@ -3,7 +3,7 @@
 //! Boot Index and Status, a message of node `common`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Boot Index and Status: telemetry 130, 2 bytes. Table 32.
 ///
@@ -68,12 +68,11 @@ impl BootIndexAndStatus {
     }
 }
 
-impl crate::wire::Telemetry for BootIndexAndStatus {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 130;
+message!(BootIndexAndStatus {
+    program_index: ("Program Index", 0, 8),
+    boot_status: ("Boot Status", 8, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for BootIndexAndStatus {
+    const TELEMETRY_ID: u32 = 130;
 }

@@ -2,7 +2,7 @@
 
 //! Cache enabled state, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Cache enabled state: configuration, set by telecommand 3, got by telemetry 131, 1 byte. Table
 /// 48\.
@@ -63,22 +63,14 @@ impl CacheEnabledState {
     }
 }
 
-impl crate::wire::Telecommand for CacheEnabledState {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 3;
+message!(CacheEnabledState {
+    enabled_state: ("Enabled state", 0, 1),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for CacheEnabledState {
+    const TELECOMMAND_ID: u32 = 3;
 }
 
-impl crate::wire::Telemetry for CacheEnabledState {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 131;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for CacheEnabledState {
+    const TELEMETRY_ID: u32 = 131;
 }

@@ -2,7 +2,7 @@
 
 //! Communication Status, a message of node `common`.
 
-use crate::support::{flags, put, take, Error};
+use crate::support::{flags, message, put, take, Error};
 
 /// Communication Status: telemetry 144, 6 bytes. Table 37.
 ///
@@ -148,12 +148,17 @@ impl CommunicationStatus {
     }
 }
 
-impl crate::wire::Telemetry for CommunicationStatus {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 144;
+message!(CommunicationStatus {
+    telecommand_counter: ("Telecommand counter", 0, 16),
+    telemetry_request_counter: ("Telemetry request counter", 16, 16),
+    telecommand_buffer_overrun: ("Telecommand buffer overrun", 32, 1),
+    uart_protocol_error: ("UART protocol error", 33, 1),
+    uart_incomplete_message: ("UART incomplete message", 34, 1),
+    i2c_telemetry_error: ("I2C telemetry error", 35, 1),
+    i2c_telecommand_buffer_error: ("I2C telecommand buffer error", 36, 1),
+    can_telecommand_buffer_error: ("CAN telecommand buffer error", 37, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for CommunicationStatus {
+    const TELEMETRY_ID: u32 = 144;
 }

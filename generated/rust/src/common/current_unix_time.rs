@@ -2,7 +2,7 @@
 
 //! Current Unix Time, a message of node `common`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Current Unix Time: configuration, set by telecommand 2, got by telemetry 140, 6 bytes. Table 50.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -72,22 +72,15 @@ impl CurrentUnixTime {
     }
 }
 
-impl crate::wire::Telecommand for CurrentUnixTime {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 2;
+message!(CurrentUnixTime {
+    current_unix_time: ("Current Unix Time", 0, 32).unit("s"),
+    milliseconds: ("Milliseconds", 32, 16).unit("ms"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for CurrentUnixTime {
+    const TELECOMMAND_ID: u32 = 2;
 }
 
-impl crate::wire::Telemetry for CurrentUnixTime {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 140;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for CurrentUnixTime {
+    const TELEMETRY_ID: u32 = 140;
 }

@@ -2,7 +2,7 @@
 
 //! Download Block Ready, a message of node `common`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Download Block Ready: telemetry 242, 5 bytes. Table 42.
 ///
@@ -84,12 +84,13 @@ impl DownloadBlockReady {
     }
 }
 
-impl crate::wire::Telemetry for DownloadBlockReady {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 242;
+message!(DownloadBlockReady {
+    ready: ("Ready", 0, 1),
+    parameter_error: ("ParameterError", 1, 1),
+    block_crc16_checksum: ("Block CRC16 Checksum", 8, 16),
+    block_length: ("Block Length", 24, 16).unit("byte"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for DownloadBlockReady {
+    const TELEMETRY_ID: u32 = 242;
 }

@@ -2,7 +2,7 @@
 
 //! EDAC Error Counters, a message of node `common`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// EDAC Error Counters: telemetry 143, 6 bytes. Table 36.
 ///
@@ -79,12 +79,12 @@ impl EdacErrorCounters {
     }
 }
 
-impl crate::wire::Telemetry for EdacErrorCounters {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 143;
+message!(EdacErrorCounters {
+    single_sram_upsets: ("Single SRAM upsets", 0, 16),
+    double_sram_upsets: ("Double SRAM upsets", 16, 16),
+    multiple_sram_upsets: ("Multiple SRAM upsets", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for EdacErrorCounters {
+    const TELEMETRY_ID: u32 = 143;
 }

@@ -2,7 +2,7 @@
 
 //! Enumerations. Every one keeps values that have no name.
 
-use crate::support::Enumeration;
+use crate::support::enumeration;
 
 /// FileType: an enumeration. Table 16.
 ///
@@ -63,14 +63,6 @@ impl Default for FileType {
     }
 }
 
-impl Enumeration for FileType {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for FileType {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -84,12 +76,7 @@ impl From<u8> for FileType {
     }
 }
 
-impl From<FileType> for u8 {
-    #[inline]
-    fn from(value: FileType) -> Self {
-        value.raw()
-    }
-}
+enumeration!(FileType: u8);
 
 /// FileUploadDestination: an enumeration. Table 20.
 ///
@@ -217,14 +204,6 @@ impl Default for FileUploadDestination {
     }
 }
 
-impl Enumeration for FileUploadDestination {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for FileUploadDestination {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -250,12 +229,7 @@ impl From<u8> for FileUploadDestination {
     }
 }
 
-impl From<FileUploadDestination> for u8 {
-    #[inline]
-    fn from(value: FileUploadDestination) -> Self {
-        value.raw()
-    }
-}
+enumeration!(FileUploadDestination: u8);
 
 /// ResetCause: an enumeration. Table 29.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -378,14 +352,6 @@ impl ResetCause {
     }
 }
 
-impl Enumeration for ResetCause {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for ResetCause {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -411,12 +377,7 @@ impl From<u8> for ResetCause {
     }
 }
 
-impl From<ResetCause> for u8 {
-    #[inline]
-    fn from(value: ResetCause) -> Self {
-        value.raw()
-    }
-}
+enumeration!(ResetCause: u8);
 
 /// BootCause: an enumeration. Table 30.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -485,14 +446,6 @@ impl BootCause {
     }
 }
 
-impl Enumeration for BootCause {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for BootCause {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -508,12 +461,7 @@ impl From<u8> for BootCause {
     }
 }
 
-impl From<BootCause> for u8 {
-    #[inline]
-    fn from(value: BootCause) -> Self {
-        value.raw()
-    }
-}
+enumeration!(BootCause: u8);
 
 /// BootProgramsList: an enumeration. Table 31.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -563,14 +511,6 @@ impl Default for BootProgramsList {
     }
 }
 
-impl Enumeration for BootProgramsList {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for BootProgramsList {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -582,12 +522,7 @@ impl From<u8> for BootProgramsList {
     }
 }
 
-impl From<BootProgramsList> for u8 {
-    #[inline]
-    fn from(value: BootProgramsList) -> Self {
-        value.raw()
-    }
-}
+enumeration!(BootProgramsList: u8);
 
 /// BootStatus: an enumeration. Table 33.
 ///
@@ -658,14 +593,6 @@ impl BootStatus {
     }
 }
 
-impl Enumeration for BootStatus {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for BootStatus {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -680,12 +607,7 @@ impl From<u8> for BootStatus {
     }
 }
 
-impl From<BootStatus> for u8 {
-    #[inline]
-    fn from(value: BootStatus) -> Self {
-        value.raw()
-    }
-}
+enumeration!(BootStatus: u8);
 
 /// TcErrorReason: an enumeration. Table 40.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -746,14 +668,6 @@ impl TcErrorReason {
     }
 }
 
-impl Enumeration for TcErrorReason {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for TcErrorReason {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -768,9 +682,4 @@ impl From<u8> for TcErrorReason {
     }
 }
 
-impl From<TcErrorReason> for u8 {
-    #[inline]
-    fn from(value: TcErrorReason) -> Self {
-        value.raw()
-    }
-}
+enumeration!(TcErrorReason: u8);

@@ -3,7 +3,7 @@
 //! Erase File, a message of node `common`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Erase File: telecommand 108, 3 bytes. Table 15.
 ///
@@ -80,12 +80,12 @@ impl EraseFile {
     }
 }
 
-impl crate::wire::Telecommand for EraseFile {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 108;
+message!(EraseFile {
+    file_type: ("File Type", 0, 8),
+    file_counter: ("File Counter", 8, 8),
+    erase_all: ("Erase All", 16, 1),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for EraseFile {
+    const TELECOMMAND_ID: u32 = 108;
 }

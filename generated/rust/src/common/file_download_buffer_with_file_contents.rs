@@ -2,7 +2,7 @@
 
 //! File Download Buffer with File Contents, a message of node `common`.
 
-use crate::support::{array, put, put_array, take, Error};
+use crate::support::{array, message, put, put_array, take, Error};
 
 /// File Download Buffer with File Contents: telemetry 241, 22 bytes. Table 41.
 ///
@@ -88,12 +88,11 @@ impl FileDownloadBufferWithFileContents {
     }
 }
 
-impl crate::wire::Telemetry for FileDownloadBufferWithFileContents {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 241;
+message!(FileDownloadBufferWithFileContents {
+    packet_counter: ("Packet counter", 0, 16),
+    file_bytes: ("File bytes", 16, 160),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for FileDownloadBufferWithFileContents {
+    const TELEMETRY_ID: u32 = 241;
 }

@@ -3,7 +3,7 @@
 //! File Information, a message of node `common`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error, Scale};
+use crate::support::{message, put, take, Coded, Error, Scale};
 
 /// File Information: telemetry 243, 12 bytes. Table 43.
 ///
@@ -116,21 +116,17 @@ impl FileInformation {
     }
 }
 
-const FILE_TYPE: Scale = Scale {
-    field: "File Type",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const FILE_TYPE: Scale = Scale::new("File Type", (0, 15), (1, 0, 1));
 
-impl crate::wire::Telemetry for FileInformation {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 243;
+message!(FileInformation {
+    file_type: ("File Type", 0, 4),
+    busy_updating: ("Busy Updating", 4, 1),
+    file_ctr: ("File Ctr", 8, 8),
+    file_size: ("File Size", 16, 32).unit("byte"),
+    file_date_and_time: ("File Date and Time", 48, 32).unit("MS-DOS time"),
+    file_crc16_checksum: ("File CRC16 Checksum", 80, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for FileInformation {
+    const TELEMETRY_ID: u32 = 243;
 }

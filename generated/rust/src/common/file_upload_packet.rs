@@ -2,7 +2,7 @@
 
 //! File Upload Packet, a message of node `common`.
 
-use crate::support::{array, put, put_array, take, Error};
+use crate::support::{array, message, put, put_array, take, Error};
 
 /// File Upload Packet: telecommand 115, 22 bytes. Table 21.
 ///
@@ -85,12 +85,11 @@ impl FileUploadPacket {
     }
 }
 
-impl crate::wire::Telecommand for FileUploadPacket {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 115;
+message!(FileUploadPacket {
+    packet_number: ("Packet Number", 0, 16),
+    file_bytes: ("File Bytes", 16, 160),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for FileUploadPacket {
+    const TELECOMMAND_ID: u32 = 115;
 }

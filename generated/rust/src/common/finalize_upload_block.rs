@@ -3,7 +3,7 @@
 //! Finalize Upload Block, a message of node `common`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error};
+use crate::support::{message, put, take, Coded, Error};
 
 /// Finalize Upload Block: telecommand 116, 7 bytes. Table 22.
 ///
@@ -83,12 +83,12 @@ impl FinalizeUploadBlock {
     }
 }
 
-impl crate::wire::Telecommand for FinalizeUploadBlock {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 116;
+message!(FinalizeUploadBlock {
+    destination: ("Destination", 0, 8),
+    offset: ("Offset", 8, 32).unit("byte"),
+    block_length: ("Block Length", 40, 16).unit("byte"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for FinalizeUploadBlock {
+    const TELECOMMAND_ID: u32 = 116;
 }

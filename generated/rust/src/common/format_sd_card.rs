@@ -2,7 +2,7 @@
 
 //! Format SD card, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Format SD card: telecommand 33, 1 byte. Table 14.
 ///
@@ -75,12 +75,10 @@ impl Default for FormatSdCard {
     }
 }
 
-impl crate::wire::Telecommand for FormatSdCard {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 33;
+message!(FormatSdCard {
+    magic_number: ("Magic Number", 0, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for FormatSdCard {
+    const TELECOMMAND_ID: u32 = 33;
 }

@@ -2,7 +2,7 @@
 
 //! Hole Map 1, a message of node `common`.
 
-use crate::support::{array, put_array, Error};
+use crate::support::{array, message, put_array, Error};
 
 /// Hole Map 1: configuration, set by telecommand 120, got by telemetry 247, 16 bytes. Table 52.
 ///
@@ -78,22 +78,14 @@ impl HoleMap1 {
     }
 }
 
-impl crate::wire::Telecommand for HoleMap1 {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 120;
+message!(HoleMap1 {
+    hole_map: ("Hole Map", 0, 128),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for HoleMap1 {
+    const TELECOMMAND_ID: u32 = 120;
 }
 
-impl crate::wire::Telemetry for HoleMap1 {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 247;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for HoleMap1 {
+    const TELEMETRY_ID: u32 = 247;
 }

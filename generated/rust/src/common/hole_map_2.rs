@@ -2,7 +2,7 @@
 
 //! Hole Map 2, a message of node `common`.
 
-use crate::support::{array, put_array, Error};
+use crate::support::{array, message, put_array, Error};
 
 /// Hole Map 2: configuration, set by telecommand 121, got by telemetry 248, 16 bytes. Table 53.
 ///
@@ -78,22 +78,14 @@ impl HoleMap2 {
     }
 }
 
-impl crate::wire::Telecommand for HoleMap2 {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 121;
+message!(HoleMap2 {
+    hole_map: ("Hole Map", 0, 128),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for HoleMap2 {
+    const TELECOMMAND_ID: u32 = 121;
 }
 
-impl crate::wire::Telemetry for HoleMap2 {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 248;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for HoleMap2 {
+    const TELEMETRY_ID: u32 = 248;
 }

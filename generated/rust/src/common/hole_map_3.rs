@@ -2,7 +2,7 @@
 
 //! Hole Map 3, a message of node `common`.
 
-use crate::support::{array, put_array, Error};
+use crate::support::{array, message, put_array, Error};
 
 /// Hole Map 3: configuration, set by telecommand 122, got by telemetry 249, 16 bytes. Table 54.
 ///
@@ -78,22 +78,14 @@ impl HoleMap3 {
     }
 }
 
-impl crate::wire::Telecommand for HoleMap3 {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 122;
+message!(HoleMap3 {
+    hole_map: ("Hole Map", 0, 128),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for HoleMap3 {
+    const TELECOMMAND_ID: u32 = 122;
 }
 
-impl crate::wire::Telemetry for HoleMap3 {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 249;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for HoleMap3 {
+    const TELEMETRY_ID: u32 = 249;
 }

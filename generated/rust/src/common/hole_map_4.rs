@@ -2,7 +2,7 @@
 
 //! Hole Map 4, a message of node `common`.
 
-use crate::support::{array, put_array, Error};
+use crate::support::{array, message, put_array, Error};
 
 /// Hole Map 4: configuration, set by telecommand 123, got by telemetry 250, 16 bytes. Table 55.
 ///
@@ -78,22 +78,14 @@ impl HoleMap4 {
     }
 }
 
-impl crate::wire::Telecommand for HoleMap4 {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 123;
+message!(HoleMap4 {
+    hole_map: ("Hole Map", 0, 128),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for HoleMap4 {
+    const TELECOMMAND_ID: u32 = 123;
 }
 
-impl crate::wire::Telemetry for HoleMap4 {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 250;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for HoleMap4 {
+    const TELEMETRY_ID: u32 = 250;
 }

@@ -2,7 +2,7 @@
 
 //! Hole Map 5, a message of node `common`.
 
-use crate::support::{array, put_array, Error};
+use crate::support::{array, message, put_array, Error};
 
 /// Hole Map 5: configuration, set by telecommand 124, got by telemetry 251, 16 bytes. Table 56.
 ///
@@ -78,22 +78,14 @@ impl HoleMap5 {
     }
 }
 
-impl crate::wire::Telecommand for HoleMap5 {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 124;
+message!(HoleMap5 {
+    hole_map: ("Hole Map", 0, 128),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for HoleMap5 {
+    const TELECOMMAND_ID: u32 = 124;
 }
 
-impl crate::wire::Telemetry for HoleMap5 {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 251;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for HoleMap5 {
+    const TELEMETRY_ID: u32 = 251;
 }

@@ -2,7 +2,7 @@
 
 //! Hole Map 6, a message of node `common`.
 
-use crate::support::{array, put_array, Error};
+use crate::support::{array, message, put_array, Error};
 
 /// Hole Map 6: configuration, set by telecommand 125, got by telemetry 252, 16 bytes. Table 57.
 ///
@@ -78,22 +78,14 @@ impl HoleMap6 {
     }
 }
 
-impl crate::wire::Telecommand for HoleMap6 {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 125;
+message!(HoleMap6 {
+    hole_map: ("Hole Map", 0, 128),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for HoleMap6 {
+    const TELECOMMAND_ID: u32 = 125;
 }
 
-impl crate::wire::Telemetry for HoleMap6 {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 252;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for HoleMap6 {
+    const TELEMETRY_ID: u32 = 252;
 }

@@ -2,7 +2,7 @@
 
 //! Hole Map 7, a message of node `common`.
 
-use crate::support::{array, put_array, Error};
+use crate::support::{array, message, put_array, Error};
 
 /// Hole Map 7: configuration, set by telecommand 126, got by telemetry 253, 16 bytes. Table 58.
 ///
@@ -78,22 +78,14 @@ impl HoleMap7 {
     }
 }
 
-impl crate::wire::Telecommand for HoleMap7 {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 126;
+message!(HoleMap7 {
+    hole_map: ("Hole Map", 0, 128),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for HoleMap7 {
+    const TELECOMMAND_ID: u32 = 126;
 }
 
-impl crate::wire::Telemetry for HoleMap7 {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 253;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for HoleMap7 {
+    const TELEMETRY_ID: u32 = 253;
 }

@@ -2,7 +2,7 @@
 
 //! Hole Map 8, a message of node `common`.
 
-use crate::support::{array, put_array, Error};
+use crate::support::{array, message, put_array, Error};
 
 /// Hole Map 8: configuration, set by telecommand 127, got by telemetry 254, 16 bytes. Table 59.
 ///
@@ -78,22 +78,14 @@ impl HoleMap8 {
     }
 }
 
-impl crate::wire::Telecommand for HoleMap8 {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 127;
+message!(HoleMap8 {
+    hole_map: ("Hole Map", 0, 128),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for HoleMap8 {
+    const TELECOMMAND_ID: u32 = 127;
 }
 
-impl crate::wire::Telemetry for HoleMap8 {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 254;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for HoleMap8 {
+    const TELEMETRY_ID: u32 = 254;
 }

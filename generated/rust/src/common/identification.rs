@@ -2,7 +2,7 @@
 
 //! Identification, a message of node `common`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Identification: telemetry 128, 8 bytes. Table 27.
 ///
@@ -103,12 +103,15 @@ impl Identification {
     }
 }
 
-impl crate::wire::Telemetry for Identification {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 128;
+message!(Identification {
+    node_type: ("Node type", 0, 8),
+    interface_version: ("Interface version", 8, 8),
+    firmware_version_major: ("Firmware version (Major)", 16, 8),
+    firmware_version_minor: ("Firmware version (Minor)", 24, 8),
+    runtime_seconds: ("Runtime (seconds)", 32, 16).unit("s"),
+    runtime_milliseconds: ("Runtime (milliseconds)", 48, 16).unit("ms"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Identification {
+    const TELEMETRY_ID: u32 = 128;
 }

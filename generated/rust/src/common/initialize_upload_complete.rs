@@ -2,7 +2,7 @@
 
 //! Initialize Upload Complete, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Initialize Upload Complete: telemetry 244, 1 byte. Table 44.
 ///
@@ -76,12 +76,10 @@ impl InitializeUploadComplete {
     }
 }
 
-impl crate::wire::Telemetry for InitializeUploadComplete {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 244;
+message!(InitializeUploadComplete {
+    busy: ("Busy", 0, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for InitializeUploadComplete {
+    const TELEMETRY_ID: u32 = 244;
 }

@@ -2,7 +2,7 @@
 
 //! Initiate Download Burst, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Initiate Download Burst: telecommand 119, 2 bytes. Table 25.
 ///
@@ -83,12 +83,11 @@ impl InitiateDownloadBurst {
     }
 }
 
-impl crate::wire::Telecommand for InitiateDownloadBurst {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 119;
+message!(InitiateDownloadBurst {
+    message_length: ("Message Length", 0, 8),
+    ignore_hole_map: ("Ignore Hole Map", 8, 1),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for InitiateDownloadBurst {
+    const TELECOMMAND_ID: u32 = 119;
 }

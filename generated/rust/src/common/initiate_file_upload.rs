@@ -3,7 +3,7 @@
 //! Initiate File Upload, a message of node `common`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Initiate File Upload: telecommand 114, 2 bytes. Table 19.
 ///
@@ -77,12 +77,11 @@ impl InitiateFileUpload {
     }
 }
 
-impl crate::wire::Telecommand for InitiateFileUpload {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 114;
+message!(InitiateFileUpload {
+    destination: ("Destination", 0, 8),
+    block_size: ("BlockSize", 8, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for InitiateFileUpload {
+    const TELECOMMAND_ID: u32 = 114;
 }

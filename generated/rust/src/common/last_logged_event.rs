@@ -2,7 +2,7 @@
 
 //! Last Logged Event, a message of node `common`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Last Logged Event: telemetry 141, 6 bytes. Table 34.
 ///
@@ -79,12 +79,12 @@ impl LastLoggedEvent {
     }
 }
 
-impl crate::wire::Telemetry for LastLoggedEvent {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 141;
+message!(LastLoggedEvent {
+    time_of_event: ("Time of Event", 0, 32),
+    event_id: ("Event ID", 32, 8),
+    event_parameter: ("Event Parameter", 40, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for LastLoggedEvent {
+    const TELEMETRY_ID: u32 = 141;
 }

@@ -3,7 +3,7 @@
 //! Load File Download Block, a message of node `common`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error};
+use crate::support::{message, put, take, Coded, Error};
 
 /// Load File Download Block: telecommand 112, 8 bytes. Table 17.
 ///
@@ -97,12 +97,13 @@ impl LoadFileDownloadBlock {
     }
 }
 
-impl crate::wire::Telecommand for LoadFileDownloadBlock {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 112;
+message!(LoadFileDownloadBlock {
+    file_type: ("File Type", 0, 8),
+    counter: ("Counter", 8, 8),
+    offset: ("Offset", 16, 32).unit("byte"),
+    block_length: ("BlockLength", 48, 16).unit("byte").limits(&[("max", 20_480.0)]),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for LoadFileDownloadBlock {
+    const TELECOMMAND_ID: u32 = 112;
 }

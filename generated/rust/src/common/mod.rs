@@ -133,6 +133,10 @@ pub use self::hole_map_8::HoleMap8;
 
 pub use crate::wire::links::common::{LINK, LONGEST};
 
+/// The node as a type: [`LINK`], a client for it and the messages that the client takes have it in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Node {}
+
 /// Every telecommand of the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -443,6 +447,67 @@ impl Telecommand {
         }
     }
 }
+
+/// Its name and the values of its fields: physical ones, with their units.
+impl ::core::fmt::Display for Telecommand {
+    fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+        match self {
+            Self::Reset(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ResetLogPointer(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdvanceLogPointer(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ResetBootRegisters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FormatSdCard(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EraseFile(message) => ::core::fmt::Display::fmt(message, out),
+            Self::LoadFileDownloadBlock(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdvanceFileListReadPointer(message) => ::core::fmt::Display::fmt(message, out),
+            Self::InitiateFileUpload(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FileUploadPacket(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FinalizeUploadBlock(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ResetUploadBlock(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ResetFileListReadPointer(message) => ::core::fmt::Display::fmt(message, out),
+            Self::InitiateDownloadBurst(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CacheEnabledState(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SramScrubParameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CurrentUnixTime(message) => ::core::fmt::Display::fmt(message, out),
+            Self::UnixTimeSaveToFlash(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap1(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap2(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap3(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap4(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap5(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap6(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap7(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap8(message) => ::core::fmt::Display::fmt(message, out),
+        }
+    }
+}
+
+impl crate::wire::TelecommandOf<Node> for Reset {}
+impl crate::wire::TelecommandOf<Node> for ResetLogPointer {}
+impl crate::wire::TelecommandOf<Node> for AdvanceLogPointer {}
+impl crate::wire::TelecommandOf<Node> for ResetBootRegisters {}
+impl crate::wire::TelecommandOf<Node> for FormatSdCard {}
+impl crate::wire::TelecommandOf<Node> for EraseFile {}
+impl crate::wire::TelecommandOf<Node> for LoadFileDownloadBlock {}
+impl crate::wire::TelecommandOf<Node> for AdvanceFileListReadPointer {}
+impl crate::wire::TelecommandOf<Node> for InitiateFileUpload {}
+impl crate::wire::TelecommandOf<Node> for FileUploadPacket {}
+impl crate::wire::TelecommandOf<Node> for FinalizeUploadBlock {}
+impl crate::wire::TelecommandOf<Node> for ResetUploadBlock {}
+impl crate::wire::TelecommandOf<Node> for ResetFileListReadPointer {}
+impl crate::wire::TelecommandOf<Node> for InitiateDownloadBurst {}
+impl crate::wire::TelecommandOf<Node> for CacheEnabledState {}
+impl crate::wire::TelecommandOf<Node> for SramScrubParameters {}
+impl crate::wire::TelecommandOf<Node> for CurrentUnixTime {}
+impl crate::wire::TelecommandOf<Node> for UnixTimeSaveToFlash {}
+impl crate::wire::TelecommandOf<Node> for HoleMap1 {}
+impl crate::wire::TelecommandOf<Node> for HoleMap2 {}
+impl crate::wire::TelecommandOf<Node> for HoleMap3 {}
+impl crate::wire::TelecommandOf<Node> for HoleMap4 {}
+impl crate::wire::TelecommandOf<Node> for HoleMap5 {}
+impl crate::wire::TelecommandOf<Node> for HoleMap6 {}
+impl crate::wire::TelecommandOf<Node> for HoleMap7 {}
+impl crate::wire::TelecommandOf<Node> for HoleMap8 {}
 
 /// Every telemetry of the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -768,3 +833,68 @@ impl Telemetry {
         }
     }
 }
+
+/// Its name and the values of its fields: physical ones, with their units.
+impl ::core::fmt::Display for Telemetry {
+    fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+        match self {
+            Self::Identification(message) => ::core::fmt::Display::fmt(message, out),
+            Self::BootAndRunningProgramStatus(message) => ::core::fmt::Display::fmt(message, out),
+            Self::BootIndexAndStatus(message) => ::core::fmt::Display::fmt(message, out),
+            Self::LastLoggedEvent(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SramLatchupCounters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EdacErrorCounters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CommunicationStatus(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SdCardFormatEraseProgress(message) => ::core::fmt::Display::fmt(message, out),
+            Self::TelecommandAcknowledge(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FileDownloadBufferWithFileContents(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::DownloadBlockReady(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FileInformation(message) => ::core::fmt::Display::fmt(message, out),
+            Self::InitializeUploadComplete(message) => ::core::fmt::Display::fmt(message, out),
+            Self::UploadBlockComplete(message) => ::core::fmt::Display::fmt(message, out),
+            Self::BlockChecksum(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CacheEnabledState(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SramScrubParameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CurrentUnixTime(message) => ::core::fmt::Display::fmt(message, out),
+            Self::UnixTimeSaveToFlash(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap1(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap2(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap3(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap4(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap5(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap6(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap7(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap8(message) => ::core::fmt::Display::fmt(message, out),
+        }
+    }
+}
+
+impl crate::wire::TelemetryOf<Node> for Identification {}
+impl crate::wire::TelemetryOf<Node> for BootAndRunningProgramStatus {}
+impl crate::wire::TelemetryOf<Node> for BootIndexAndStatus {}
+impl crate::wire::TelemetryOf<Node> for LastLoggedEvent {}
+impl crate::wire::TelemetryOf<Node> for SramLatchupCounters {}
+impl crate::wire::TelemetryOf<Node> for EdacErrorCounters {}
+impl crate::wire::TelemetryOf<Node> for CommunicationStatus {}
+impl crate::wire::TelemetryOf<Node> for SdCardFormatEraseProgress {}
+impl crate::wire::TelemetryOf<Node> for TelecommandAcknowledge {}
+impl crate::wire::TelemetryOf<Node> for FileDownloadBufferWithFileContents {}
+impl crate::wire::TelemetryOf<Node> for DownloadBlockReady {}
+impl crate::wire::TelemetryOf<Node> for FileInformation {}
+impl crate::wire::TelemetryOf<Node> for InitializeUploadComplete {}
+impl crate::wire::TelemetryOf<Node> for UploadBlockComplete {}
+impl crate::wire::TelemetryOf<Node> for BlockChecksum {}
+impl crate::wire::TelemetryOf<Node> for CacheEnabledState {}
+impl crate::wire::TelemetryOf<Node> for SramScrubParameters {}
+impl crate::wire::TelemetryOf<Node> for CurrentUnixTime {}
+impl crate::wire::TelemetryOf<Node> for UnixTimeSaveToFlash {}
+impl crate::wire::TelemetryOf<Node> for HoleMap1 {}
+impl crate::wire::TelemetryOf<Node> for HoleMap2 {}
+impl crate::wire::TelemetryOf<Node> for HoleMap3 {}
+impl crate::wire::TelemetryOf<Node> for HoleMap4 {}
+impl crate::wire::TelemetryOf<Node> for HoleMap5 {}
+impl crate::wire::TelemetryOf<Node> for HoleMap6 {}
+impl crate::wire::TelemetryOf<Node> for HoleMap7 {}
+impl crate::wire::TelemetryOf<Node> for HoleMap8 {}

@@ -2,7 +2,7 @@
 
 //! Reset, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Reset: telecommand 1, 1 byte. Table 10.
 ///
@@ -85,12 +85,10 @@ impl Default for Reset {
     }
 }
 
-impl crate::wire::Telecommand for Reset {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 1;
+message!(Reset {
+    magic_number: ("Magic number", 0, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for Reset {
+    const TELECOMMAND_ID: u32 = 1;
 }

@@ -2,7 +2,7 @@
 
 //! Reset Boot Registers, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Reset Boot Registers: telecommand 6, 0 bytes. Table 13.
 ///
@@ -55,12 +55,9 @@ impl ResetBootRegisters {
     }
 }
 
-impl crate::wire::Telecommand for ResetBootRegisters {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 6;
+message!(ResetBootRegisters {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for ResetBootRegisters {
+    const TELECOMMAND_ID: u32 = 6;
 }

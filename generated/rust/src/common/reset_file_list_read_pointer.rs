@@ -2,7 +2,7 @@
 
 //! Reset File List Read Pointer, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Reset File List Read Pointer: telecommand 118, 0 bytes. Table 24.
 ///
@@ -51,12 +51,9 @@ impl ResetFileListReadPointer {
     }
 }
 
-impl crate::wire::Telecommand for ResetFileListReadPointer {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 118;
+message!(ResetFileListReadPointer {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for ResetFileListReadPointer {
+    const TELECOMMAND_ID: u32 = 118;
 }

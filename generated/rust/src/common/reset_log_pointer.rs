@@ -2,7 +2,7 @@
 
 //! Reset Log Pointer, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Reset Log Pointer: telecommand 4, 0 bytes. Table 11.
 ///
@@ -58,12 +58,9 @@ impl ResetLogPointer {
     }
 }
 
-impl crate::wire::Telecommand for ResetLogPointer {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 4;
+message!(ResetLogPointer {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for ResetLogPointer {
+    const TELECOMMAND_ID: u32 = 4;
 }

@@ -2,7 +2,7 @@
 
 //! Reset Upload Block, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Reset Upload Block: telecommand 117, 0 bytes. Table 23.
 ///
@@ -59,12 +59,9 @@ impl ResetUploadBlock {
     }
 }
 
-impl crate::wire::Telecommand for ResetUploadBlock {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 117;
+message!(ResetUploadBlock {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for ResetUploadBlock {
+    const TELECOMMAND_ID: u32 = 117;
 }

@@ -2,7 +2,7 @@
 
 //! SD card format/erase progress, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// SD card format/erase progress: telemetry 234, 1 byte. Table 38.
 ///
@@ -71,12 +71,11 @@ impl SdCardFormatEraseProgress {
     }
 }
 
-impl crate::wire::Telemetry for SdCardFormatEraseProgress {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 234;
+message!(SdCardFormatEraseProgress {
+    format_busy: ("Format Busy", 0, 1),
+    erase_all_busy: ("Erase All Busy", 1, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SdCardFormatEraseProgress {
+    const TELEMETRY_ID: u32 = 234;
 }

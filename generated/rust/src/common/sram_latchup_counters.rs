@@ -2,7 +2,7 @@
 
 //! SRAM Latchup counters, a message of node `common`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// SRAM Latchup counters: telemetry 142, 6 bytes. Table 35.
 ///
@@ -65,12 +65,11 @@ impl SramLatchupCounters {
     }
 }
 
-impl crate::wire::Telemetry for SramLatchupCounters {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 142;
+message!(SramLatchupCounters {
+    sram1_latchups: ("SRAM1 latchups", 0, 16),
+    sram2_latchups: ("SRAM2 latchups", 16, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SramLatchupCounters {
+    const TELEMETRY_ID: u32 = 142;
 }

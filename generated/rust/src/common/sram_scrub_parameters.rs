@@ -2,7 +2,7 @@
 
 //! SRAM Scrub Parameters, a message of node `common`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// SRAM Scrub Parameters: configuration, set by telecommand 8, got by telemetry 134, 2 bytes. Table
 /// 49\.
@@ -64,22 +64,14 @@ impl SramScrubParameters {
     }
 }
 
-impl crate::wire::Telecommand for SramScrubParameters {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 8;
+message!(SramScrubParameters {
+    scrub_size: ("Scrub Size", 0, 16),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SramScrubParameters {
+    const TELECOMMAND_ID: u32 = 8;
 }
 
-impl crate::wire::Telemetry for SramScrubParameters {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 134;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SramScrubParameters {
+    const TELEMETRY_ID: u32 = 134;
 }

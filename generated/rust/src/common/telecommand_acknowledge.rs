@@ -3,7 +3,7 @@
 //! Telecommand Acknowledge, a message of node `common`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Telecommand Acknowledge: telemetry 240, 4 bytes. Table 39.
 ///
@@ -107,12 +107,13 @@ impl TelecommandAcknowledge {
     }
 }
 
-impl crate::wire::Telemetry for TelecommandAcknowledge {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 240;
+message!(TelecommandAcknowledge {
+    last_tc_id: ("Last TC ID", 0, 8),
+    processed_flag: ("Processed flag", 8, 1),
+    tc_error_status: ("TC error status", 16, 8),
+    tc_parameter_error_index: ("TC parameter error index", 24, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for TelecommandAcknowledge {
+    const TELEMETRY_ID: u32 = 240;
 }

@@ -2,7 +2,7 @@
 
 //! Unix Time Save to Flash, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Unix Time Save to Flash: configuration, set by telecommand 9, got by telemetry 145, 2 bytes.
 /// Table 51.
@@ -90,22 +90,17 @@ impl UnixTimeSaveToFlash {
     }
 }
 
-impl crate::wire::Telecommand for UnixTimeSaveToFlash {
-    const NODE: &'static str = "common";
-    const TELECOMMAND_ID: u8 = 9;
+message!(UnixTimeSaveToFlash {
+    save_now: ("Save Now", 0, 1),
+    save_on_update: ("Save On Update", 1, 1),
+    save_periodic: ("Save Periodic", 2, 1),
+    period: ("Period", 8, 8).unit("s"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for UnixTimeSaveToFlash {
+    const TELECOMMAND_ID: u32 = 9;
 }
 
-impl crate::wire::Telemetry for UnixTimeSaveToFlash {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 145;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for UnixTimeSaveToFlash {
+    const TELEMETRY_ID: u32 = 145;
 }

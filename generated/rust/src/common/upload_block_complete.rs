@@ -2,7 +2,7 @@
 
 //! Upload Block Complete, a message of node `common`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Upload Block Complete: telemetry 245, 1 byte. Table 45.
 ///
@@ -87,12 +87,11 @@ impl UploadBlockComplete {
     }
 }
 
-impl crate::wire::Telemetry for UploadBlockComplete {
-    const NODE: &'static str = "common";
-    const TELEMETRY_ID: u8 = 245;
+message!(UploadBlockComplete {
+    busy: ("Busy", 0, 1),
+    error: ("Error", 1, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for UploadBlockComplete {
+    const TELEMETRY_ID: u32 = 245;
 }

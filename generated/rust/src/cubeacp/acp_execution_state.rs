@@ -3,7 +3,7 @@
 //! ACP Execution State, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error};
+use crate::support::{message, put, take, Coded, Error};
 
 /// ACP Execution State: telemetry 220, 3 bytes. Table 167.
 ///
@@ -66,12 +66,11 @@ impl AcpExecutionState {
     }
 }
 
-impl crate::wire::Telemetry for AcpExecutionState {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 220;
+message!(AcpExecutionState {
+    time_since_iteration_start: ("Time Since Iteration Start", 0, 16).unit("ms"),
+    current_execution_point: ("Current Execution Point", 16, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for AcpExecutionState {
+    const TELEMETRY_ID: u32 = 220;
 }

@@ -2,7 +2,7 @@
 
 //! Actuator Commands, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Actuator Commands: telemetry 192, 12 bytes. Table 151.
 ///
@@ -108,12 +108,15 @@ impl ActuatorCommands {
     }
 }
 
-impl crate::wire::Telemetry for ActuatorCommands {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 192;
+message!(ActuatorCommands {
+    x_magnetorquer_command: ("X Magnetorquer Command", 0, 16).unit("10ms units"),
+    y_magnetorquer_command: ("Y Magnetorquer Command", 16, 16).unit("10ms units"),
+    z_magnetorquer_command: ("Z Magnetorquer Command", 32, 16).unit("10ms units"),
+    commanded_x_wheel_speed: ("Commanded X Wheel Speed", 48, 16).unit("rpm"),
+    commanded_y_wheel_speed: ("Commanded Y Wheel Speed", 64, 16).unit("rpm"),
+    commanded_z_wheel_speed: ("Commanded Z Wheel Speed", 80, 16).unit("rpm"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for ActuatorCommands {
+    const TELEMETRY_ID: u32 = 192;
 }

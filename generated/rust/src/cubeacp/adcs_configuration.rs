@@ -3,7 +3,7 @@
 //! ADCS Configuration, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{array, flags, put, put_array, take, Coded, Error, Scale};
+use crate::support::{array, flags, message, put, put_array, take, Coded, Error, Scale};
 
 /// ADCS Configuration: configuration, set by telecommand 20, got by telemetry 206, 504 bytes. Table
 /// 192\.
@@ -1214,13 +1214,29 @@ impl AdcsConfiguration {
         f64::from(self.x_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets X-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets X-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_x_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.x_rate_sensor_offset = X_RATE_SENSOR_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// X-Rate Sensor Offset in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_rate_sensor_offset_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.x_rate_sensor_offset) / 1_000.0
+    }
+
+    /// X-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn x_rate_sensor_offset_mdeg_per_s(&self) -> i32 {
+        i32::from(self.x_rate_sensor_offset)
+    }
+
+    /// Sets X-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_x_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.x_rate_sensor_offset = X_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1230,13 +1246,29 @@ impl AdcsConfiguration {
         f64::from(self.y_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets Y-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Y-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_y_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.y_rate_sensor_offset = Y_RATE_SENSOR_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// Y-Rate Sensor Offset in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_rate_sensor_offset_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.y_rate_sensor_offset) / 1_000.0
+    }
+
+    /// Y-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn y_rate_sensor_offset_mdeg_per_s(&self) -> i32 {
+        i32::from(self.y_rate_sensor_offset)
+    }
+
+    /// Sets Y-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_y_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.y_rate_sensor_offset = Y_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1246,13 +1278,29 @@ impl AdcsConfiguration {
         f64::from(self.z_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets Z-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Z-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_z_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.z_rate_sensor_offset = Z_RATE_SENSOR_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// Z-Rate Sensor Offset in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_rate_sensor_offset_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.z_rate_sensor_offset) / 1_000.0
+    }
+
+    /// Z-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn z_rate_sensor_offset_mdeg_per_s(&self) -> i32 {
+        i32::from(self.z_rate_sensor_offset)
+    }
+
+    /// Sets Z-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_z_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.z_rate_sensor_offset = Z_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1263,12 +1311,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets CSS1 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css1_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css1_relative_scale = CSS1_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS1 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css1_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css1_relative_scale) / 100.0
+    }
+
+    /// CSS1 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css1_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css1_relative_scale) * 10
+    }
+
+    /// Sets CSS1 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css1_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css1_relative_scale = CSS1_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1279,12 +1343,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets CSS2 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css2_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css2_relative_scale = CSS2_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS2 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css2_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css2_relative_scale) / 100.0
+    }
+
+    /// CSS2 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css2_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css2_relative_scale) * 10
+    }
+
+    /// Sets CSS2 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css2_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css2_relative_scale = CSS2_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1295,12 +1375,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets CSS3 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css3_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css3_relative_scale = CSS3_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS3 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css3_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css3_relative_scale) / 100.0
+    }
+
+    /// CSS3 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css3_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css3_relative_scale) * 10
+    }
+
+    /// Sets CSS3 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css3_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css3_relative_scale = CSS3_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1311,12 +1407,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets CSS4 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css4_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css4_relative_scale = CSS4_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS4 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css4_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css4_relative_scale) / 100.0
+    }
+
+    /// CSS4 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css4_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css4_relative_scale) * 10
+    }
+
+    /// Sets CSS4 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css4_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css4_relative_scale = CSS4_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1327,12 +1439,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets CSS5 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css5_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css5_relative_scale = CSS5_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS5 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css5_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css5_relative_scale) / 100.0
+    }
+
+    /// CSS5 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css5_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css5_relative_scale) * 10
+    }
+
+    /// Sets CSS5 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css5_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css5_relative_scale = CSS5_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1343,12 +1471,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets CSS6 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css6_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css6_relative_scale = CSS6_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS6 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css6_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css6_relative_scale) / 100.0
+    }
+
+    /// CSS6 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css6_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css6_relative_scale) * 10
+    }
+
+    /// Sets CSS6 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css6_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css6_relative_scale = CSS6_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1359,12 +1503,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets CSS7 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css7_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css7_relative_scale = CSS7_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS7 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css7_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css7_relative_scale) / 100.0
+    }
+
+    /// CSS7 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css7_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css7_relative_scale) * 10
+    }
+
+    /// Sets CSS7 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css7_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css7_relative_scale = CSS7_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1375,12 +1535,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets CSS8 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css8_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css8_relative_scale = CSS8_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS8 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css8_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css8_relative_scale) / 100.0
+    }
+
+    /// CSS8 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css8_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css8_relative_scale) * 10
+    }
+
+    /// Sets CSS8 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css8_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css8_relative_scale = CSS8_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1391,12 +1567,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets CSS9 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css9_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css9_relative_scale = CSS9_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS9 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css9_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css9_relative_scale) / 100.0
+    }
+
+    /// CSS9 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css9_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css9_relative_scale) * 10
+    }
+
+    /// Sets CSS9 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css9_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css9_relative_scale = CSS9_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1407,12 +1599,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets CSS10 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css10_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css10_relative_scale = CSS10_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS10 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css10_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css10_relative_scale) / 100.0
+    }
+
+    /// CSS10 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css10_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css10_relative_scale) * 10
+    }
+
+    /// Sets CSS10 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css10_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css10_relative_scale = CSS10_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1423,13 +1631,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Cam1 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam1_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_mounting_alpha = CAM1_MOUNTING_ALPHA.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam1 Sensor Mounting Transform Alpha Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam1_mounting_alpha_deg_f32(&self) -> f32 {
+        f32::from(self.cam1_mounting_alpha) / 100.0
+    }
+
+    /// Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cam1_mounting_alpha_mdeg(&self) -> i32 {
+        i32::from(self.cam1_mounting_alpha) * 10
+    }
+
+    /// Sets Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_cam1_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.cam1_mounting_alpha = CAM1_MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1440,13 +1663,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Cam1 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam1_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_mounting_beta = CAM1_MOUNTING_BETA.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam1 Sensor Mounting Transform Beta Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam1_mounting_beta_deg_f32(&self) -> f32 {
+        f32::from(self.cam1_mounting_beta) / 100.0
+    }
+
+    /// Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cam1_mounting_beta_mdeg(&self) -> i32 {
+        i32::from(self.cam1_mounting_beta) * 10
+    }
+
+    /// Sets Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_cam1_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.cam1_mounting_beta = CAM1_MOUNTING_BETA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1457,13 +1695,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Cam1 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam1_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_mounting_gamma = CAM1_MOUNTING_GAMMA.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam1 Sensor Mounting Transform Gamma Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam1_mounting_gamma_deg_f32(&self) -> f32 {
+        f32::from(self.cam1_mounting_gamma) / 100.0
+    }
+
+    /// Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cam1_mounting_gamma_mdeg(&self) -> i32 {
+        i32::from(self.cam1_mounting_gamma) * 10
+    }
+
+    /// Sets Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_cam1_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.cam1_mounting_gamma = CAM1_MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1473,13 +1726,29 @@ impl AdcsConfiguration {
         f64::from(self.cam1_boresight_x) / 100.0
     }
 
-    /// Sets Cam1 Boresight X in pixels, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Cam1 Boresight X in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cam1_boresight_x_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_boresight_x = CAM1_BORESIGHT_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam1 Boresight X in pixels, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam1_boresight_x_pixels_f32(&self) -> f32 {
+        f32::from(self.cam1_boresight_x) / 100.0
+    }
+
+    /// Cam1 Boresight X in thousandths of pixels, exact: 0 to 655350.
+    #[must_use]
+    pub fn cam1_boresight_x_milli_pixels(&self) -> i32 {
+        i32::from(self.cam1_boresight_x) * 10
+    }
+
+    /// Sets Cam1 Boresight X in thousandths of pixels, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cam1_boresight_x_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
+        self.cam1_boresight_x = CAM1_BORESIGHT_X.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1489,13 +1758,29 @@ impl AdcsConfiguration {
         f64::from(self.cam1_boresight_y) / 100.0
     }
 
-    /// Sets Cam1 Boresight Y in pixels, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Cam1 Boresight Y in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cam1_boresight_y_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_boresight_y = CAM1_BORESIGHT_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam1 Boresight Y in pixels, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam1_boresight_y_pixels_f32(&self) -> f32 {
+        f32::from(self.cam1_boresight_y) / 100.0
+    }
+
+    /// Cam1 Boresight Y in thousandths of pixels, exact: 0 to 655350.
+    #[must_use]
+    pub fn cam1_boresight_y_milli_pixels(&self) -> i32 {
+        i32::from(self.cam1_boresight_y) * 10
+    }
+
+    /// Sets Cam1 Boresight Y in thousandths of pixels, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cam1_boresight_y_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
+        self.cam1_boresight_y = CAM1_BORESIGHT_Y.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1506,13 +1791,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Cam2 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam2_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_mounting_alpha = CAM2_MOUNTING_ALPHA.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam2 Sensor Mounting Transform Alpha Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam2_mounting_alpha_deg_f32(&self) -> f32 {
+        f32::from(self.cam2_mounting_alpha) / 100.0
+    }
+
+    /// Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cam2_mounting_alpha_mdeg(&self) -> i32 {
+        i32::from(self.cam2_mounting_alpha) * 10
+    }
+
+    /// Sets Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_cam2_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.cam2_mounting_alpha = CAM2_MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1523,13 +1823,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Cam2 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam2_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_mounting_beta = CAM2_MOUNTING_BETA.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam2 Sensor Mounting Transform Beta Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam2_mounting_beta_deg_f32(&self) -> f32 {
+        f32::from(self.cam2_mounting_beta) / 100.0
+    }
+
+    /// Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cam2_mounting_beta_mdeg(&self) -> i32 {
+        i32::from(self.cam2_mounting_beta) * 10
+    }
+
+    /// Sets Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_cam2_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.cam2_mounting_beta = CAM2_MOUNTING_BETA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1540,13 +1855,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Cam2 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam2_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_mounting_gamma = CAM2_MOUNTING_GAMMA.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam2 Sensor Mounting Transform Gamma Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam2_mounting_gamma_deg_f32(&self) -> f32 {
+        f32::from(self.cam2_mounting_gamma) / 100.0
+    }
+
+    /// Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cam2_mounting_gamma_mdeg(&self) -> i32 {
+        i32::from(self.cam2_mounting_gamma) * 10
+    }
+
+    /// Sets Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_cam2_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.cam2_mounting_gamma = CAM2_MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1556,13 +1886,29 @@ impl AdcsConfiguration {
         f64::from(self.cam2_boresight_x) / 100.0
     }
 
-    /// Sets Cam2 Boresight X in pixels, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Cam2 Boresight X in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cam2_boresight_x_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_boresight_x = CAM2_BORESIGHT_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam2 Boresight X in pixels, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam2_boresight_x_pixels_f32(&self) -> f32 {
+        f32::from(self.cam2_boresight_x) / 100.0
+    }
+
+    /// Cam2 Boresight X in thousandths of pixels, exact: 0 to 655350.
+    #[must_use]
+    pub fn cam2_boresight_x_milli_pixels(&self) -> i32 {
+        i32::from(self.cam2_boresight_x) * 10
+    }
+
+    /// Sets Cam2 Boresight X in thousandths of pixels, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cam2_boresight_x_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
+        self.cam2_boresight_x = CAM2_BORESIGHT_X.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1572,13 +1918,29 @@ impl AdcsConfiguration {
         f64::from(self.cam2_boresight_y) / 100.0
     }
 
-    /// Sets Cam2 Boresight Y in pixels, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Cam2 Boresight Y in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cam2_boresight_y_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_boresight_y = CAM2_BORESIGHT_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam2 Boresight Y in pixels, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam2_boresight_y_pixels_f32(&self) -> f32 {
+        f32::from(self.cam2_boresight_y) / 100.0
+    }
+
+    /// Cam2 Boresight Y in thousandths of pixels, exact: 0 to 655350.
+    #[must_use]
+    pub fn cam2_boresight_y_milli_pixels(&self) -> i32 {
+        i32::from(self.cam2_boresight_y) * 10
+    }
+
+    /// Sets Cam2 Boresight Y in thousandths of pixels, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cam2_boresight_y_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
+        self.cam2_boresight_y = CAM2_BORESIGHT_Y.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1589,13 +1951,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_mounting_alpha = MAGNETOMETER_MOUNTING_ALPHA.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Mounting Transform Alpha Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_mounting_alpha_deg_f32(&self) -> f32 {
+        f32::from(self.magnetometer_mounting_alpha) / 100.0
+    }
+
+    /// Magnetometer Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn magnetometer_mounting_alpha_mdeg(&self) -> i32 {
+        i32::from(self.magnetometer_mounting_alpha) * 10
+    }
+
+    /// Sets Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_mounting_alpha = MAGNETOMETER_MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1606,13 +1983,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_mounting_beta = MAGNETOMETER_MOUNTING_BETA.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Mounting Transform Beta Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_mounting_beta_deg_f32(&self) -> f32 {
+        f32::from(self.magnetometer_mounting_beta) / 100.0
+    }
+
+    /// Magnetometer Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn magnetometer_mounting_beta_mdeg(&self) -> i32 {
+        i32::from(self.magnetometer_mounting_beta) * 10
+    }
+
+    /// Sets Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_mounting_beta = MAGNETOMETER_MOUNTING_BETA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1623,13 +2015,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_mounting_gamma = MAGNETOMETER_MOUNTING_GAMMA.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Mounting Transform Gamma Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_mounting_gamma_deg_f32(&self) -> f32 {
+        f32::from(self.magnetometer_mounting_gamma) / 100.0
+    }
+
+    /// Magnetometer Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn magnetometer_mounting_gamma_mdeg(&self) -> i32 {
+        i32::from(self.magnetometer_mounting_gamma) * 10
+    }
+
+    /// Sets Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_mounting_gamma = MAGNETOMETER_MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1640,13 +2047,29 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_channel_1_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_channel_1_offset = MAGNETOMETER_CHANNEL_1_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Channel 1 Offset, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_channel_1_offset_physical_f32(&self) -> f32 {
+        f32::from(self.magnetometer_channel_1_offset) / 1_000.0
+    }
+
+    /// Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn magnetometer_channel_1_offset_milli(&self) -> i32 {
+        i32::from(self.magnetometer_channel_1_offset)
+    }
+
+    /// Sets Magnetometer Channel 1 Offset in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_channel_1_offset_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_channel_1_offset =
+            MAGNETOMETER_CHANNEL_1_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1657,13 +2080,29 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_channel_2_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_channel_2_offset = MAGNETOMETER_CHANNEL_2_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Channel 2 Offset, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_channel_2_offset_physical_f32(&self) -> f32 {
+        f32::from(self.magnetometer_channel_2_offset) / 1_000.0
+    }
+
+    /// Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn magnetometer_channel_2_offset_milli(&self) -> i32 {
+        i32::from(self.magnetometer_channel_2_offset)
+    }
+
+    /// Sets Magnetometer Channel 2 Offset in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_channel_2_offset_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_channel_2_offset =
+            MAGNETOMETER_CHANNEL_2_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1674,13 +2113,29 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_channel_3_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_channel_3_offset = MAGNETOMETER_CHANNEL_3_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Channel 3 Offset, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_channel_3_offset_physical_f32(&self) -> f32 {
+        f32::from(self.magnetometer_channel_3_offset) / 1_000.0
+    }
+
+    /// Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn magnetometer_channel_3_offset_milli(&self) -> i32 {
+        i32::from(self.magnetometer_channel_3_offset)
+    }
+
+    /// Sets Magnetometer Channel 3 Offset in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_channel_3_offset_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_channel_3_offset =
+            MAGNETOMETER_CHANNEL_3_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1691,13 +2146,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s11_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s11 = MAGNETOMETER_SENSITIVITY_S11.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Sensitivity Matrix S11, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s11_physical_f32(&self) -> f32 {
+        f32::from(self.magnetometer_sensitivity_s11) / 1_000.0
+    }
+
+    /// Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s11_milli(&self) -> i32 {
+        i32::from(self.magnetometer_sensitivity_s11)
+    }
+
+    /// Sets Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_sensitivity_s11_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s11 = MAGNETOMETER_SENSITIVITY_S11.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1708,13 +2178,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s22_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s22 = MAGNETOMETER_SENSITIVITY_S22.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Sensitivity Matrix S22, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s22_physical_f32(&self) -> f32 {
+        f32::from(self.magnetometer_sensitivity_s22) / 1_000.0
+    }
+
+    /// Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s22_milli(&self) -> i32 {
+        i32::from(self.magnetometer_sensitivity_s22)
+    }
+
+    /// Sets Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_sensitivity_s22_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s22 = MAGNETOMETER_SENSITIVITY_S22.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1725,13 +2210,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s33_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s33 = MAGNETOMETER_SENSITIVITY_S33.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Sensitivity Matrix S33, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s33_physical_f32(&self) -> f32 {
+        f32::from(self.magnetometer_sensitivity_s33) / 1_000.0
+    }
+
+    /// Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s33_milli(&self) -> i32 {
+        i32::from(self.magnetometer_sensitivity_s33)
+    }
+
+    /// Sets Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_sensitivity_s33_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s33 = MAGNETOMETER_SENSITIVITY_S33.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1742,13 +2242,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s12_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s12 = MAGNETOMETER_SENSITIVITY_S12.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Sensitivity Matrix S12, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s12_physical_f32(&self) -> f32 {
+        f32::from(self.magnetometer_sensitivity_s12) / 1_000.0
+    }
+
+    /// Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s12_milli(&self) -> i32 {
+        i32::from(self.magnetometer_sensitivity_s12)
+    }
+
+    /// Sets Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_sensitivity_s12_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s12 = MAGNETOMETER_SENSITIVITY_S12.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1759,13 +2274,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s13_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s13 = MAGNETOMETER_SENSITIVITY_S13.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Sensitivity Matrix S13, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s13_physical_f32(&self) -> f32 {
+        f32::from(self.magnetometer_sensitivity_s13) / 1_000.0
+    }
+
+    /// Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s13_milli(&self) -> i32 {
+        i32::from(self.magnetometer_sensitivity_s13)
+    }
+
+    /// Sets Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_sensitivity_s13_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s13 = MAGNETOMETER_SENSITIVITY_S13.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1776,13 +2306,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s21_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s21 = MAGNETOMETER_SENSITIVITY_S21.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Sensitivity Matrix S21, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s21_physical_f32(&self) -> f32 {
+        f32::from(self.magnetometer_sensitivity_s21) / 1_000.0
+    }
+
+    /// Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s21_milli(&self) -> i32 {
+        i32::from(self.magnetometer_sensitivity_s21)
+    }
+
+    /// Sets Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_sensitivity_s21_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s21 = MAGNETOMETER_SENSITIVITY_S21.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1793,13 +2338,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s23_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s23 = MAGNETOMETER_SENSITIVITY_S23.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Sensitivity Matrix S23, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s23_physical_f32(&self) -> f32 {
+        f32::from(self.magnetometer_sensitivity_s23) / 1_000.0
+    }
+
+    /// Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s23_milli(&self) -> i32 {
+        i32::from(self.magnetometer_sensitivity_s23)
+    }
+
+    /// Sets Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_sensitivity_s23_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s23 = MAGNETOMETER_SENSITIVITY_S23.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1810,13 +2370,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s31_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s31 = MAGNETOMETER_SENSITIVITY_S31.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Sensitivity Matrix S31, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s31_physical_f32(&self) -> f32 {
+        f32::from(self.magnetometer_sensitivity_s31) / 1_000.0
+    }
+
+    /// Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s31_milli(&self) -> i32 {
+        i32::from(self.magnetometer_sensitivity_s31)
+    }
+
+    /// Sets Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_sensitivity_s31_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s31 = MAGNETOMETER_SENSITIVITY_S31.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1827,13 +2402,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_magnetometer_sensitivity_s32_physical(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_sensitivity_s32 = MAGNETOMETER_SENSITIVITY_S32.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Sensitivity Matrix S32, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s32_physical_f32(&self) -> f32 {
+        f32::from(self.magnetometer_sensitivity_s32) / 1_000.0
+    }
+
+    /// Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn magnetometer_sensitivity_s32_milli(&self) -> i32 {
+        i32::from(self.magnetometer_sensitivity_s32)
+    }
+
+    /// Sets Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_sensitivity_s32_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s32 = MAGNETOMETER_SENSITIVITY_S32.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1844,13 +2434,30 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_mounting_alpha = REDUNDANT_MAG_MOUNTING_ALPHA.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Mounting Transform Alpha Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn redundant_mag_mounting_alpha_deg_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_mounting_alpha) / 100.0
+    }
+
+    /// Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    /// to 327670.
+    #[must_use]
+    pub fn redundant_mag_mounting_alpha_mdeg(&self) -> i32 {
+        i32::from(self.redundant_mag_mounting_alpha) * 10
+    }
+
+    /// Sets Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the
+    /// nearest raw value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_mounting_alpha =
+            REDUNDANT_MAG_MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1861,13 +2468,29 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_mounting_beta = REDUNDANT_MAG_MOUNTING_BETA.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Mounting Transform Beta Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn redundant_mag_mounting_beta_deg_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_mounting_beta) / 100.0
+    }
+
+    /// Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    /// to 327670.
+    #[must_use]
+    pub fn redundant_mag_mounting_beta_mdeg(&self) -> i32 {
+        i32::from(self.redundant_mag_mounting_beta) * 10
+    }
+
+    /// Sets Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the
+    /// nearest raw value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_mounting_beta = REDUNDANT_MAG_MOUNTING_BETA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1878,13 +2501,30 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_mounting_gamma = REDUNDANT_MAG_MOUNTING_GAMMA.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Mounting Transform Gamma Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn redundant_mag_mounting_gamma_deg_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_mounting_gamma) / 100.0
+    }
+
+    /// Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    /// to 327670.
+    #[must_use]
+    pub fn redundant_mag_mounting_gamma_mdeg(&self) -> i32 {
+        i32::from(self.redundant_mag_mounting_gamma) * 10
+    }
+
+    /// Sets Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the
+    /// nearest raw value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_mounting_gamma =
+            REDUNDANT_MAG_MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -1895,13 +2535,29 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_channel_1_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_channel_1_offset = REDUNDANT_MAG_CHANNEL_1_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Channel 1 Offset, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn redundant_mag_channel_1_offset_physical_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_channel_1_offset) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn redundant_mag_channel_1_offset_milli(&self) -> i32 {
+        i32::from(self.redundant_mag_channel_1_offset)
+    }
+
+    /// Sets Redundant Magnetometer Channel 1 Offset in thousandths, to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_channel_1_offset_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_channel_1_offset =
+            REDUNDANT_MAG_CHANNEL_1_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1912,13 +2568,29 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_channel_2_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_channel_2_offset = REDUNDANT_MAG_CHANNEL_2_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Channel 2 Offset, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn redundant_mag_channel_2_offset_physical_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_channel_2_offset) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn redundant_mag_channel_2_offset_milli(&self) -> i32 {
+        i32::from(self.redundant_mag_channel_2_offset)
+    }
+
+    /// Sets Redundant Magnetometer Channel 2 Offset in thousandths, to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_channel_2_offset_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_channel_2_offset =
+            REDUNDANT_MAG_CHANNEL_2_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1929,13 +2601,29 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_channel_3_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_channel_3_offset = REDUNDANT_MAG_CHANNEL_3_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Channel 3 Offset, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn redundant_mag_channel_3_offset_physical_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_channel_3_offset) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn redundant_mag_channel_3_offset_milli(&self) -> i32 {
+        i32::from(self.redundant_mag_channel_3_offset)
+    }
+
+    /// Sets Redundant Magnetometer Channel 3 Offset in thousandths, to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_channel_3_offset_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_channel_3_offset =
+            REDUNDANT_MAG_CHANNEL_3_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1946,13 +2634,30 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s11_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s11 = REDUNDANT_MAG_SENSITIVITY_S11.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S11, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s11_physical_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_sensitivity_s11) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s11_milli(&self) -> i32 {
+        i32::from(self.redundant_mag_sensitivity_s11)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_sensitivity_s11_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s11 =
+            REDUNDANT_MAG_SENSITIVITY_S11.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1963,13 +2668,30 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s22_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s22 = REDUNDANT_MAG_SENSITIVITY_S22.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S22, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s22_physical_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_sensitivity_s22) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s22_milli(&self) -> i32 {
+        i32::from(self.redundant_mag_sensitivity_s22)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_sensitivity_s22_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s22 =
+            REDUNDANT_MAG_SENSITIVITY_S22.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1980,13 +2702,30 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s33_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s33 = REDUNDANT_MAG_SENSITIVITY_S33.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S33, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s33_physical_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_sensitivity_s33) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s33_milli(&self) -> i32 {
+        i32::from(self.redundant_mag_sensitivity_s33)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_sensitivity_s33_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s33 =
+            REDUNDANT_MAG_SENSITIVITY_S33.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -1997,13 +2736,30 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s12_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s12 = REDUNDANT_MAG_SENSITIVITY_S12.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S12, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s12_physical_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_sensitivity_s12) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s12_milli(&self) -> i32 {
+        i32::from(self.redundant_mag_sensitivity_s12)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_sensitivity_s12_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s12 =
+            REDUNDANT_MAG_SENSITIVITY_S12.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -2014,13 +2770,30 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s13_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s13 = REDUNDANT_MAG_SENSITIVITY_S13.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S13, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s13_physical_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_sensitivity_s13) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s13_milli(&self) -> i32 {
+        i32::from(self.redundant_mag_sensitivity_s13)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_sensitivity_s13_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s13 =
+            REDUNDANT_MAG_SENSITIVITY_S13.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -2031,13 +2804,30 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s21_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s21 = REDUNDANT_MAG_SENSITIVITY_S21.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S21, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s21_physical_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_sensitivity_s21) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s21_milli(&self) -> i32 {
+        i32::from(self.redundant_mag_sensitivity_s21)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_sensitivity_s21_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s21 =
+            REDUNDANT_MAG_SENSITIVITY_S21.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -2048,13 +2838,30 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s23_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s23 = REDUNDANT_MAG_SENSITIVITY_S23.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S23, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s23_physical_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_sensitivity_s23) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s23_milli(&self) -> i32 {
+        i32::from(self.redundant_mag_sensitivity_s23)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_sensitivity_s23_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s23 =
+            REDUNDANT_MAG_SENSITIVITY_S23.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -2065,13 +2872,30 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s31_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s31 = REDUNDANT_MAG_SENSITIVITY_S31.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S31, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s31_physical_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_sensitivity_s31) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s31_milli(&self) -> i32 {
+        i32::from(self.redundant_mag_sensitivity_s31)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_sensitivity_s31_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s31 =
+            REDUNDANT_MAG_SENSITIVITY_S31.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -2082,13 +2906,30 @@ impl AdcsConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_sensitivity_s32_physical(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_sensitivity_s32 = REDUNDANT_MAG_SENSITIVITY_S32.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S32, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s32_physical_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_sensitivity_s32) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn redundant_mag_sensitivity_s32_milli(&self) -> i32 {
+        i32::from(self.redundant_mag_sensitivity_s32)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_sensitivity_s32_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s32 =
+            REDUNDANT_MAG_SENSITIVITY_S32.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -2099,13 +2940,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets StarTracker Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_star_tracker_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.star_tracker_mounting_alpha = STAR_TRACKER_MOUNTING_ALPHA.raw(value)?;
+        Ok(())
+    }
+
+    /// StarTracker Mounting Transform Alpha Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star_tracker_mounting_alpha_deg_f32(&self) -> f32 {
+        f32::from(self.star_tracker_mounting_alpha) / 100.0
+    }
+
+    /// StarTracker Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn star_tracker_mounting_alpha_mdeg(&self) -> i32 {
+        i32::from(self.star_tracker_mounting_alpha) * 10
+    }
+
+    /// Sets StarTracker Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_star_tracker_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.star_tracker_mounting_alpha = STAR_TRACKER_MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -2116,13 +2972,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets StarTracker Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_star_tracker_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.star_tracker_mounting_beta = STAR_TRACKER_MOUNTING_BETA.raw(value)?;
+        Ok(())
+    }
+
+    /// StarTracker Mounting Transform Beta Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star_tracker_mounting_beta_deg_f32(&self) -> f32 {
+        f32::from(self.star_tracker_mounting_beta) / 100.0
+    }
+
+    /// StarTracker Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn star_tracker_mounting_beta_mdeg(&self) -> i32 {
+        i32::from(self.star_tracker_mounting_beta) * 10
+    }
+
+    /// Sets StarTracker Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_star_tracker_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.star_tracker_mounting_beta = STAR_TRACKER_MOUNTING_BETA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -2133,13 +3004,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets StarTracker Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_star_tracker_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.star_tracker_mounting_gamma = STAR_TRACKER_MOUNTING_GAMMA.raw(value)?;
+        Ok(())
+    }
+
+    /// StarTracker Mounting Transform Gamma Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star_tracker_mounting_gamma_deg_f32(&self) -> f32 {
+        f32::from(self.star_tracker_mounting_gamma) / 100.0
+    }
+
+    /// StarTracker Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn star_tracker_mounting_gamma_mdeg(&self) -> i32 {
+        i32::from(self.star_tracker_mounting_gamma) * 10
+    }
+
+    /// Sets StarTracker Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_star_tracker_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.star_tracker_mounting_gamma = STAR_TRACKER_MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -2150,12 +3036,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Star Tracker Error Margin in %, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_star_tracker_error_margin_percent(&mut self, value: f64) -> Result<(), Error> {
         self.star_tracker_error_margin = STAR_TRACKER_ERROR_MARGIN.raw(value)?;
+        Ok(())
+    }
+
+    /// Star Tracker Error Margin in %, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star_tracker_error_margin_percent_f32(&self) -> f32 {
+        f32::from(self.star_tracker_error_margin) / 100.0
+    }
+
+    /// Star Tracker Error Margin in thousandths of %, exact: 0 to 2550.
+    #[must_use]
+    pub fn star_tracker_error_margin_milli_percent(&self) -> i32 {
+        i32::from(self.star_tracker_error_margin) * 10
+    }
+
+    /// Sets Star Tracker Error Margin in thousandths of %, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_star_tracker_error_margin_milli_percent(&mut self, value: i32) -> Result<(), Error> {
+        self.star_tracker_error_margin = STAR_TRACKER_ERROR_MARGIN.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -2166,12 +3068,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Star Tracking Margin, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_star_tracking_margin_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star_tracking_margin = STAR_TRACKING_MARGIN.raw(value)?;
+        Ok(())
+    }
+
+    /// Star Tracking Margin, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star_tracking_margin_physical_f32(&self) -> f32 {
+        f32::from(self.star_tracking_margin) / 100.0
+    }
+
+    /// Star Tracking Margin in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn star_tracking_margin_milli(&self) -> i32 {
+        i32::from(self.star_tracking_margin) * 10
+    }
+
+    /// Sets Star Tracking Margin in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_star_tracking_margin_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.star_tracking_margin = STAR_TRACKING_MARGIN.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -2182,12 +3100,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Star Validation Margin, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_star_validation_margin_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star_validation_margin = STAR_VALIDATION_MARGIN.raw(value)?;
+        Ok(())
+    }
+
+    /// Star Validation Margin, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star_validation_margin_physical_f32(&self) -> f32 {
+        f32::from(self.star_validation_margin) / 100.0
+    }
+
+    /// Star Validation Margin in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn star_validation_margin_milli(&self) -> i32 {
+        i32::from(self.star_validation_margin) * 10
+    }
+
+    /// Sets Star Validation Margin in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_star_validation_margin_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.star_validation_margin = STAR_VALIDATION_MARGIN.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -2198,13 +3132,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Star Tracking Search Width, as a physical value, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_star_tracking_search_width_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star_tracking_search_width = STAR_TRACKING_SEARCH_WIDTH.raw(value)?;
+        Ok(())
+    }
+
+    /// Star Tracking Search Width, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star_tracking_search_width_physical_f32(&self) -> f32 {
+        f32::from(self.star_tracking_search_width) / 5.0
+    }
+
+    /// Star Tracking Search Width in thousandths, exact: 0 to 51000.
+    #[must_use]
+    pub fn star_tracking_search_width_milli(&self) -> i32 {
+        i32::from(self.star_tracking_search_width) * 200
+    }
+
+    /// Sets Star Tracking Search Width in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_star_tracking_search_width_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.star_tracking_search_width = STAR_TRACKING_SEARCH_WIDTH.whole(value.into(), 200, 0)?;
         Ok(())
     }
 
@@ -2214,13 +3163,29 @@ impl AdcsConfiguration {
         f64::from(self.reference_spin_rate) / 1_000.0
     }
 
-    /// Sets Reference spin rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Reference spin rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_reference_spin_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.reference_spin_rate = REFERENCE_SPIN_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// Reference spin rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn reference_spin_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.reference_spin_rate) / 1_000.0
+    }
+
+    /// Reference spin rate in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn reference_spin_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.reference_spin_rate)
+    }
+
+    /// Sets Reference spin rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_reference_spin_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.reference_spin_rate = REFERENCE_SPIN_RATE.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -2231,12 +3196,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Incl. coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_incl_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.incl_coefficient = INCL_COEFFICIENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Incl. coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn incl_coefficient_physical_f32(&self) -> f32 {
+        f32::from(self.incl_coefficient) / 1_000.0
+    }
+
+    /// Incl. coefficient in thousandths, exact: 0 to 65535.
+    #[must_use]
+    pub fn incl_coefficient_milli(&self) -> i32 {
+        i32::from(self.incl_coefficient)
+    }
+
+    /// Sets Incl. coefficient in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_incl_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.incl_coefficient = INCL_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -2247,12 +3228,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Raan coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_raan_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.raan_coefficient = RAAN_COEFFICIENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Raan coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn raan_coefficient_physical_f32(&self) -> f32 {
+        f32::from(self.raan_coefficient) / 1_000.0
+    }
+
+    /// Raan coefficient in thousandths, exact: 0 to 65535.
+    #[must_use]
+    pub fn raan_coefficient_milli(&self) -> i32 {
+        i32::from(self.raan_coefficient)
+    }
+
+    /// Sets Raan coefficient in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_raan_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.raan_coefficient = RAAN_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -2263,12 +3260,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Ecc coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_ecc_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.ecc_coefficient = ECC_COEFFICIENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Ecc coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn ecc_coefficient_physical_f32(&self) -> f32 {
+        f32::from(self.ecc_coefficient) / 1_000.0
+    }
+
+    /// Ecc coefficient in thousandths, exact: 0 to 65535.
+    #[must_use]
+    pub fn ecc_coefficient_milli(&self) -> i32 {
+        i32::from(self.ecc_coefficient)
+    }
+
+    /// Sets Ecc coefficient in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_ecc_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.ecc_coefficient = ECC_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -2279,12 +3292,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Aop coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_aop_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.aop_coefficient = AOP_COEFFICIENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Aop coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn aop_coefficient_physical_f32(&self) -> f32 {
+        f32::from(self.aop_coefficient) / 1_000.0
+    }
+
+    /// Aop coefficient in thousandths, exact: 0 to 65535.
+    #[must_use]
+    pub fn aop_coefficient_milli(&self) -> i32 {
+        i32::from(self.aop_coefficient)
+    }
+
+    /// Sets Aop coefficient in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_aop_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.aop_coefficient = AOP_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -2295,12 +3324,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Time coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_time_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.time_coefficient = TIME_COEFFICIENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Time coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn time_coefficient_physical_f32(&self) -> f32 {
+        f32::from(self.time_coefficient) / 1_000.0
+    }
+
+    /// Time coefficient in thousandths, exact: 0 to 65535.
+    #[must_use]
+    pub fn time_coefficient_milli(&self) -> i32 {
+        i32::from(self.time_coefficient)
+    }
+
+    /// Sets Time coefficient in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_time_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.time_coefficient = TIME_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -2311,12 +3356,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Pos coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_pos_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.pos_coefficient = POS_COEFFICIENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Pos coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn pos_coefficient_physical_f32(&self) -> f32 {
+        f32::from(self.pos_coefficient) / 1_000.0
+    }
+
+    /// Pos coefficient in thousandths, exact: 0 to 65535.
+    #[must_use]
+    pub fn pos_coefficient_milli(&self) -> i32 {
+        i32::from(self.pos_coefficient)
+    }
+
+    /// Sets Pos coefficient in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_pos_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.pos_coefficient = POS_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -2327,12 +3388,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Maximum position error, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_maximum_position_error_physical(&mut self, value: f64) -> Result<(), Error> {
         self.maximum_position_error = MAXIMUM_POSITION_ERROR.raw(value)?;
+        Ok(())
+    }
+
+    /// Maximum position error, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn maximum_position_error_physical_f32(&self) -> f32 {
+        f32::from(self.maximum_position_error) / 10.0
+    }
+
+    /// Maximum position error in thousandths, exact: 0 to 25500.
+    #[must_use]
+    pub fn maximum_position_error_milli(&self) -> i32 {
+        i32::from(self.maximum_position_error) * 100
+    }
+
+    /// Sets Maximum position error in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_maximum_position_error_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.maximum_position_error = MAXIMUM_POSITION_ERROR.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -2343,13 +3420,16 @@ impl AdcsConfiguration {
     }
 
     /// Sets xp coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_xp_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.xp_coefficient = XP_COEFFICIENT.raw(value)?;
         Ok(())
+    }
+
+    /// xp coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn xp_coefficient_physical_f32(&self) -> f32 {
+        XP_COEFFICIENT.single(self.xp_coefficient)
     }
 
     /// yp coefficient, as a physical value: -214.7483648 to 214.7483647.
@@ -2359,13 +3439,16 @@ impl AdcsConfiguration {
     }
 
     /// Sets yp coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_yp_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.yp_coefficient = YP_COEFFICIENT.raw(value)?;
         Ok(())
+    }
+
+    /// yp coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn yp_coefficient_physical_f32(&self) -> f32 {
+        YP_COEFFICIENT.single(self.yp_coefficient)
     }
 
     /// Position sd, as a physical value: 0 to 25.5.
@@ -2375,12 +3458,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Position sd, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_position_sd_physical(&mut self, value: f64) -> Result<(), Error> {
         self.position_sd = POSITION_SD.raw(value)?;
+        Ok(())
+    }
+
+    /// Position sd, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn position_sd_physical_f32(&self) -> f32 {
+        f32::from(self.position_sd) / 10.0
+    }
+
+    /// Position sd in thousandths, exact: 0 to 25500.
+    #[must_use]
+    pub fn position_sd_milli(&self) -> i32 {
+        i32::from(self.position_sd) * 100
+    }
+
+    /// Sets Position sd in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_position_sd_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.position_sd = POSITION_SD.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -2391,12 +3490,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Velocity sd, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_velocity_sd_physical(&mut self, value: f64) -> Result<(), Error> {
         self.velocity_sd = VELOCITY_SD.raw(value)?;
+        Ok(())
+    }
+
+    /// Velocity sd, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn velocity_sd_physical_f32(&self) -> f32 {
+        f32::from(self.velocity_sd) / 100.0
+    }
+
+    /// Velocity sd in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn velocity_sd_milli(&self) -> i32 {
+        i32::from(self.velocity_sd) * 10
+    }
+
+    /// Sets Velocity sd in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_velocity_sd_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.velocity_sd = VELOCITY_SD.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -2407,12 +3522,28 @@ impl AdcsConfiguration {
     }
 
     /// Sets Time gain, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_time_gain_physical(&mut self, value: f64) -> Result<(), Error> {
         self.time_gain = TIME_GAIN.raw(value)?;
+        Ok(())
+    }
+
+    /// Time gain, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn time_gain_physical_f32(&self) -> f32 {
+        f32::from(self.time_gain) / 100.0
+    }
+
+    /// Time gain in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn time_gain_milli(&self) -> i32 {
+        i32::from(self.time_gain) * 10
+    }
+
+    /// Sets Time gain in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_time_gain_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.time_gain = TIME_GAIN.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -2422,13 +3553,29 @@ impl AdcsConfiguration {
         f64::from(self.max_lag) / 100.0
     }
 
-    /// Sets Max. lag, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Max. lag, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_max_lag_physical(&mut self, value: f64) -> Result<(), Error> {
         self.max_lag = MAX_LAG.raw(value)?;
+        Ok(())
+    }
+
+    /// Max. lag, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn max_lag_physical_f32(&self) -> f32 {
+        f32::from(self.max_lag) / 100.0
+    }
+
+    /// Max. lag in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn max_lag_milli(&self) -> i32 {
+        i32::from(self.max_lag) * 10
+    }
+
+    /// Sets Max. lag in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_max_lag_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.max_lag = MAX_LAG.whole(value.into(), 10, 0)?;
         Ok(())
     }
 }
@@ -2652,733 +3799,479 @@ impl Default for AdcsConfiguration {
     }
 }
 
-const X_RATE_SENSOR_OFFSET: Scale = Scale {
-    field: "X-Rate Sensor Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const Y_RATE_SENSOR_OFFSET: Scale = Scale {
-    field: "Y-Rate Sensor Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const Z_RATE_SENSOR_OFFSET: Scale = Scale {
-    field: "Z-Rate Sensor Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const CSS1_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS1 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS2_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS2 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS3_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS3 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS4_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS4 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS5_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS5 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS6_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS6 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS7_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS7 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS8_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS8 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS9_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS9 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS10_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS10 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM1_MOUNTING_ALPHA: Scale = Scale {
-    field: "Cam1 Sensor Mounting Transform Alpha Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM1_MOUNTING_BETA: Scale = Scale {
-    field: "Cam1 Sensor Mounting Transform Beta Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM1_MOUNTING_GAMMA: Scale = Scale {
-    field: "Cam1 Sensor Mounting Transform Gamma Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM1_BORESIGHT_X: Scale = Scale {
-    field: "Cam1 Boresight X",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM1_BORESIGHT_Y: Scale = Scale {
-    field: "Cam1 Boresight Y",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM2_MOUNTING_ALPHA: Scale = Scale {
-    field: "Cam2 Sensor Mounting Transform Alpha Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM2_MOUNTING_BETA: Scale = Scale {
-    field: "Cam2 Sensor Mounting Transform Beta Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM2_MOUNTING_GAMMA: Scale = Scale {
-    field: "Cam2 Sensor Mounting Transform Gamma Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM2_BORESIGHT_X: Scale = Scale {
-    field: "Cam2 Boresight X",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM2_BORESIGHT_Y: Scale = Scale {
-    field: "Cam2 Boresight Y",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const MAGNETOMETER_MOUNTING_ALPHA: Scale = Scale {
-    field: "Magnetometer Mounting Transform Alpha Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const MAGNETOMETER_MOUNTING_BETA: Scale = Scale {
-    field: "Magnetometer Mounting Transform Beta Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const MAGNETOMETER_MOUNTING_GAMMA: Scale = Scale {
-    field: "Magnetometer Mounting Transform Gamma Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const MAGNETOMETER_CHANNEL_1_OFFSET: Scale = Scale {
-    field: "Magnetometer Channel 1 Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const MAGNETOMETER_CHANNEL_2_OFFSET: Scale = Scale {
-    field: "Magnetometer Channel 2 Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const MAGNETOMETER_CHANNEL_3_OFFSET: Scale = Scale {
-    field: "Magnetometer Channel 3 Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const MAGNETOMETER_SENSITIVITY_S11: Scale = Scale {
-    field: "Magnetometer Sensitivity Matrix S11",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const MAGNETOMETER_SENSITIVITY_S22: Scale = Scale {
-    field: "Magnetometer Sensitivity Matrix S22",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const MAGNETOMETER_SENSITIVITY_S33: Scale = Scale {
-    field: "Magnetometer Sensitivity Matrix S33",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const MAGNETOMETER_SENSITIVITY_S12: Scale = Scale {
-    field: "Magnetometer Sensitivity Matrix S12",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const MAGNETOMETER_SENSITIVITY_S13: Scale = Scale {
-    field: "Magnetometer Sensitivity Matrix S13",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const MAGNETOMETER_SENSITIVITY_S21: Scale = Scale {
-    field: "Magnetometer Sensitivity Matrix S21",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const MAGNETOMETER_SENSITIVITY_S23: Scale = Scale {
-    field: "Magnetometer Sensitivity Matrix S23",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const MAGNETOMETER_SENSITIVITY_S31: Scale = Scale {
-    field: "Magnetometer Sensitivity Matrix S31",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const MAGNETOMETER_SENSITIVITY_S32: Scale = Scale {
-    field: "Magnetometer Sensitivity Matrix S32",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const REDUNDANT_MAG_MOUNTING_ALPHA: Scale = Scale {
-    field: "Redundant Magnetometer Mounting Transform Alpha Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const REDUNDANT_MAG_MOUNTING_BETA: Scale = Scale {
-    field: "Redundant Magnetometer Mounting Transform Beta Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const REDUNDANT_MAG_MOUNTING_GAMMA: Scale = Scale {
-    field: "Redundant Magnetometer Mounting Transform Gamma Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const REDUNDANT_MAG_CHANNEL_1_OFFSET: Scale = Scale {
-    field: "Redundant Magnetometer Channel 1 Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const REDUNDANT_MAG_CHANNEL_2_OFFSET: Scale = Scale {
-    field: "Redundant Magnetometer Channel 2 Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const REDUNDANT_MAG_CHANNEL_3_OFFSET: Scale = Scale {
-    field: "Redundant Magnetometer Channel 3 Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const REDUNDANT_MAG_SENSITIVITY_S11: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S11",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const REDUNDANT_MAG_SENSITIVITY_S22: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S22",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const REDUNDANT_MAG_SENSITIVITY_S33: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S33",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const REDUNDANT_MAG_SENSITIVITY_S12: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S12",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const REDUNDANT_MAG_SENSITIVITY_S13: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S13",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const REDUNDANT_MAG_SENSITIVITY_S21: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S21",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const REDUNDANT_MAG_SENSITIVITY_S23: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S23",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const REDUNDANT_MAG_SENSITIVITY_S31: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S31",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const REDUNDANT_MAG_SENSITIVITY_S32: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S32",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const STAR_TRACKER_MOUNTING_ALPHA: Scale = Scale {
-    field: "StarTracker Mounting Transform Alpha Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const STAR_TRACKER_MOUNTING_BETA: Scale = Scale {
-    field: "StarTracker Mounting Transform Beta Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const STAR_TRACKER_MOUNTING_GAMMA: Scale = Scale {
-    field: "StarTracker Mounting Transform Gamma Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const STAR_TRACKER_ERROR_MARGIN: Scale = Scale {
-    field: "Star Tracker Error Margin",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const STAR_TRACKING_MARGIN: Scale = Scale {
-    field: "Star Tracking Margin",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const STAR_VALIDATION_MARGIN: Scale = Scale {
-    field: "Star Validation Margin",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const STAR_TRACKING_SEARCH_WIDTH: Scale = Scale {
-    field: "Star Tracking Search Width",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 5,
-};
-
-const REFERENCE_SPIN_RATE: Scale = Scale {
-    field: "Reference spin rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const SUN_POINTING_FACET: Scale = Scale {
-    field: "Sun-pointing Facet",
-    min: 0,
-    max: 127,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
-
-const MAGNETOMETER_MODE: Scale = Scale {
-    field: "Magnetometer Mode",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
-
-const RAW_MAGNETOMETER_SELECTION: Scale = Scale {
-    field: "Magnetometer Selection for RAW MTM TLM",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
-
-const CAM1_PERIOD: Scale = Scale {
-    field: "Cam1 period",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
-
-const CAM2_PERIOD: Scale = Scale {
-    field: "Cam2 period",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
-
-const INCL_COEFFICIENT: Scale = Scale {
-    field: "Incl. coefficient",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const RAAN_COEFFICIENT: Scale = Scale {
-    field: "Raan coefficient",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const ECC_COEFFICIENT: Scale = Scale {
-    field: "Ecc coefficient",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const AOP_COEFFICIENT: Scale = Scale {
-    field: "Aop coefficient",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const TIME_COEFFICIENT: Scale = Scale {
-    field: "Time coefficient",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const POS_COEFFICIENT: Scale = Scale {
-    field: "Pos coefficient",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const MAXIMUM_POSITION_ERROR: Scale = Scale {
-    field: "Maximum position error",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
-
-const XP_COEFFICIENT: Scale = Scale {
-    field: "xp coefficient",
-    min: -2_147_483_648,
-    max: 2_147_483_647,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000_000,
-};
-
-const YP_COEFFICIENT: Scale = Scale {
-    field: "yp coefficient",
-    min: -2_147_483_648,
-    max: 2_147_483_647,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000_000,
-};
-
-const POSITION_SD: Scale = Scale {
-    field: "Position sd",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
-
-const VELOCITY_SD: Scale = Scale {
-    field: "Velocity sd",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const TIME_GAIN: Scale = Scale {
-    field: "Time gain",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const MAX_LAG: Scale = Scale {
-    field: "Max. lag",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-impl crate::wire::Telecommand for AdcsConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 20;
-
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+const X_RATE_SENSOR_OFFSET: Scale =
+    Scale::new("X-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const Y_RATE_SENSOR_OFFSET: Scale =
+    Scale::new("Y-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const Z_RATE_SENSOR_OFFSET: Scale =
+    Scale::new("Z-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const CSS1_RELATIVE_SCALE: Scale = Scale::new("CSS1 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS2_RELATIVE_SCALE: Scale = Scale::new("CSS2 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS3_RELATIVE_SCALE: Scale = Scale::new("CSS3 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS4_RELATIVE_SCALE: Scale = Scale::new("CSS4 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS5_RELATIVE_SCALE: Scale = Scale::new("CSS5 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS6_RELATIVE_SCALE: Scale = Scale::new("CSS6 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS7_RELATIVE_SCALE: Scale = Scale::new("CSS7 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS8_RELATIVE_SCALE: Scale = Scale::new("CSS8 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS9_RELATIVE_SCALE: Scale = Scale::new("CSS9 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS10_RELATIVE_SCALE: Scale = Scale::new("CSS10 Relative Scale", (0, 255), (1, 0, 100));
+
+const CAM1_MOUNTING_ALPHA: Scale =
+    Scale::new("Cam1 Sensor Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+
+const CAM1_MOUNTING_BETA: Scale =
+    Scale::new("Cam1 Sensor Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+
+const CAM1_MOUNTING_GAMMA: Scale =
+    Scale::new("Cam1 Sensor Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+
+const CAM1_BORESIGHT_X: Scale = Scale::new("Cam1 Boresight X", (0, 65_535), (1, 0, 100));
+
+const CAM1_BORESIGHT_Y: Scale = Scale::new("Cam1 Boresight Y", (0, 65_535), (1, 0, 100));
+
+const CAM2_MOUNTING_ALPHA: Scale =
+    Scale::new("Cam2 Sensor Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+
+const CAM2_MOUNTING_BETA: Scale =
+    Scale::new("Cam2 Sensor Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+
+const CAM2_MOUNTING_GAMMA: Scale =
+    Scale::new("Cam2 Sensor Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+
+const CAM2_BORESIGHT_X: Scale = Scale::new("Cam2 Boresight X", (0, 65_535), (1, 0, 100));
+
+const CAM2_BORESIGHT_Y: Scale = Scale::new("Cam2 Boresight Y", (0, 65_535), (1, 0, 100));
+
+const MAGNETOMETER_MOUNTING_ALPHA: Scale =
+    Scale::new("Magnetometer Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+
+const MAGNETOMETER_MOUNTING_BETA: Scale =
+    Scale::new("Magnetometer Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+
+const MAGNETOMETER_MOUNTING_GAMMA: Scale =
+    Scale::new("Magnetometer Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+
+const MAGNETOMETER_CHANNEL_1_OFFSET: Scale =
+    Scale::new("Magnetometer Channel 1 Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const MAGNETOMETER_CHANNEL_2_OFFSET: Scale =
+    Scale::new("Magnetometer Channel 2 Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const MAGNETOMETER_CHANNEL_3_OFFSET: Scale =
+    Scale::new("Magnetometer Channel 3 Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const MAGNETOMETER_SENSITIVITY_S11: Scale =
+    Scale::new("Magnetometer Sensitivity Matrix S11", (-32_768, 32_767), (1, 0, 1_000));
+
+const MAGNETOMETER_SENSITIVITY_S22: Scale =
+    Scale::new("Magnetometer Sensitivity Matrix S22", (-32_768, 32_767), (1, 0, 1_000));
+
+const MAGNETOMETER_SENSITIVITY_S33: Scale =
+    Scale::new("Magnetometer Sensitivity Matrix S33", (-32_768, 32_767), (1, 0, 1_000));
+
+const MAGNETOMETER_SENSITIVITY_S12: Scale =
+    Scale::new("Magnetometer Sensitivity Matrix S12", (-32_768, 32_767), (1, 0, 1_000));
+
+const MAGNETOMETER_SENSITIVITY_S13: Scale =
+    Scale::new("Magnetometer Sensitivity Matrix S13", (-32_768, 32_767), (1, 0, 1_000));
+
+const MAGNETOMETER_SENSITIVITY_S21: Scale =
+    Scale::new("Magnetometer Sensitivity Matrix S21", (-32_768, 32_767), (1, 0, 1_000));
+
+const MAGNETOMETER_SENSITIVITY_S23: Scale =
+    Scale::new("Magnetometer Sensitivity Matrix S23", (-32_768, 32_767), (1, 0, 1_000));
+
+const MAGNETOMETER_SENSITIVITY_S31: Scale =
+    Scale::new("Magnetometer Sensitivity Matrix S31", (-32_768, 32_767), (1, 0, 1_000));
+
+const MAGNETOMETER_SENSITIVITY_S32: Scale =
+    Scale::new("Magnetometer Sensitivity Matrix S32", (-32_768, 32_767), (1, 0, 1_000));
+
+const REDUNDANT_MAG_MOUNTING_ALPHA: Scale =
+    Scale::new("Redundant Magnetometer Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+
+const REDUNDANT_MAG_MOUNTING_BETA: Scale =
+    Scale::new("Redundant Magnetometer Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+
+const REDUNDANT_MAG_MOUNTING_GAMMA: Scale =
+    Scale::new("Redundant Magnetometer Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+
+const REDUNDANT_MAG_CHANNEL_1_OFFSET: Scale =
+    Scale::new("Redundant Magnetometer Channel 1 Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const REDUNDANT_MAG_CHANNEL_2_OFFSET: Scale =
+    Scale::new("Redundant Magnetometer Channel 2 Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const REDUNDANT_MAG_CHANNEL_3_OFFSET: Scale =
+    Scale::new("Redundant Magnetometer Channel 3 Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const REDUNDANT_MAG_SENSITIVITY_S11: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S11", (-32_768, 32_767), (1, 0, 1_000));
+
+const REDUNDANT_MAG_SENSITIVITY_S22: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S22", (-32_768, 32_767), (1, 0, 1_000));
+
+const REDUNDANT_MAG_SENSITIVITY_S33: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S33", (-32_768, 32_767), (1, 0, 1_000));
+
+const REDUNDANT_MAG_SENSITIVITY_S12: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S12", (-32_768, 32_767), (1, 0, 1_000));
+
+const REDUNDANT_MAG_SENSITIVITY_S13: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S13", (-32_768, 32_767), (1, 0, 1_000));
+
+const REDUNDANT_MAG_SENSITIVITY_S21: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S21", (-32_768, 32_767), (1, 0, 1_000));
+
+const REDUNDANT_MAG_SENSITIVITY_S23: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S23", (-32_768, 32_767), (1, 0, 1_000));
+
+const REDUNDANT_MAG_SENSITIVITY_S31: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S31", (-32_768, 32_767), (1, 0, 1_000));
+
+const REDUNDANT_MAG_SENSITIVITY_S32: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S32", (-32_768, 32_767), (1, 0, 1_000));
+
+const STAR_TRACKER_MOUNTING_ALPHA: Scale =
+    Scale::new("StarTracker Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+
+const STAR_TRACKER_MOUNTING_BETA: Scale =
+    Scale::new("StarTracker Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+
+const STAR_TRACKER_MOUNTING_GAMMA: Scale =
+    Scale::new("StarTracker Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+
+const STAR_TRACKER_ERROR_MARGIN: Scale =
+    Scale::new("Star Tracker Error Margin", (0, 255), (1, 0, 100));
+
+const STAR_TRACKING_MARGIN: Scale = Scale::new("Star Tracking Margin", (0, 255), (1, 0, 100));
+
+const STAR_VALIDATION_MARGIN: Scale = Scale::new("Star Validation Margin", (0, 255), (1, 0, 100));
+
+const STAR_TRACKING_SEARCH_WIDTH: Scale =
+    Scale::new("Star Tracking Search Width", (0, 255), (1, 0, 5));
+
+const REFERENCE_SPIN_RATE: Scale =
+    Scale::new("Reference spin rate", (-32_768, 32_767), (1, 0, 1_000));
+
+const SUN_POINTING_FACET: Scale = Scale::new("Sun-pointing Facet", (0, 127), (1, 0, 1));
+
+const MAGNETOMETER_MODE: Scale = Scale::new("Magnetometer Mode", (0, 3), (1, 0, 1));
+
+const RAW_MAGNETOMETER_SELECTION: Scale =
+    Scale::new("Magnetometer Selection for RAW MTM TLM", (0, 3), (1, 0, 1));
+
+const CAM1_PERIOD: Scale = Scale::new("Cam1 period", (0, 15), (1, 0, 1));
+
+const CAM2_PERIOD: Scale = Scale::new("Cam2 period", (0, 15), (1, 0, 1));
+
+const INCL_COEFFICIENT: Scale = Scale::new("Incl. coefficient", (0, 65_535), (1, 0, 1_000));
+
+const RAAN_COEFFICIENT: Scale = Scale::new("Raan coefficient", (0, 65_535), (1, 0, 1_000));
+
+const ECC_COEFFICIENT: Scale = Scale::new("Ecc coefficient", (0, 65_535), (1, 0, 1_000));
+
+const AOP_COEFFICIENT: Scale = Scale::new("Aop coefficient", (0, 65_535), (1, 0, 1_000));
+
+const TIME_COEFFICIENT: Scale = Scale::new("Time coefficient", (0, 65_535), (1, 0, 1_000));
+
+const POS_COEFFICIENT: Scale = Scale::new("Pos coefficient", (0, 65_535), (1, 0, 1_000));
+
+const MAXIMUM_POSITION_ERROR: Scale = Scale::new("Maximum position error", (0, 255), (1, 0, 10));
+
+const XP_COEFFICIENT: Scale =
+    Scale::new("xp coefficient", (-2_147_483_648, 2_147_483_647), (1, 0, 10_000_000));
+
+const YP_COEFFICIENT: Scale =
+    Scale::new("yp coefficient", (-2_147_483_648, 2_147_483_647), (1, 0, 10_000_000));
+
+const POSITION_SD: Scale = Scale::new("Position sd", (0, 255), (1, 0, 10));
+
+const VELOCITY_SD: Scale = Scale::new("Velocity sd", (0, 255), (1, 0, 100));
+
+const TIME_GAIN: Scale = Scale::new("Time gain", (0, 255), (1, 0, 100));
+
+const MAX_LAG: Scale = Scale::new("Max. lag", (0, 255), (1, 0, 100));
+
+message!(AdcsConfiguration {
+    magnetorquer_1_configuration: ("Magnetorquer 1 Configuration", 0, 8),
+    magnetorquer_2_configuration: ("Magnetorquer 2 Configuration", 8, 8),
+    magnetorquer_3_configuration: ("Magnetorquer 3 Configuration", 16, 8),
+    rw1_configuration: ("RW1 Configuration", 24, 8),
+    rw2_configuration: ("RW2 Configuration", 32, 8),
+    rw3_configuration: ("RW3 Configuration", 40, 8),
+    rw4_configuration: ("RW4 Configuration", 48, 8),
+    gyro1_configuration: ("Gyro1 Configuration", 56, 8),
+    gyro2_configuration: ("Gyro2 Configuration", 64, 8),
+    gyro3_configuration: ("Gyro3 Configuration", 72, 8),
+    x_rate_sensor_offset: ("X-Rate Sensor Offset", 80, 16)
+        .unit("deg/s").scale(&X_RATE_SENSOR_OFFSET),
+    y_rate_sensor_offset: ("Y-Rate Sensor Offset", 96, 16)
+        .unit("deg/s").scale(&Y_RATE_SENSOR_OFFSET),
+    z_rate_sensor_offset: ("Z-Rate Sensor Offset", 112, 16)
+        .unit("deg/s").scale(&Z_RATE_SENSOR_OFFSET),
+    rate_sensor_mult: ("RateSensorMult", 128, 8),
+    css1_configuration: ("CSS1 Configuration", 136, 8),
+    css2_configuration: ("CSS2 Configuration", 144, 8),
+    css3_configuration: ("CSS3 Configuration", 152, 8),
+    css4_configuration: ("CSS4 Configuration", 160, 8),
+    css5_configuration: ("CSS5 Configuration", 168, 8),
+    css6_configuration: ("CSS6 Configuration", 176, 8),
+    css7_configuration: ("CSS7 Configuration", 184, 8),
+    css8_configuration: ("CSS8 Configuration", 192, 8),
+    css9_configuration: ("CSS9 Configuration", 200, 8),
+    css10_configuration: ("CSS10 Configuration", 208, 8),
+    css1_relative_scale: ("CSS1 Relative Scale", 216, 8).scale(&CSS1_RELATIVE_SCALE),
+    css2_relative_scale: ("CSS2 Relative Scale", 224, 8).scale(&CSS2_RELATIVE_SCALE),
+    css3_relative_scale: ("CSS3 Relative Scale", 232, 8).scale(&CSS3_RELATIVE_SCALE),
+    css4_relative_scale: ("CSS4 Relative Scale", 240, 8).scale(&CSS4_RELATIVE_SCALE),
+    css5_relative_scale: ("CSS5 Relative Scale", 248, 8).scale(&CSS5_RELATIVE_SCALE),
+    css6_relative_scale: ("CSS6 Relative Scale", 256, 8).scale(&CSS6_RELATIVE_SCALE),
+    css7_relative_scale: ("CSS7 Relative Scale", 264, 8).scale(&CSS7_RELATIVE_SCALE),
+    css8_relative_scale: ("CSS8 Relative Scale", 272, 8).scale(&CSS8_RELATIVE_SCALE),
+    css9_relative_scale: ("CSS9 Relative Scale", 280, 8).scale(&CSS9_RELATIVE_SCALE),
+    css10_relative_scale: ("CSS10 Relative Scale", 288, 8).scale(&CSS10_RELATIVE_SCALE),
+    css_threshold: ("CSS Threshold", 296, 8),
+    cam1_mounting_alpha: ("Cam1 Sensor Mounting Transform Alpha Angle", 304, 16)
+        .unit("deg").scale(&CAM1_MOUNTING_ALPHA),
+    cam1_mounting_beta: ("Cam1 Sensor Mounting Transform Beta Angle", 320, 16)
+        .unit("deg").scale(&CAM1_MOUNTING_BETA),
+    cam1_mounting_gamma: ("Cam1 Sensor Mounting Transform Gamma Angle", 336, 16)
+        .unit("deg").scale(&CAM1_MOUNTING_GAMMA),
+    cam1_detection_threshold: ("Cam1 detection threshold", 352, 8),
+    cam1_sensor_auto_adjust_mode: ("Cam1 sensor auto adjust mode", 360, 1),
+    cam1_sensor_exposure_time: ("Cam1 sensor exposure time", 368, 16),
+    cam1_boresight_x: ("Cam1 Boresight X", 384, 16).unit("pixels").scale(&CAM1_BORESIGHT_X),
+    cam1_boresight_y: ("Cam1 Boresight Y", 400, 16).unit("pixels").scale(&CAM1_BORESIGHT_Y),
+    cam2_mounting_alpha: ("Cam2 Sensor Mounting Transform Alpha Angle", 416, 16)
+        .unit("deg").scale(&CAM2_MOUNTING_ALPHA),
+    cam2_mounting_beta: ("Cam2 Sensor Mounting Transform Beta Angle", 432, 16)
+        .unit("deg").scale(&CAM2_MOUNTING_BETA),
+    cam2_mounting_gamma: ("Cam2 Sensor Mounting Transform Gamma Angle", 448, 16)
+        .unit("deg").scale(&CAM2_MOUNTING_GAMMA),
+    cam2_detection_threshold: ("Cam2 detection threshold", 464, 8),
+    cam2_sensor_auto_adjust_mode: ("Cam2 sensor auto adjust mode", 472, 1),
+    cam2_sensor_exposure_time: ("Cam2 sensor exposure time", 480, 16),
+    cam2_boresight_x: ("Cam2 Boresight X", 496, 16).unit("pixels").scale(&CAM2_BORESIGHT_X),
+    cam2_boresight_y: ("Cam2 Boresight Y", 512, 16).unit("pixels").scale(&CAM2_BORESIGHT_Y),
+    nadir_max_deviation_percentage: ("Nadir Max Deviation Percentage", 528, 8).unit("%"),
+    nadir_max_bad_edges: ("Nadir Max Bad Edges", 536, 8),
+    nadir_max_radius: ("Nadir Max Radius", 544, 8).unit("deg"),
+    nadir_min_radius: ("Nadir Min Radius", 552, 8).unit("deg"),
+    cam_1_minimum_x_of_area_1: ("Cam 1 Minimum X of area 1", 560, 16),
+    cam_1_maximum_x_of_area_1: ("Cam 1 Maximum X of area 1", 576, 16),
+    cam_1_minimum_y_of_area_1: ("Cam 1 Minimum Y of area 1", 592, 16),
+    cam_1_maximum_y_of_area_1: ("Cam 1 Maximum Y of area 1", 608, 16),
+    cam_1_minimum_x_of_area_2: ("Cam 1 Minimum X of area 2", 624, 16),
+    cam_1_maximum_x_of_area_2: ("Cam 1 Maximum X of area 2", 640, 16),
+    cam_1_minimum_y_of_area_2: ("Cam 1 Minimum Y of area 2", 656, 16),
+    cam_1_maximum_y_of_area_2: ("Cam 1 Maximum Y of area 2", 672, 16),
+    cam_1_minimum_x_of_area_3: ("Cam 1 Minimum X of area 3", 688, 16),
+    cam_1_maximum_x_of_area_3: ("Cam 1 Maximum X of area 3", 704, 16),
+    cam_1_minimum_y_of_area_3: ("Cam 1 Minimum Y of area 3", 720, 16),
+    cam_1_maximum_y_of_area_3: ("Cam 1 Maximum Y of area 3", 736, 16),
+    cam_1_minimum_x_of_area_4: ("Cam 1 Minimum X of area 4", 752, 16),
+    cam_1_maximum_x_of_area_4: ("Cam 1 Maximum X of area 4", 768, 16),
+    cam_1_minimum_y_of_area_4: ("Cam 1 Minimum Y of area 4", 784, 16),
+    cam_1_maximum_y_of_area_4: ("Cam 1 Maximum Y of area 4", 800, 16),
+    cam_1_minimum_x_of_area_5: ("Cam 1 Minimum X of area 5", 816, 16),
+    cam_1_maximum_x_of_area_5: ("Cam 1 Maximum X of area 5", 832, 16),
+    cam_1_minimum_y_of_area_5: ("Cam 1 Minimum Y of area 5", 848, 16),
+    cam_1_maximum_y_of_area_5: ("Cam 1 Maximum Y of area 5", 864, 16),
+    cam_2_minimum_x_of_area_1: ("Cam 2 Minimum X of area 1", 880, 16),
+    cam_2_maximum_x_of_area_1: ("Cam 2 Maximum X of area 1", 896, 16),
+    cam_2_minimum_y_of_area_1: ("Cam 2 Minimum Y of area 1", 912, 16),
+    cam_2_maximum_y_of_area_1: ("Cam 2 Maximum Y of area 1", 928, 16),
+    cam_2_minimum_x_of_area_2: ("Cam 2 Minimum X of area 2", 944, 16),
+    cam_2_maximum_x_of_area_2: ("Cam 2 Maximum X of area 2", 960, 16),
+    cam_2_minimum_y_of_area_2: ("Cam 2 Minimum Y of area 2", 976, 16),
+    cam_2_maximum_y_of_area_2: ("Cam 2 Maximum Y of area 2", 992, 16),
+    cam_2_minimum_x_of_area_3: ("Cam 2 Minimum X of area 3", 1_008, 16),
+    cam_2_maximum_x_of_area_3: ("Cam 2 Maximum X of area 3", 1_024, 16),
+    cam_2_minimum_y_of_area_3: ("Cam 2 Minimum Y of area 3", 1_040, 16),
+    cam_2_maximum_y_of_area_3: ("Cam 2 Maximum Y of area 3", 1_056, 16),
+    cam_2_minimum_x_of_area_4: ("Cam 2 Minimum X of area 4", 1_072, 16),
+    cam_2_maximum_x_of_area_4: ("Cam 2 Maximum X of area 4", 1_088, 16),
+    cam_2_minimum_y_of_area_4: ("Cam 2 Minimum Y of area 4", 1_104, 16),
+    cam_2_maximum_y_of_area_4: ("Cam 2 Maximum Y of area 4", 1_120, 16),
+    cam_2_minimum_x_of_area_5: ("Cam 2 Minimum X of area 5", 1_136, 16),
+    cam_2_maximum_x_of_area_5: ("Cam 2 Maximum X of area 5", 1_152, 16),
+    cam_2_minimum_y_of_area_5: ("Cam 2 Minimum Y of area 5", 1_168, 16),
+    cam_2_maximum_y_of_area_5: ("Cam 2 Maximum Y of area 5", 1_184, 16),
+    magnetometer_mounting_alpha: ("Magnetometer Mounting Transform Alpha Angle", 1_200, 16)
+        .unit("deg").scale(&MAGNETOMETER_MOUNTING_ALPHA),
+    magnetometer_mounting_beta: ("Magnetometer Mounting Transform Beta Angle", 1_216, 16)
+        .unit("deg").scale(&MAGNETOMETER_MOUNTING_BETA),
+    magnetometer_mounting_gamma: ("Magnetometer Mounting Transform Gamma Angle", 1_232, 16)
+        .unit("deg").scale(&MAGNETOMETER_MOUNTING_GAMMA),
+    magnetometer_channel_1_offset: ("Magnetometer Channel 1 Offset", 1_248, 16)
+        .scale(&MAGNETOMETER_CHANNEL_1_OFFSET),
+    magnetometer_channel_2_offset: ("Magnetometer Channel 2 Offset", 1_264, 16)
+        .scale(&MAGNETOMETER_CHANNEL_2_OFFSET),
+    magnetometer_channel_3_offset: ("Magnetometer Channel 3 Offset", 1_280, 16)
+        .scale(&MAGNETOMETER_CHANNEL_3_OFFSET),
+    magnetometer_sensitivity_s11: ("Magnetometer Sensitivity Matrix S11", 1_296, 16)
+        .scale(&MAGNETOMETER_SENSITIVITY_S11),
+    magnetometer_sensitivity_s22: ("Magnetometer Sensitivity Matrix S22", 1_312, 16)
+        .scale(&MAGNETOMETER_SENSITIVITY_S22),
+    magnetometer_sensitivity_s33: ("Magnetometer Sensitivity Matrix S33", 1_328, 16)
+        .scale(&MAGNETOMETER_SENSITIVITY_S33),
+    magnetometer_sensitivity_s12: ("Magnetometer Sensitivity Matrix S12", 1_344, 16)
+        .scale(&MAGNETOMETER_SENSITIVITY_S12),
+    magnetometer_sensitivity_s13: ("Magnetometer Sensitivity Matrix S13", 1_360, 16)
+        .scale(&MAGNETOMETER_SENSITIVITY_S13),
+    magnetometer_sensitivity_s21: ("Magnetometer Sensitivity Matrix S21", 1_376, 16)
+        .scale(&MAGNETOMETER_SENSITIVITY_S21),
+    magnetometer_sensitivity_s23: ("Magnetometer Sensitivity Matrix S23", 1_392, 16)
+        .scale(&MAGNETOMETER_SENSITIVITY_S23),
+    magnetometer_sensitivity_s31: ("Magnetometer Sensitivity Matrix S31", 1_408, 16)
+        .scale(&MAGNETOMETER_SENSITIVITY_S31),
+    magnetometer_sensitivity_s32: ("Magnetometer Sensitivity Matrix S32", 1_424, 16)
+        .scale(&MAGNETOMETER_SENSITIVITY_S32),
+    redundant_mag_mounting_alpha: ("Redundant Magnetometer Mounting Transform Alpha Angle", 1_440, 16)
+        .unit("deg").scale(&REDUNDANT_MAG_MOUNTING_ALPHA),
+    redundant_mag_mounting_beta: ("Redundant Magnetometer Mounting Transform Beta Angle", 1_456, 16)
+        .unit("deg").scale(&REDUNDANT_MAG_MOUNTING_BETA),
+    redundant_mag_mounting_gamma: ("Redundant Magnetometer Mounting Transform Gamma Angle", 1_472, 16)
+        .unit("deg").scale(&REDUNDANT_MAG_MOUNTING_GAMMA),
+    redundant_mag_channel_1_offset: ("Redundant Magnetometer Channel 1 Offset", 1_488, 16)
+        .scale(&REDUNDANT_MAG_CHANNEL_1_OFFSET),
+    redundant_mag_channel_2_offset: ("Redundant Magnetometer Channel 2 Offset", 1_504, 16)
+        .scale(&REDUNDANT_MAG_CHANNEL_2_OFFSET),
+    redundant_mag_channel_3_offset: ("Redundant Magnetometer Channel 3 Offset", 1_520, 16)
+        .scale(&REDUNDANT_MAG_CHANNEL_3_OFFSET),
+    redundant_mag_sensitivity_s11: ("Redundant Magnetometer Sensitivity Matrix S11", 1_536, 16)
+        .scale(&REDUNDANT_MAG_SENSITIVITY_S11),
+    redundant_mag_sensitivity_s22: ("Redundant Magnetometer Sensitivity Matrix S22", 1_552, 16)
+        .scale(&REDUNDANT_MAG_SENSITIVITY_S22),
+    redundant_mag_sensitivity_s33: ("Redundant Magnetometer Sensitivity Matrix S33", 1_568, 16)
+        .scale(&REDUNDANT_MAG_SENSITIVITY_S33),
+    redundant_mag_sensitivity_s12: ("Redundant Magnetometer Sensitivity Matrix S12", 1_584, 16)
+        .scale(&REDUNDANT_MAG_SENSITIVITY_S12),
+    redundant_mag_sensitivity_s13: ("Redundant Magnetometer Sensitivity Matrix S13", 1_600, 16)
+        .scale(&REDUNDANT_MAG_SENSITIVITY_S13),
+    redundant_mag_sensitivity_s21: ("Redundant Magnetometer Sensitivity Matrix S21", 1_616, 16)
+        .scale(&REDUNDANT_MAG_SENSITIVITY_S21),
+    redundant_mag_sensitivity_s23: ("Redundant Magnetometer Sensitivity Matrix S23", 1_632, 16)
+        .scale(&REDUNDANT_MAG_SENSITIVITY_S23),
+    redundant_mag_sensitivity_s31: ("Redundant Magnetometer Sensitivity Matrix S31", 1_648, 16)
+        .scale(&REDUNDANT_MAG_SENSITIVITY_S31),
+    redundant_mag_sensitivity_s32: ("Redundant Magnetometer Sensitivity Matrix S32", 1_664, 16)
+        .scale(&REDUNDANT_MAG_SENSITIVITY_S32),
+    star_tracker_mounting_alpha: ("StarTracker Mounting Transform Alpha Angle", 1_680, 16)
+        .unit("deg").scale(&STAR_TRACKER_MOUNTING_ALPHA),
+    star_tracker_mounting_beta: ("StarTracker Mounting Transform Beta Angle", 1_696, 16)
+        .unit("deg").scale(&STAR_TRACKER_MOUNTING_BETA),
+    star_tracker_mounting_gamma: ("StarTracker Mounting Transform Gamma Angle", 1_712, 16)
+        .unit("deg").scale(&STAR_TRACKER_MOUNTING_GAMMA),
+    star_tracker_exposure_time: ("StarTracker exposure time", 1_728, 16),
+    star_tracker_analog_gain: ("StarTracker analog gain", 1_744, 16),
+    star_tracker_detection_threshold: ("StarTracker detection threshold", 1_760, 8),
+    star_tracker_star_threshold: ("StarTracker star threshold", 1_768, 8),
+    maximum_star_matched: ("Maximum Star Matched", 1_776, 8),
+    detection_timeout_duration: ("Detection Timeout duration", 1_784, 16),
+    maximum_star_pixel: ("Maximum Star Pixel", 1_800, 8),
+    minimum_star_pixel: ("Minimum Star Pixel", 1_808, 8),
+    star_tracker_error_margin: ("Star Tracker Error Margin", 1_816, 8)
+        .unit("%").scale(&STAR_TRACKER_ERROR_MARGIN),
+    star_tracker_delay_time: ("Star Tracker Delay Time", 1_824, 16).unit("ms"),
+    star_tracker_centroid_x: ("Star Tracker Centroid X", 1_840, 32).unit("pixels"),
+    star_tracker_centroid_y: ("Star Tracker Centroid Y", 1_872, 32).unit("pixels"),
+    star_tracker_focal_length: ("Star Tracker Focal Length", 1_904, 32).unit("mm"),
+    k1_radial_distortion_coefficient: ("K1 radial distortion coefficient", 1_936, 32).unit("gain"),
+    k2_radial_distortion_coefficient: ("K2 radial distortion coefficient", 1_968, 32).unit("gain"),
+    p1_tangential_distortion_coefficient: ("P1 tangential distortion coefficient", 2_000, 32)
+        .unit("gain"),
+    p2_tangential_distortion_coefficient: ("P2 tangential distortion coefficient", 2_032, 32)
+        .unit("gain"),
+    star_tracking_window_width: ("Star tracking window width", 2_064, 8),
+    star_tracking_margin: ("Star Tracking Margin", 2_072, 8).scale(&STAR_TRACKING_MARGIN),
+    star_validation_margin: ("Star Validation Margin", 2_080, 8).scale(&STAR_VALIDATION_MARGIN),
+    star_tracking_module_enable: ("Star Tracking Module Enable", 2_088, 1),
+    star_tracking_location_prediction_enable: ("Star Tracking Location Prediction Enable", 2_089, 1),
+    star_tracking_search_width: ("Star Tracking Search Width", 2_096, 8)
+        .scale(&STAR_TRACKING_SEARCH_WIDTH),
+    detumbling_spin_gain: ("Detumbling Spin Gain", 2_104, 32),
+    detumbling_damping_gain: ("Detumbling Damping Gain", 2_136, 32),
+    reference_spin_rate: ("Reference spin rate", 2_168, 16)
+        .unit("deg/s").limits(&[("below", 0.0)]).scale(&REFERENCE_SPIN_RATE),
+    fast_bdot_detumbling_gain: ("Fast BDot Detumbling Gain", 2_184, 32),
+    y_momentum_control_gain: ("Y-Momentum Control Gain", 2_216, 32),
+    y_momentum_nutation_damping_gain: ("Y-momentum Nutation Damping Gain", 2_248, 32),
+    y_momentum_proportional_gain: ("Y-momentum Proportional Gain", 2_280, 32),
+    y_momentum_derivative_gain: ("Y-momentum Derivative Gain", 2_312, 32),
+    reference_wheel_momentum: ("Reference Wheel Momentum", 2_344, 32)
+        .unit("Nms").limits(&[("below", 0.0)]),
+    rwheel_proportional_gain: ("RWheel Proportional Gain", 2_376, 32),
+    rwheel_derivative_gain: ("RWheel Derivative Gain", 2_408, 32),
+    y_wheel_bias_momentum: ("Y-Wheel Bias Momentum", 2_440, 32).unit("Nms"),
+    sun_pointing_facet: ("Sun-pointing Facet", 2_472, 7),
+    control_transition_on_wheel_error: ("Automatic Control Transition due to Wheel Errors", 2_479, 1),
+    tracking_proportional_gain: ("Tracking Proportional Gain", 2_480, 32),
+    tracking_derivative_gain: ("Tracking Derivative Gain", 2_512, 32),
+    tracking_integral_gain: ("Tracking Integral Gain", 2_544, 32),
+    target_tracking_facet: ("Target-tracking Facet", 2_576, 8),
+    moment_of_inertia_ixx: ("Moment Of Inertia - Ixx", 2_584, 32).unit("kg.m^2"),
+    moment_of_inertia_iyy: ("Moment Of Inertia - Iyy", 2_616, 32).unit("kg.m^2"),
+    moment_of_inertia_izz: ("Moment Of Inertia - Izz", 2_648, 32).unit("kg.m^2"),
+    product_of_inertia_ixy: ("Product Of Inertia - Ixy", 2_680, 32).unit("kg.m^2"),
+    product_of_inertia_ixz: ("Product Of Inertia - Ixz", 2_712, 32).unit("kg.m^2"),
+    product_of_inertia_iyz: ("Product Of Inertia - Iyz", 2_744, 32).unit("kg.m^2"),
+    magnetometer_rate_filter_system_noise: ("Magnetometer Rate Filter System Noise", 2_776, 32),
+    ekf_system_noise: ("EKF System Noise", 2_808, 32),
+    css_measurement_noise: ("CSS Measurement Noise", 2_840, 32),
+    sun_sensor_measurement_noise: ("Sun Sensor Measurement Noise", 2_872, 32),
+    nadir_sensor_measurement_noise: ("Nadir Sensor Measurement Noise", 2_904, 32),
+    magnetometer_measurement_noise: ("Magnetometer Measurement Noise", 2_936, 32),
+    star_tracker_measurement_noise: ("Star Tracker Measurement Noise", 2_968, 32),
+    use_sun_sensor: ("Use Sun Sensor", 3_000, 1),
+    use_nadir_sensor: ("Use Nadir Sensor", 3_001, 1),
+    use_css: ("Use CSS", 3_002, 1),
+    use_star_tracker: ("Use Star Tracker", 3_003, 1),
+    nadir_sensor_terminator_test: ("Nadir sensor terminator test", 3_004, 1),
+    automatic_magnetometer_recovery: ("Automatic Magnetometer Recovery", 3_005, 1),
+    magnetometer_mode: ("Magnetometer Mode", 3_006, 2),
+    raw_magnetometer_selection: ("Magnetometer Selection for RAW MTM TLM", 3_008, 2),
+    estimation_transition_on_rate_sensor_error: ("Automatic Estimation Transition due to Rate Sensor Errors", 3_010, 1),
+    cam1_period: ("Cam1 period", 3_016, 4).unit("s"),
+    cam2_period: ("Cam2 period", 3_020, 4).unit("s"),
+    incl_coefficient: ("Incl. coefficient", 3_024, 16).scale(&INCL_COEFFICIENT),
+    raan_coefficient: ("Raan coefficient", 3_040, 16).scale(&RAAN_COEFFICIENT),
+    ecc_coefficient: ("Ecc coefficient", 3_056, 16).scale(&ECC_COEFFICIENT),
+    aop_coefficient: ("Aop coefficient", 3_072, 16).scale(&AOP_COEFFICIENT),
+    time_coefficient: ("Time coefficient", 3_088, 16).scale(&TIME_COEFFICIENT),
+    pos_coefficient: ("Pos coefficient", 3_104, 16).scale(&POS_COEFFICIENT),
+    maximum_position_error: ("Maximum position error", 3_120, 8).scale(&MAXIMUM_POSITION_ERROR),
+    asgp4_filter: ("ASGP4 filter", 3_128, 8),
+    xp_coefficient: ("xp coefficient", 3_136, 32).scale(&XP_COEFFICIENT),
+    yp_coefficient: ("yp coefficient", 3_168, 32).scale(&YP_COEFFICIENT),
+    gps_roll_over: ("GPS roll over", 3_200, 8),
+    position_sd: ("Position sd", 3_208, 8).scale(&POSITION_SD),
+    velocity_sd: ("Velocity sd", 3_216, 8).scale(&VELOCITY_SD),
+    min_satellites: ("Min. satellites", 3_224, 8),
+    time_gain: ("Time gain", 3_232, 8).scale(&TIME_GAIN),
+    max_lag: ("Max. lag", 3_240, 8).scale(&MAX_LAG),
+    min_samples: ("Min. samples", 3_248, 16),
+    user_coded_controller_settings: ("User Coded Controller Settings", 3_264, 384),
+    user_coded_estimator_settings: ("User Coded Estimator Settings", 3_648, 384),
+});
+
+impl crate::Telecommand for AdcsConfiguration {
+    const TELECOMMAND_ID: u32 = 20;
 }
 
-impl crate::wire::Telemetry for AdcsConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 206;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for AdcsConfiguration {
+    const TELEMETRY_ID: u32 = 206;
 }

@@ -2,7 +2,7 @@
 
 //! Adcs Execution Times, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Adcs Execution Times: telemetry 196, 8 bytes. Table 155.
 ///
@@ -75,12 +75,14 @@ impl AdcsExecutionTimes {
     }
 }
 
-impl crate::wire::Telemetry for AdcsExecutionTimes {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 196;
+message!(AdcsExecutionTimes {
+    time_to_perform_adcs_update: ("Time to Perform ADCS Update", 0, 16).unit("ms"),
+    time_to_perform_sensor_actuator_communications: ("Time to Perform Sensor/Actuator Communications", 16, 16)
+        .unit("ms"),
+    time_to_execute_sgp4_propagator: ("Time to Execute SGP4 Propagator", 32, 16).unit("ms"),
+    time_to_execute_igrf_model: ("Time to Execute IGRF Model", 48, 16).unit("ms"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for AdcsExecutionTimes {
+    const TELEMETRY_ID: u32 = 196;
 }

@@ -2,7 +2,7 @@
 
 //! ADCS Measurements, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// ADCS Measurements: telemetry 191, 72 bytes. Table 150.
 ///
@@ -252,13 +252,29 @@ impl AdcsMeasurements {
         f64::from(self.magnetic_field_x) / 100.0
     }
 
-    /// Sets Magnetic Field X in uT, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Magnetic Field X in uT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_magnetic_field_x_ut(&mut self, value: f64) -> Result<(), Error> {
         self.magnetic_field_x = MAGNETIC_FIELD_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetic Field X in uT, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetic_field_x_ut_f32(&self) -> f32 {
+        f32::from(self.magnetic_field_x) / 100.0
+    }
+
+    /// Magnetic Field X in nT, exact: -327680 to 327670.
+    #[must_use]
+    pub fn magnetic_field_x_nt(&self) -> i32 {
+        i32::from(self.magnetic_field_x) * 10
+    }
+
+    /// Sets Magnetic Field X in nT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_magnetic_field_x_nt(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetic_field_x = MAGNETIC_FIELD_X.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -268,13 +284,29 @@ impl AdcsMeasurements {
         f64::from(self.magnetic_field_y) / 100.0
     }
 
-    /// Sets Magnetic Field Y in uT, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Magnetic Field Y in uT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_magnetic_field_y_ut(&mut self, value: f64) -> Result<(), Error> {
         self.magnetic_field_y = MAGNETIC_FIELD_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetic Field Y in uT, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetic_field_y_ut_f32(&self) -> f32 {
+        f32::from(self.magnetic_field_y) / 100.0
+    }
+
+    /// Magnetic Field Y in nT, exact: -327680 to 327670.
+    #[must_use]
+    pub fn magnetic_field_y_nt(&self) -> i32 {
+        i32::from(self.magnetic_field_y) * 10
+    }
+
+    /// Sets Magnetic Field Y in nT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_magnetic_field_y_nt(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetic_field_y = MAGNETIC_FIELD_Y.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -284,13 +316,29 @@ impl AdcsMeasurements {
         f64::from(self.magnetic_field_z) / 100.0
     }
 
-    /// Sets Magnetic Field Z in uT, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Magnetic Field Z in uT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_magnetic_field_z_ut(&mut self, value: f64) -> Result<(), Error> {
         self.magnetic_field_z = MAGNETIC_FIELD_Z.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetic Field Z in uT, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetic_field_z_ut_f32(&self) -> f32 {
+        f32::from(self.magnetic_field_z) / 100.0
+    }
+
+    /// Magnetic Field Z in nT, exact: -327680 to 327670.
+    #[must_use]
+    pub fn magnetic_field_z_nt(&self) -> i32 {
+        i32::from(self.magnetic_field_z) * 10
+    }
+
+    /// Sets Magnetic Field Z in nT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_magnetic_field_z_nt(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetic_field_z = MAGNETIC_FIELD_Z.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -301,12 +349,28 @@ impl AdcsMeasurements {
     }
 
     /// Sets Coarse Sun X, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_coarse_sun_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.coarse_sun_x = COARSE_SUN_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Coarse Sun X, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn coarse_sun_x_physical_f32(&self) -> f32 {
+        f32::from(self.coarse_sun_x) / 10_000.0
+    }
+
+    /// Coarse Sun X in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn coarse_sun_x_micro(&self) -> i32 {
+        i32::from(self.coarse_sun_x) * 100
+    }
+
+    /// Sets Coarse Sun X in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_coarse_sun_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.coarse_sun_x = COARSE_SUN_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -317,12 +381,28 @@ impl AdcsMeasurements {
     }
 
     /// Sets Coarse Sun Y, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_coarse_sun_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.coarse_sun_y = COARSE_SUN_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Coarse Sun Y, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn coarse_sun_y_physical_f32(&self) -> f32 {
+        f32::from(self.coarse_sun_y) / 10_000.0
+    }
+
+    /// Coarse Sun Y in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn coarse_sun_y_micro(&self) -> i32 {
+        i32::from(self.coarse_sun_y) * 100
+    }
+
+    /// Sets Coarse Sun Y in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_coarse_sun_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.coarse_sun_y = COARSE_SUN_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -333,12 +413,28 @@ impl AdcsMeasurements {
     }
 
     /// Sets Coarse Sun Z, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_coarse_sun_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.coarse_sun_z = COARSE_SUN_Z.raw(value)?;
+        Ok(())
+    }
+
+    /// Coarse Sun Z, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn coarse_sun_z_physical_f32(&self) -> f32 {
+        f32::from(self.coarse_sun_z) / 10_000.0
+    }
+
+    /// Coarse Sun Z in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn coarse_sun_z_micro(&self) -> i32 {
+        i32::from(self.coarse_sun_z) * 100
+    }
+
+    /// Sets Coarse Sun Z in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_coarse_sun_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.coarse_sun_z = COARSE_SUN_Z.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -348,13 +444,29 @@ impl AdcsMeasurements {
         f64::from(self.sun_x) / 10_000.0
     }
 
-    /// Sets Sun X, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Sun X, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_sun_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sun_x = SUN_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Sun X, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn sun_x_physical_f32(&self) -> f32 {
+        f32::from(self.sun_x) / 10_000.0
+    }
+
+    /// Sun X in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn sun_x_micro(&self) -> i32 {
+        i32::from(self.sun_x) * 100
+    }
+
+    /// Sets Sun X in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_sun_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.sun_x = SUN_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -364,13 +476,29 @@ impl AdcsMeasurements {
         f64::from(self.sun_y) / 10_000.0
     }
 
-    /// Sets Sun Y, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Sun Y, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_sun_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sun_y = SUN_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Sun Y, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn sun_y_physical_f32(&self) -> f32 {
+        f32::from(self.sun_y) / 10_000.0
+    }
+
+    /// Sun Y in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn sun_y_micro(&self) -> i32 {
+        i32::from(self.sun_y) * 100
+    }
+
+    /// Sets Sun Y in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_sun_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.sun_y = SUN_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -380,13 +508,29 @@ impl AdcsMeasurements {
         f64::from(self.sun_z) / 10_000.0
     }
 
-    /// Sets Sun Z, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Sun Z, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_sun_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sun_z = SUN_Z.raw(value)?;
+        Ok(())
+    }
+
+    /// Sun Z, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn sun_z_physical_f32(&self) -> f32 {
+        f32::from(self.sun_z) / 10_000.0
+    }
+
+    /// Sun Z in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn sun_z_micro(&self) -> i32 {
+        i32::from(self.sun_z) * 100
+    }
+
+    /// Sets Sun Z in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_sun_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.sun_z = SUN_Z.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -396,13 +540,29 @@ impl AdcsMeasurements {
         f64::from(self.nadir_x) / 10_000.0
     }
 
-    /// Sets Nadir X, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Nadir X, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_nadir_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.nadir_x = NADIR_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Nadir X, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn nadir_x_physical_f32(&self) -> f32 {
+        f32::from(self.nadir_x) / 10_000.0
+    }
+
+    /// Nadir X in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn nadir_x_micro(&self) -> i32 {
+        i32::from(self.nadir_x) * 100
+    }
+
+    /// Sets Nadir X in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_nadir_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.nadir_x = NADIR_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -412,13 +572,29 @@ impl AdcsMeasurements {
         f64::from(self.nadir_y) / 10_000.0
     }
 
-    /// Sets Nadir Y, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Nadir Y, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_nadir_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.nadir_y = NADIR_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Nadir Y, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn nadir_y_physical_f32(&self) -> f32 {
+        f32::from(self.nadir_y) / 10_000.0
+    }
+
+    /// Nadir Y in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn nadir_y_micro(&self) -> i32 {
+        i32::from(self.nadir_y) * 100
+    }
+
+    /// Sets Nadir Y in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_nadir_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.nadir_y = NADIR_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -428,13 +604,29 @@ impl AdcsMeasurements {
         f64::from(self.nadir_z) / 10_000.0
     }
 
-    /// Sets Nadir Z, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Nadir Z, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_nadir_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.nadir_z = NADIR_Z.raw(value)?;
+        Ok(())
+    }
+
+    /// Nadir Z, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn nadir_z_physical_f32(&self) -> f32 {
+        f32::from(self.nadir_z) / 10_000.0
+    }
+
+    /// Nadir Z in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn nadir_z_micro(&self) -> i32 {
+        i32::from(self.nadir_z) * 100
+    }
+
+    /// Sets Nadir Z in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_nadir_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.nadir_z = NADIR_Z.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -444,13 +636,29 @@ impl AdcsMeasurements {
         f64::from(self.x_angular_rate) / 100.0
     }
 
-    /// Sets X Angular Rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets X Angular Rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_x_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.x_angular_rate = X_ANGULAR_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// X Angular Rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_angular_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.x_angular_rate) / 100.0
+    }
+
+    /// X Angular Rate in thousandths of deg/s, exact: -327680 to 327670.
+    #[must_use]
+    pub fn x_angular_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.x_angular_rate) * 10
+    }
+
+    /// Sets X Angular Rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_x_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.x_angular_rate = X_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -460,13 +668,29 @@ impl AdcsMeasurements {
         f64::from(self.y_angular_rate) / 100.0
     }
 
-    /// Sets Y Angular Rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Y Angular Rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_y_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.y_angular_rate = Y_ANGULAR_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// Y Angular Rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_angular_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.y_angular_rate) / 100.0
+    }
+
+    /// Y Angular Rate in thousandths of deg/s, exact: -327680 to 327670.
+    #[must_use]
+    pub fn y_angular_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.y_angular_rate) * 10
+    }
+
+    /// Sets Y Angular Rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_y_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.y_angular_rate = Y_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -476,13 +700,29 @@ impl AdcsMeasurements {
         f64::from(self.z_angular_rate) / 100.0
     }
 
-    /// Sets Z Angular Rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Z Angular Rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_z_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.z_angular_rate = Z_ANGULAR_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// Z Angular Rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_angular_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.z_angular_rate) / 100.0
+    }
+
+    /// Z Angular Rate in thousandths of deg/s, exact: -327680 to 327670.
+    #[must_use]
+    pub fn z_angular_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.z_angular_rate) * 10
+    }
+
+    /// Sets Z Angular Rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_z_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.z_angular_rate = Z_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -492,13 +732,29 @@ impl AdcsMeasurements {
         f64::from(self.star1_body_x) / 10_000.0
     }
 
-    /// Sets Star1BX, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star1BX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star1_body_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star1_body_x = STAR1_BODY_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Star1BX, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star1_body_x_physical_f32(&self) -> f32 {
+        f32::from(self.star1_body_x) / 10_000.0
+    }
+
+    /// Star1BX in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star1_body_x_micro(&self) -> i32 {
+        i32::from(self.star1_body_x) * 100
+    }
+
+    /// Sets Star1BX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star1_body_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star1_body_x = STAR1_BODY_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -508,13 +764,29 @@ impl AdcsMeasurements {
         f64::from(self.star1_body_y) / 10_000.0
     }
 
-    /// Sets Star1BY, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star1BY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star1_body_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star1_body_y = STAR1_BODY_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Star1BY, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star1_body_y_physical_f32(&self) -> f32 {
+        f32::from(self.star1_body_y) / 10_000.0
+    }
+
+    /// Star1BY in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star1_body_y_micro(&self) -> i32 {
+        i32::from(self.star1_body_y) * 100
+    }
+
+    /// Sets Star1BY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star1_body_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star1_body_y = STAR1_BODY_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -524,13 +796,29 @@ impl AdcsMeasurements {
         f64::from(self.star1_body_z) / 10_000.0
     }
 
-    /// Sets Star1BZ, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star1BZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star1_body_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star1_body_z = STAR1_BODY_Z.raw(value)?;
+        Ok(())
+    }
+
+    /// Star1BZ, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star1_body_z_physical_f32(&self) -> f32 {
+        f32::from(self.star1_body_z) / 10_000.0
+    }
+
+    /// Star1BZ in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star1_body_z_micro(&self) -> i32 {
+        i32::from(self.star1_body_z) * 100
+    }
+
+    /// Sets Star1BZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star1_body_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star1_body_z = STAR1_BODY_Z.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -540,13 +828,29 @@ impl AdcsMeasurements {
         f64::from(self.star1_orbit_x) / 10_000.0
     }
 
-    /// Sets Star1OX, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star1OX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star1_orbit_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star1_orbit_x = STAR1_ORBIT_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Star1OX, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star1_orbit_x_physical_f32(&self) -> f32 {
+        f32::from(self.star1_orbit_x) / 10_000.0
+    }
+
+    /// Star1OX in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star1_orbit_x_micro(&self) -> i32 {
+        i32::from(self.star1_orbit_x) * 100
+    }
+
+    /// Sets Star1OX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star1_orbit_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star1_orbit_x = STAR1_ORBIT_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -556,13 +860,29 @@ impl AdcsMeasurements {
         f64::from(self.star1_orbit_y) / 10_000.0
     }
 
-    /// Sets Star1OY, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star1OY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star1_orbit_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star1_orbit_y = STAR1_ORBIT_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Star1OY, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star1_orbit_y_physical_f32(&self) -> f32 {
+        f32::from(self.star1_orbit_y) / 10_000.0
+    }
+
+    /// Star1OY in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star1_orbit_y_micro(&self) -> i32 {
+        i32::from(self.star1_orbit_y) * 100
+    }
+
+    /// Sets Star1OY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star1_orbit_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star1_orbit_y = STAR1_ORBIT_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -572,13 +892,29 @@ impl AdcsMeasurements {
         f64::from(self.star1_orbit_z) / 10_000.0
     }
 
-    /// Sets Star1OZ, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star1OZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star1_orbit_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star1_orbit_z = STAR1_ORBIT_Z.raw(value)?;
+        Ok(())
+    }
+
+    /// Star1OZ, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star1_orbit_z_physical_f32(&self) -> f32 {
+        f32::from(self.star1_orbit_z) / 10_000.0
+    }
+
+    /// Star1OZ in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star1_orbit_z_micro(&self) -> i32 {
+        i32::from(self.star1_orbit_z) * 100
+    }
+
+    /// Sets Star1OZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star1_orbit_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star1_orbit_z = STAR1_ORBIT_Z.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -588,13 +924,29 @@ impl AdcsMeasurements {
         f64::from(self.star2_body_x) / 10_000.0
     }
 
-    /// Sets Star2BX, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star2BX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star2_body_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_body_x = STAR2_BODY_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Star2BX, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star2_body_x_physical_f32(&self) -> f32 {
+        f32::from(self.star2_body_x) / 10_000.0
+    }
+
+    /// Star2BX in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star2_body_x_micro(&self) -> i32 {
+        i32::from(self.star2_body_x) * 100
+    }
+
+    /// Sets Star2BX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star2_body_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star2_body_x = STAR2_BODY_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -604,13 +956,29 @@ impl AdcsMeasurements {
         f64::from(self.star2_body_y) / 10_000.0
     }
 
-    /// Sets Star2BY, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star2BY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star2_body_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_body_y = STAR2_BODY_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Star2BY, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star2_body_y_physical_f32(&self) -> f32 {
+        f32::from(self.star2_body_y) / 10_000.0
+    }
+
+    /// Star2BY in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star2_body_y_micro(&self) -> i32 {
+        i32::from(self.star2_body_y) * 100
+    }
+
+    /// Sets Star2BY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star2_body_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star2_body_y = STAR2_BODY_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -620,13 +988,29 @@ impl AdcsMeasurements {
         f64::from(self.star2_body_z) / 10_000.0
     }
 
-    /// Sets Star2BZ, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star2BZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star2_body_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_body_z = STAR2_BODY_Z.raw(value)?;
+        Ok(())
+    }
+
+    /// Star2BZ, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star2_body_z_physical_f32(&self) -> f32 {
+        f32::from(self.star2_body_z) / 10_000.0
+    }
+
+    /// Star2BZ in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star2_body_z_micro(&self) -> i32 {
+        i32::from(self.star2_body_z) * 100
+    }
+
+    /// Sets Star2BZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star2_body_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star2_body_z = STAR2_BODY_Z.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -636,13 +1020,29 @@ impl AdcsMeasurements {
         f64::from(self.star2_orbit_x) / 10_000.0
     }
 
-    /// Sets Star2OX, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star2OX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star2_orbit_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_orbit_x = STAR2_ORBIT_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Star2OX, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star2_orbit_x_physical_f32(&self) -> f32 {
+        f32::from(self.star2_orbit_x) / 10_000.0
+    }
+
+    /// Star2OX in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star2_orbit_x_micro(&self) -> i32 {
+        i32::from(self.star2_orbit_x) * 100
+    }
+
+    /// Sets Star2OX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star2_orbit_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star2_orbit_x = STAR2_ORBIT_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -652,13 +1052,29 @@ impl AdcsMeasurements {
         f64::from(self.star2_orbit_y) / 10_000.0
     }
 
-    /// Sets Star2OY, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star2OY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star2_orbit_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_orbit_y = STAR2_ORBIT_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Star2OY, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star2_orbit_y_physical_f32(&self) -> f32 {
+        f32::from(self.star2_orbit_y) / 10_000.0
+    }
+
+    /// Star2OY in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star2_orbit_y_micro(&self) -> i32 {
+        i32::from(self.star2_orbit_y) * 100
+    }
+
+    /// Sets Star2OY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star2_orbit_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star2_orbit_y = STAR2_ORBIT_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -668,13 +1084,29 @@ impl AdcsMeasurements {
         f64::from(self.star2_orbit_z) / 10_000.0
     }
 
-    /// Sets Star2OZ, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star2OZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star2_orbit_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_orbit_z = STAR2_ORBIT_Z.raw(value)?;
+        Ok(())
+    }
+
+    /// Star2OZ, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star2_orbit_z_physical_f32(&self) -> f32 {
+        f32::from(self.star2_orbit_z) / 10_000.0
+    }
+
+    /// Star2OZ in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star2_orbit_z_micro(&self) -> i32 {
+        i32::from(self.star2_orbit_z) * 100
+    }
+
+    /// Sets Star2OZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star2_orbit_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star2_orbit_z = STAR2_ORBIT_Z.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -684,13 +1116,29 @@ impl AdcsMeasurements {
         f64::from(self.star3_body_x) / 10_000.0
     }
 
-    /// Sets Star3BX, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star3BX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star3_body_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_body_x = STAR3_BODY_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Star3BX, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star3_body_x_physical_f32(&self) -> f32 {
+        f32::from(self.star3_body_x) / 10_000.0
+    }
+
+    /// Star3BX in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star3_body_x_micro(&self) -> i32 {
+        i32::from(self.star3_body_x) * 100
+    }
+
+    /// Sets Star3BX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star3_body_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star3_body_x = STAR3_BODY_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -700,13 +1148,29 @@ impl AdcsMeasurements {
         f64::from(self.star3_body_y) / 10_000.0
     }
 
-    /// Sets Star3BY, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star3BY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star3_body_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_body_y = STAR3_BODY_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Star3BY, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star3_body_y_physical_f32(&self) -> f32 {
+        f32::from(self.star3_body_y) / 10_000.0
+    }
+
+    /// Star3BY in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star3_body_y_micro(&self) -> i32 {
+        i32::from(self.star3_body_y) * 100
+    }
+
+    /// Sets Star3BY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star3_body_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star3_body_y = STAR3_BODY_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -716,13 +1180,29 @@ impl AdcsMeasurements {
         f64::from(self.star3_body_z) / 10_000.0
     }
 
-    /// Sets Star3BZ, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star3BZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star3_body_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_body_z = STAR3_BODY_Z.raw(value)?;
+        Ok(())
+    }
+
+    /// Star3BZ, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star3_body_z_physical_f32(&self) -> f32 {
+        f32::from(self.star3_body_z) / 10_000.0
+    }
+
+    /// Star3BZ in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star3_body_z_micro(&self) -> i32 {
+        i32::from(self.star3_body_z) * 100
+    }
+
+    /// Sets Star3BZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star3_body_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star3_body_z = STAR3_BODY_Z.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -732,13 +1212,29 @@ impl AdcsMeasurements {
         f64::from(self.star3_orbit_x) / 10_000.0
     }
 
-    /// Sets Star3OX, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star3OX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star3_orbit_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_orbit_x = STAR3_ORBIT_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Star3OX, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star3_orbit_x_physical_f32(&self) -> f32 {
+        f32::from(self.star3_orbit_x) / 10_000.0
+    }
+
+    /// Star3OX in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star3_orbit_x_micro(&self) -> i32 {
+        i32::from(self.star3_orbit_x) * 100
+    }
+
+    /// Sets Star3OX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star3_orbit_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star3_orbit_x = STAR3_ORBIT_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -748,13 +1244,29 @@ impl AdcsMeasurements {
         f64::from(self.star3_orbit_y) / 10_000.0
     }
 
-    /// Sets Star3OY, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star3OY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star3_orbit_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_orbit_y = STAR3_ORBIT_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Star3OY, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star3_orbit_y_physical_f32(&self) -> f32 {
+        f32::from(self.star3_orbit_y) / 10_000.0
+    }
+
+    /// Star3OY in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star3_orbit_y_micro(&self) -> i32 {
+        i32::from(self.star3_orbit_y) * 100
+    }
+
+    /// Sets Star3OY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star3_orbit_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star3_orbit_y = STAR3_ORBIT_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -764,320 +1276,138 @@ impl AdcsMeasurements {
         f64::from(self.star3_orbit_z) / 10_000.0
     }
 
-    /// Sets Star3OZ, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star3OZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star3_orbit_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_orbit_z = STAR3_ORBIT_Z.raw(value)?;
         Ok(())
     }
+
+    /// Star3OZ, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star3_orbit_z_physical_f32(&self) -> f32 {
+        f32::from(self.star3_orbit_z) / 10_000.0
+    }
+
+    /// Star3OZ in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star3_orbit_z_micro(&self) -> i32 {
+        i32::from(self.star3_orbit_z) * 100
+    }
+
+    /// Sets Star3OZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star3_orbit_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star3_orbit_z = STAR3_ORBIT_Z.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const MAGNETIC_FIELD_X: Scale = Scale {
-    field: "Magnetic Field X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const MAGNETIC_FIELD_X: Scale = Scale::new("Magnetic Field X", (-32_768, 32_767), (1, 0, 100));
 
-const MAGNETIC_FIELD_Y: Scale = Scale {
-    field: "Magnetic Field Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const MAGNETIC_FIELD_Y: Scale = Scale::new("Magnetic Field Y", (-32_768, 32_767), (1, 0, 100));
 
-const MAGNETIC_FIELD_Z: Scale = Scale {
-    field: "Magnetic Field Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const MAGNETIC_FIELD_Z: Scale = Scale::new("Magnetic Field Z", (-32_768, 32_767), (1, 0, 100));
 
-const COARSE_SUN_X: Scale = Scale {
-    field: "Coarse Sun X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const COARSE_SUN_X: Scale = Scale::new("Coarse Sun X", (-32_768, 32_767), (1, 0, 10_000));
 
-const COARSE_SUN_Y: Scale = Scale {
-    field: "Coarse Sun Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const COARSE_SUN_Y: Scale = Scale::new("Coarse Sun Y", (-32_768, 32_767), (1, 0, 10_000));
 
-const COARSE_SUN_Z: Scale = Scale {
-    field: "Coarse Sun Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const COARSE_SUN_Z: Scale = Scale::new("Coarse Sun Z", (-32_768, 32_767), (1, 0, 10_000));
 
-const SUN_X: Scale = Scale {
-    field: "Sun X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const SUN_X: Scale = Scale::new("Sun X", (-32_768, 32_767), (1, 0, 10_000));
 
-const SUN_Y: Scale = Scale {
-    field: "Sun Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const SUN_Y: Scale = Scale::new("Sun Y", (-32_768, 32_767), (1, 0, 10_000));
 
-const SUN_Z: Scale = Scale {
-    field: "Sun Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const SUN_Z: Scale = Scale::new("Sun Z", (-32_768, 32_767), (1, 0, 10_000));
 
-const NADIR_X: Scale = Scale {
-    field: "Nadir X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const NADIR_X: Scale = Scale::new("Nadir X", (-32_768, 32_767), (1, 0, 10_000));
 
-const NADIR_Y: Scale = Scale {
-    field: "Nadir Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const NADIR_Y: Scale = Scale::new("Nadir Y", (-32_768, 32_767), (1, 0, 10_000));
 
-const NADIR_Z: Scale = Scale {
-    field: "Nadir Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const NADIR_Z: Scale = Scale::new("Nadir Z", (-32_768, 32_767), (1, 0, 10_000));
 
-const X_ANGULAR_RATE: Scale = Scale {
-    field: "X Angular Rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const X_ANGULAR_RATE: Scale = Scale::new("X Angular Rate", (-32_768, 32_767), (1, 0, 100));
 
-const Y_ANGULAR_RATE: Scale = Scale {
-    field: "Y Angular Rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const Y_ANGULAR_RATE: Scale = Scale::new("Y Angular Rate", (-32_768, 32_767), (1, 0, 100));
 
-const Z_ANGULAR_RATE: Scale = Scale {
-    field: "Z Angular Rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const Z_ANGULAR_RATE: Scale = Scale::new("Z Angular Rate", (-32_768, 32_767), (1, 0, 100));
 
-const STAR1_BODY_X: Scale = Scale {
-    field: "Star1BX",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR1_BODY_X: Scale = Scale::new("Star1BX", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_BODY_Y: Scale = Scale {
-    field: "Star1BY",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR1_BODY_Y: Scale = Scale::new("Star1BY", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_BODY_Z: Scale = Scale {
-    field: "Star1BZ",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR1_BODY_Z: Scale = Scale::new("Star1BZ", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_ORBIT_X: Scale = Scale {
-    field: "Star1OX",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR1_ORBIT_X: Scale = Scale::new("Star1OX", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_ORBIT_Y: Scale = Scale {
-    field: "Star1OY",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR1_ORBIT_Y: Scale = Scale::new("Star1OY", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_ORBIT_Z: Scale = Scale {
-    field: "Star1OZ",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR1_ORBIT_Z: Scale = Scale::new("Star1OZ", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_BODY_X: Scale = Scale {
-    field: "Star2BX",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR2_BODY_X: Scale = Scale::new("Star2BX", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_BODY_Y: Scale = Scale {
-    field: "Star2BY",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR2_BODY_Y: Scale = Scale::new("Star2BY", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_BODY_Z: Scale = Scale {
-    field: "Star2BZ",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR2_BODY_Z: Scale = Scale::new("Star2BZ", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_ORBIT_X: Scale = Scale {
-    field: "Star2OX",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR2_ORBIT_X: Scale = Scale::new("Star2OX", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_ORBIT_Y: Scale = Scale {
-    field: "Star2OY",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR2_ORBIT_Y: Scale = Scale::new("Star2OY", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_ORBIT_Z: Scale = Scale {
-    field: "Star2OZ",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR2_ORBIT_Z: Scale = Scale::new("Star2OZ", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_BODY_X: Scale = Scale {
-    field: "Star3BX",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR3_BODY_X: Scale = Scale::new("Star3BX", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_BODY_Y: Scale = Scale {
-    field: "Star3BY",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR3_BODY_Y: Scale = Scale::new("Star3BY", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_BODY_Z: Scale = Scale {
-    field: "Star3BZ",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR3_BODY_Z: Scale = Scale::new("Star3BZ", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_ORBIT_X: Scale = Scale {
-    field: "Star3OX",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR3_ORBIT_X: Scale = Scale::new("Star3OX", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_ORBIT_Y: Scale = Scale {
-    field: "Star3OY",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR3_ORBIT_Y: Scale = Scale::new("Star3OY", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_ORBIT_Z: Scale = Scale {
-    field: "Star3OZ",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR3_ORBIT_Z: Scale = Scale::new("Star3OZ", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for AdcsMeasurements {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 191;
+message!(AdcsMeasurements {
+    magnetic_field_x: ("Magnetic Field X", 0, 16).unit("uT").scale(&MAGNETIC_FIELD_X),
+    magnetic_field_y: ("Magnetic Field Y", 16, 16).unit("uT").scale(&MAGNETIC_FIELD_Y),
+    magnetic_field_z: ("Magnetic Field Z", 32, 16).unit("uT").scale(&MAGNETIC_FIELD_Z),
+    coarse_sun_x: ("Coarse Sun X", 48, 16).scale(&COARSE_SUN_X),
+    coarse_sun_y: ("Coarse Sun Y", 64, 16).scale(&COARSE_SUN_Y),
+    coarse_sun_z: ("Coarse Sun Z", 80, 16).scale(&COARSE_SUN_Z),
+    sun_x: ("Sun X", 96, 16).scale(&SUN_X),
+    sun_y: ("Sun Y", 112, 16).scale(&SUN_Y),
+    sun_z: ("Sun Z", 128, 16).scale(&SUN_Z),
+    nadir_x: ("Nadir X", 144, 16).scale(&NADIR_X),
+    nadir_y: ("Nadir Y", 160, 16).scale(&NADIR_Y),
+    nadir_z: ("Nadir Z", 176, 16).scale(&NADIR_Z),
+    x_angular_rate: ("X Angular Rate", 192, 16).unit("deg/s").scale(&X_ANGULAR_RATE),
+    y_angular_rate: ("Y Angular Rate", 208, 16).unit("deg/s").scale(&Y_ANGULAR_RATE),
+    z_angular_rate: ("Z Angular Rate", 224, 16).unit("deg/s").scale(&Z_ANGULAR_RATE),
+    x_wheel_speed: ("X Wheel Speed", 240, 16).unit("rpm"),
+    y_wheel_speed: ("Y Wheel Speed", 256, 16).unit("rpm"),
+    z_wheel_speed: ("Z Wheel Speed", 272, 16).unit("rpm"),
+    star1_body_x: ("Star1BX", 288, 16).scale(&STAR1_BODY_X),
+    star1_body_y: ("Star1BY", 304, 16).scale(&STAR1_BODY_Y),
+    star1_body_z: ("Star1BZ", 320, 16).scale(&STAR1_BODY_Z),
+    star1_orbit_x: ("Star1OX", 336, 16).scale(&STAR1_ORBIT_X),
+    star1_orbit_y: ("Star1OY", 352, 16).scale(&STAR1_ORBIT_Y),
+    star1_orbit_z: ("Star1OZ", 368, 16).scale(&STAR1_ORBIT_Z),
+    star2_body_x: ("Star2BX", 384, 16).scale(&STAR2_BODY_X),
+    star2_body_y: ("Star2BY", 400, 16).scale(&STAR2_BODY_Y),
+    star2_body_z: ("Star2BZ", 416, 16).scale(&STAR2_BODY_Z),
+    star2_orbit_x: ("Star2OX", 432, 16).scale(&STAR2_ORBIT_X),
+    star2_orbit_y: ("Star2OY", 448, 16).scale(&STAR2_ORBIT_Y),
+    star2_orbit_z: ("Star2OZ", 464, 16).scale(&STAR2_ORBIT_Z),
+    star3_body_x: ("Star3BX", 480, 16).scale(&STAR3_BODY_X),
+    star3_body_y: ("Star3BY", 496, 16).scale(&STAR3_BODY_Y),
+    star3_body_z: ("Star3BZ", 512, 16).scale(&STAR3_BODY_Z),
+    star3_orbit_x: ("Star3OX", 528, 16).scale(&STAR3_ORBIT_X),
+    star3_orbit_y: ("Star3OY", 544, 16).scale(&STAR3_ORBIT_Y),
+    star3_orbit_z: ("Star3OZ", 560, 16).scale(&STAR3_ORBIT_Z),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for AdcsMeasurements {
+    const TELEMETRY_ID: u32 = 191;
 }

@@ -2,7 +2,7 @@
 
 //! ADCS Misc Current Measurements, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// ADCS Misc Current Measurements: telemetry 198, 6 bytes. Table 156.
 ///
@@ -86,13 +86,29 @@ impl AdcsMiscCurrents {
         f64::from(self.cubestar_current) / 100.0
     }
 
-    /// Sets CubeStarCurrent in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets CubeStarCurrent in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_cubestar_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubestar_current = CUBESTAR_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// CubeStarCurrent in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubestar_current_ma_f32(&self) -> f32 {
+        f32::from(self.cubestar_current) / 100.0
+    }
+
+    /// CubeStarCurrent in uA, exact: 0 to 655350.
+    #[must_use]
+    pub fn cubestar_current_ua(&self) -> i32 {
+        i32::from(self.cubestar_current) * 10
+    }
+
+    /// Sets CubeStarCurrent in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_cubestar_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.cubestar_current = CUBESTAR_CURRENT.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -102,13 +118,29 @@ impl AdcsMiscCurrents {
         f64::from(self.magnetorquer_current) / 10.0
     }
 
-    /// Sets Magnetorquer Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Magnetorquer Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_magnetorquer_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.magnetorquer_current = MAGNETORQUER_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetorquer Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetorquer_current_ma_f32(&self) -> f32 {
+        f32::from(self.magnetorquer_current) / 10.0
+    }
+
+    /// Magnetorquer Current in uA, exact: 0 to 6553500.
+    #[must_use]
+    pub fn magnetorquer_current_ua(&self) -> i32 {
+        i32::from(self.magnetorquer_current) * 100
+    }
+
+    /// Sets Magnetorquer Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_magnetorquer_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetorquer_current = MAGNETORQUER_CURRENT.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -118,50 +150,47 @@ impl AdcsMiscCurrents {
         f64::from(self.cubestar_mcu_temperature) / 100.0
     }
 
-    /// Sets CubeStar MCU temperature in C, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets CubeStar MCU temperature in C, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_cubestar_mcu_temperature_c(&mut self, value: f64) -> Result<(), Error> {
         self.cubestar_mcu_temperature = CUBESTAR_MCU_TEMPERATURE.raw(value)?;
         Ok(())
     }
+
+    /// CubeStar MCU temperature in C, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubestar_mcu_temperature_c_f32(&self) -> f32 {
+        f32::from(self.cubestar_mcu_temperature) / 100.0
+    }
+
+    /// CubeStar MCU temperature in thousandths of C, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cubestar_mcu_temperature_mc(&self) -> i32 {
+        i32::from(self.cubestar_mcu_temperature) * 10
+    }
+
+    /// Sets CubeStar MCU temperature in thousandths of C, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cubestar_mcu_temperature_mc(&mut self, value: i32) -> Result<(), Error> {
+        self.cubestar_mcu_temperature = CUBESTAR_MCU_TEMPERATURE.whole(value.into(), 10, 0)?;
+        Ok(())
+    }
 }
 
-const CUBESTAR_CURRENT: Scale = Scale {
-    field: "CubeStarCurrent",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const CUBESTAR_CURRENT: Scale = Scale::new("CubeStarCurrent", (0, 65_535), (1, 0, 100));
 
-const MAGNETORQUER_CURRENT: Scale = Scale {
-    field: "Magnetorquer Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const MAGNETORQUER_CURRENT: Scale = Scale::new("Magnetorquer Current", (0, 65_535), (1, 0, 10));
 
-const CUBESTAR_MCU_TEMPERATURE: Scale = Scale {
-    field: "CubeStar MCU temperature",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const CUBESTAR_MCU_TEMPERATURE: Scale =
+    Scale::new("CubeStar MCU temperature", (-32_768, 32_767), (1, 0, 100));
 
-impl crate::wire::Telemetry for AdcsMiscCurrents {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 198;
+message!(AdcsMiscCurrents {
+    cubestar_current: ("CubeStarCurrent", 0, 16).unit("mA").scale(&CUBESTAR_CURRENT),
+    magnetorquer_current: ("Magnetorquer Current", 16, 16).unit("mA").scale(&MAGNETORQUER_CURRENT),
+    cubestar_mcu_temperature: ("CubeStar MCU temperature", 32, 16)
+        .unit("C").scale(&CUBESTAR_MCU_TEMPERATURE),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for AdcsMiscCurrents {
+    const TELEMETRY_ID: u32 = 198;
 }

@@ -3,7 +3,7 @@
 //! ADCS Power Control, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error, Scale};
+use crate::support::{message, Coded, Error, Scale};
 
 /// ADCS Power Control: configuration, set by telecommand 11, got by telemetry 197, 3 bytes. Table
 /// 184\.
@@ -146,112 +146,51 @@ impl AdcsPowerControl {
     }
 }
 
-const CUBECONTROL_SIGNAL_POWER_SELECTION: Scale = Scale {
-    field: "CubeControl Signal Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBECONTROL_SIGNAL_POWER_SELECTION: Scale =
+    Scale::new("CubeControl Signal Power Selection", (0, 3), (1, 0, 1));
 
-const CUBECONTROL_MOTOR_POWER_SELECTION: Scale = Scale {
-    field: "CubeControl Motor Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBECONTROL_MOTOR_POWER_SELECTION: Scale =
+    Scale::new("CubeControl Motor Power Selection", (0, 3), (1, 0, 1));
 
-const CUBESENSE1_POWER_SELECTION: Scale = Scale {
-    field: "CubeSense1 Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESENSE1_POWER_SELECTION: Scale =
+    Scale::new("CubeSense1 Power Selection", (0, 3), (1, 0, 1));
 
-const CUBESENSE2_POWER_SELECTION: Scale = Scale {
-    field: "CubeSense2 Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESENSE2_POWER_SELECTION: Scale =
+    Scale::new("CubeSense2 Power Selection", (0, 3), (1, 0, 1));
 
-const CUBESTAR_POWER_SELECTION: Scale = Scale {
-    field: "CubeStarPower Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESTAR_POWER_SELECTION: Scale =
+    Scale::new("CubeStarPower Power Selection", (0, 3), (1, 0, 1));
 
-const CUBEWHEEL1_POWER_SELECTION: Scale = Scale {
-    field: "CubeWheel1Power Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBEWHEEL1_POWER_SELECTION: Scale =
+    Scale::new("CubeWheel1Power Power Selection", (0, 3), (1, 0, 1));
 
-const CUBEWHEEL2_POWER_SELECTION: Scale = Scale {
-    field: "CubeWheel2Power Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBEWHEEL2_POWER_SELECTION: Scale =
+    Scale::new("CubeWheel2Power Power Selection", (0, 3), (1, 0, 1));
 
-const CUBEWHEEL3_POWER_SELECTION: Scale = Scale {
-    field: "CubeWheel3Power Power Selection",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBEWHEEL3_POWER_SELECTION: Scale =
+    Scale::new("CubeWheel3Power Power Selection", (0, 3), (1, 0, 1));
 
-const MOTOR_POWER: Scale = Scale {
-    field: "Motor Power",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const MOTOR_POWER: Scale = Scale::new("Motor Power", (0, 3), (1, 0, 1));
 
-const GPS_POWER: Scale = Scale {
-    field: "GPS Power",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const GPS_POWER: Scale = Scale::new("GPS Power", (0, 3), (1, 0, 1));
 
-impl crate::wire::Telecommand for AdcsPowerControl {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 11;
+message!(AdcsPowerControl {
+    cubecontrol_signal_power_selection: ("CubeControl Signal Power Selection", 0, 2),
+    cubecontrol_motor_power_selection: ("CubeControl Motor Power Selection", 2, 2),
+    cubesense1_power_selection: ("CubeSense1 Power Selection", 4, 2),
+    cubesense2_power_selection: ("CubeSense2 Power Selection", 6, 2),
+    cubestar_power_selection: ("CubeStarPower Power Selection", 8, 2),
+    cubewheel1_power_selection: ("CubeWheel1Power Power Selection", 10, 2),
+    cubewheel2_power_selection: ("CubeWheel2Power Power Selection", 12, 2),
+    cubewheel3_power_selection: ("CubeWheel3Power Power Selection", 14, 2),
+    motor_power: ("Motor Power", 16, 2),
+    gps_power: ("GPS Power", 18, 2),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for AdcsPowerControl {
+    const TELECOMMAND_ID: u32 = 11;
 }
 
-impl crate::wire::Telemetry for AdcsPowerControl {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 197;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for AdcsPowerControl {
+    const TELEMETRY_ID: u32 = 197;
 }

@@ -3,7 +3,7 @@
 //! ADCS State, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{flags, put, take, Coded, Error, Scale};
+use crate::support::{flags, message, put, take, Coded, Error, Scale};
 
 /// ADCS State: telemetry 190, 54 bytes. Table 149.
 ///
@@ -500,13 +500,29 @@ impl AdcsState {
         f64::from(self.estimated_roll_angle) / 100.0
     }
 
-    /// Sets Estimated Roll Angle in deg, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Estimated Roll Angle in deg, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_estimated_roll_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_roll_angle = ESTIMATED_ROLL_ANGLE.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated Roll Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_roll_angle_deg_f32(&self) -> f32 {
+        f32::from(self.estimated_roll_angle) / 100.0
+    }
+
+    /// Estimated Roll Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn estimated_roll_angle_mdeg(&self) -> i32 {
+        i32::from(self.estimated_roll_angle) * 10
+    }
+
+    /// Sets Estimated Roll Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_estimated_roll_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_roll_angle = ESTIMATED_ROLL_ANGLE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -516,13 +532,29 @@ impl AdcsState {
         f64::from(self.estimated_pitch_angle) / 100.0
     }
 
-    /// Sets Estimated Pitch Angle in deg, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Estimated Pitch Angle in deg, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_estimated_pitch_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_pitch_angle = ESTIMATED_PITCH_ANGLE.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated Pitch Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_pitch_angle_deg_f32(&self) -> f32 {
+        f32::from(self.estimated_pitch_angle) / 100.0
+    }
+
+    /// Estimated Pitch Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn estimated_pitch_angle_mdeg(&self) -> i32 {
+        i32::from(self.estimated_pitch_angle) * 10
+    }
+
+    /// Sets Estimated Pitch Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_estimated_pitch_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_pitch_angle = ESTIMATED_PITCH_ANGLE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -532,13 +564,29 @@ impl AdcsState {
         f64::from(self.estimated_yaw_angle) / 100.0
     }
 
-    /// Sets Estimated Yaw Angle in deg, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Estimated Yaw Angle in deg, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_estimated_yaw_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_yaw_angle = ESTIMATED_YAW_ANGLE.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated Yaw Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_yaw_angle_deg_f32(&self) -> f32 {
+        f32::from(self.estimated_yaw_angle) / 100.0
+    }
+
+    /// Estimated Yaw Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn estimated_yaw_angle_mdeg(&self) -> i32 {
+        i32::from(self.estimated_yaw_angle) * 10
+    }
+
+    /// Sets Estimated Yaw Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_estimated_yaw_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_yaw_angle = ESTIMATED_YAW_ANGLE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -549,12 +597,28 @@ impl AdcsState {
     }
 
     /// Sets Estimated X Angular Rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_x_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_x_angular_rate = ESTIMATED_X_ANGULAR_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated X Angular Rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_x_angular_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.estimated_x_angular_rate) / 100.0
+    }
+
+    /// Estimated X Angular Rate in thousandths of deg/s, exact: -327680 to 327670.
+    #[must_use]
+    pub fn estimated_x_angular_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.estimated_x_angular_rate) * 10
+    }
+
+    /// Sets Estimated X Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_estimated_x_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_x_angular_rate = ESTIMATED_X_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -565,12 +629,28 @@ impl AdcsState {
     }
 
     /// Sets Estimated Y Angular Rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_y_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_y_angular_rate = ESTIMATED_Y_ANGULAR_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated Y Angular Rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_y_angular_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.estimated_y_angular_rate) / 100.0
+    }
+
+    /// Estimated Y Angular Rate in thousandths of deg/s, exact: -327680 to 327670.
+    #[must_use]
+    pub fn estimated_y_angular_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.estimated_y_angular_rate) * 10
+    }
+
+    /// Sets Estimated Y Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_estimated_y_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_y_angular_rate = ESTIMATED_Y_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -581,12 +661,28 @@ impl AdcsState {
     }
 
     /// Sets Estimated Z Angular Rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_z_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_z_angular_rate = ESTIMATED_Z_ANGULAR_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated Z Angular Rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_z_angular_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.estimated_z_angular_rate) / 100.0
+    }
+
+    /// Estimated Z Angular Rate in thousandths of deg/s, exact: -327680 to 327670.
+    #[must_use]
+    pub fn estimated_z_angular_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.estimated_z_angular_rate) * 10
+    }
+
+    /// Sets Estimated Z Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_estimated_z_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_z_angular_rate = ESTIMATED_Z_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -596,13 +692,29 @@ impl AdcsState {
         f64::from(self.x_position) / 4.0
     }
 
-    /// Sets X position in km, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets X position in km, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_x_position_km(&mut self, value: f64) -> Result<(), Error> {
         self.x_position = X_POSITION.raw(value)?;
+        Ok(())
+    }
+
+    /// X position in km, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_position_km_f32(&self) -> f32 {
+        f32::from(self.x_position) / 4.0
+    }
+
+    /// X position in m, exact: -8192000 to 8191750.
+    #[must_use]
+    pub fn x_position_m(&self) -> i32 {
+        i32::from(self.x_position) * 250
+    }
+
+    /// Sets X position in m, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_x_position_m(&mut self, value: i32) -> Result<(), Error> {
+        self.x_position = X_POSITION.whole(value.into(), 250, 0)?;
         Ok(())
     }
 
@@ -612,13 +724,29 @@ impl AdcsState {
         f64::from(self.y_position) / 4.0
     }
 
-    /// Sets Y position in km, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Y position in km, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_y_position_km(&mut self, value: f64) -> Result<(), Error> {
         self.y_position = Y_POSITION.raw(value)?;
+        Ok(())
+    }
+
+    /// Y position in km, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_position_km_f32(&self) -> f32 {
+        f32::from(self.y_position) / 4.0
+    }
+
+    /// Y position in m, exact: -8192000 to 8191750.
+    #[must_use]
+    pub fn y_position_m(&self) -> i32 {
+        i32::from(self.y_position) * 250
+    }
+
+    /// Sets Y position in m, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_y_position_m(&mut self, value: i32) -> Result<(), Error> {
+        self.y_position = Y_POSITION.whole(value.into(), 250, 0)?;
         Ok(())
     }
 
@@ -628,13 +756,29 @@ impl AdcsState {
         f64::from(self.z_position) / 4.0
     }
 
-    /// Sets Z position in km, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Z position in km, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_z_position_km(&mut self, value: f64) -> Result<(), Error> {
         self.z_position = Z_POSITION.raw(value)?;
+        Ok(())
+    }
+
+    /// Z position in km, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_position_km_f32(&self) -> f32 {
+        f32::from(self.z_position) / 4.0
+    }
+
+    /// Z position in m, exact: -8192000 to 8191750.
+    #[must_use]
+    pub fn z_position_m(&self) -> i32 {
+        i32::from(self.z_position) * 250
+    }
+
+    /// Sets Z position in m, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_z_position_m(&mut self, value: i32) -> Result<(), Error> {
+        self.z_position = Z_POSITION.whole(value.into(), 250, 0)?;
         Ok(())
     }
 
@@ -644,13 +788,29 @@ impl AdcsState {
         f64::from(self.x_velocity) / 4.0
     }
 
-    /// Sets X Velocity in m/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets X Velocity in m/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_x_velocity_m_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.x_velocity = X_VELOCITY.raw(value)?;
+        Ok(())
+    }
+
+    /// X Velocity in m/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_velocity_m_per_s_f32(&self) -> f32 {
+        f32::from(self.x_velocity) / 4.0
+    }
+
+    /// X Velocity in mm/s, exact: -8192000 to 8191750.
+    #[must_use]
+    pub fn x_velocity_mm_per_s(&self) -> i32 {
+        i32::from(self.x_velocity) * 250
+    }
+
+    /// Sets X Velocity in mm/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_x_velocity_mm_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.x_velocity = X_VELOCITY.whole(value.into(), 250, 0)?;
         Ok(())
     }
 
@@ -660,13 +820,29 @@ impl AdcsState {
         f64::from(self.y_velocity) / 4.0
     }
 
-    /// Sets Y Velocity in m/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Y Velocity in m/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_y_velocity_m_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.y_velocity = Y_VELOCITY.raw(value)?;
+        Ok(())
+    }
+
+    /// Y Velocity in m/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_velocity_m_per_s_f32(&self) -> f32 {
+        f32::from(self.y_velocity) / 4.0
+    }
+
+    /// Y Velocity in mm/s, exact: -8192000 to 8191750.
+    #[must_use]
+    pub fn y_velocity_mm_per_s(&self) -> i32 {
+        i32::from(self.y_velocity) * 250
+    }
+
+    /// Sets Y Velocity in mm/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_y_velocity_mm_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.y_velocity = Y_VELOCITY.whole(value.into(), 250, 0)?;
         Ok(())
     }
 
@@ -676,13 +852,29 @@ impl AdcsState {
         f64::from(self.z_velocity) / 4.0
     }
 
-    /// Sets Z Velocity in m/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Z Velocity in m/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_z_velocity_m_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.z_velocity = Z_VELOCITY.raw(value)?;
+        Ok(())
+    }
+
+    /// Z Velocity in m/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_velocity_m_per_s_f32(&self) -> f32 {
+        f32::from(self.z_velocity) / 4.0
+    }
+
+    /// Z Velocity in mm/s, exact: -8192000 to 8191750.
+    #[must_use]
+    pub fn z_velocity_mm_per_s(&self) -> i32 {
+        i32::from(self.z_velocity) * 250
+    }
+
+    /// Sets Z Velocity in mm/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_z_velocity_mm_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.z_velocity = Z_VELOCITY.whole(value.into(), 250, 0)?;
         Ok(())
     }
 
@@ -692,13 +884,29 @@ impl AdcsState {
         f64::from(self.latitude) / 100.0
     }
 
-    /// Sets Latitude in deg, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Latitude in deg, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_latitude_deg(&mut self, value: f64) -> Result<(), Error> {
         self.latitude = LATITUDE.raw(value)?;
+        Ok(())
+    }
+
+    /// Latitude in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn latitude_deg_f32(&self) -> f32 {
+        f32::from(self.latitude) / 100.0
+    }
+
+    /// Latitude in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn latitude_mdeg(&self) -> i32 {
+        i32::from(self.latitude) * 10
+    }
+
+    /// Sets Latitude in thousandths of deg, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_latitude_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.latitude = LATITUDE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -708,13 +916,29 @@ impl AdcsState {
         f64::from(self.longitude) / 100.0
     }
 
-    /// Sets Longitude in deg, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Longitude in deg, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_longitude_deg(&mut self, value: f64) -> Result<(), Error> {
         self.longitude = LONGITUDE.raw(value)?;
+        Ok(())
+    }
+
+    /// Longitude in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn longitude_deg_f32(&self) -> f32 {
+        f32::from(self.longitude) / 100.0
+    }
+
+    /// Longitude in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn longitude_mdeg(&self) -> i32 {
+        i32::from(self.longitude) * 10
+    }
+
+    /// Sets Longitude in thousandths of deg, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_longitude_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.longitude = LONGITUDE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -724,203 +948,165 @@ impl AdcsState {
         f64::from(self.altitude) / 100.0
     }
 
-    /// Sets Altitude in km, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Altitude in km, to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit or is not finite.
     pub fn set_altitude_km(&mut self, value: f64) -> Result<(), Error> {
         self.altitude = ALTITUDE.raw(value)?;
         Ok(())
     }
+
+    /// Altitude in km, the nearest float of 32 bits.
+    #[must_use]
+    pub fn altitude_km_f32(&self) -> f32 {
+        f32::from(self.altitude) / 100.0
+    }
+
+    /// Altitude in m, exact: 0 to 655350.
+    #[must_use]
+    pub fn altitude_m(&self) -> i32 {
+        i32::from(self.altitude) * 10
+    }
+
+    /// Sets Altitude in m, to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
+    pub fn set_altitude_m(&mut self, value: i32) -> Result<(), Error> {
+        self.altitude = ALTITUDE.whole(value.into(), 10, 0)?;
+        Ok(())
+    }
 }
 
-const ATTITUDE_ESTIMATION_MODE: Scale = Scale {
-    field: "Attitude Estimation Mode",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const ATTITUDE_ESTIMATION_MODE: Scale = Scale::new("Attitude Estimation Mode", (0, 15), (1, 0, 1));
 
-const CONTROL_MODE: Scale = Scale {
-    field: "Control Mode",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CONTROL_MODE: Scale = Scale::new("Control Mode", (0, 15), (1, 0, 1));
 
-const ADCS_RUN_MODE: Scale = Scale {
-    field: "ADCS Run Mode",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const ADCS_RUN_MODE: Scale = Scale::new("ADCS Run Mode", (0, 3), (1, 0, 1));
 
-const ASGP4_MODE: Scale = Scale {
-    field: "ASGP4 Mode",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const ASGP4_MODE: Scale = Scale::new("ASGP4 Mode", (0, 3), (1, 0, 1));
 
-const CURRENT_MAGNETOMETER_SAMPLING_MODE: Scale = Scale {
-    field: "Current Magnetometer Sampling Mode",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CURRENT_MAGNETOMETER_SAMPLING_MODE: Scale =
+    Scale::new("Current Magnetometer Sampling Mode", (0, 3), (1, 0, 1));
 
-const ESTIMATED_ROLL_ANGLE: Scale = Scale {
-    field: "Estimated Roll Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const ESTIMATED_ROLL_ANGLE: Scale =
+    Scale::new("Estimated Roll Angle", (-32_768, 32_767), (1, 0, 100));
 
-const ESTIMATED_PITCH_ANGLE: Scale = Scale {
-    field: "Estimated Pitch Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const ESTIMATED_PITCH_ANGLE: Scale =
+    Scale::new("Estimated Pitch Angle", (-32_768, 32_767), (1, 0, 100));
 
-const ESTIMATED_YAW_ANGLE: Scale = Scale {
-    field: "Estimated Yaw Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const ESTIMATED_YAW_ANGLE: Scale =
+    Scale::new("Estimated Yaw Angle", (-32_768, 32_767), (1, 0, 100));
 
-const ESTIMATED_X_ANGULAR_RATE: Scale = Scale {
-    field: "Estimated X Angular Rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const ESTIMATED_X_ANGULAR_RATE: Scale =
+    Scale::new("Estimated X Angular Rate", (-32_768, 32_767), (1, 0, 100));
 
-const ESTIMATED_Y_ANGULAR_RATE: Scale = Scale {
-    field: "Estimated Y Angular Rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const ESTIMATED_Y_ANGULAR_RATE: Scale =
+    Scale::new("Estimated Y Angular Rate", (-32_768, 32_767), (1, 0, 100));
 
-const ESTIMATED_Z_ANGULAR_RATE: Scale = Scale {
-    field: "Estimated Z Angular Rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const ESTIMATED_Z_ANGULAR_RATE: Scale =
+    Scale::new("Estimated Z Angular Rate", (-32_768, 32_767), (1, 0, 100));
 
-const X_POSITION: Scale = Scale {
-    field: "X position",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 4,
-};
+const X_POSITION: Scale = Scale::new("X position", (-32_768, 32_767), (1, 0, 4));
 
-const Y_POSITION: Scale = Scale {
-    field: "Y position",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 4,
-};
+const Y_POSITION: Scale = Scale::new("Y position", (-32_768, 32_767), (1, 0, 4));
 
-const Z_POSITION: Scale = Scale {
-    field: "Z position",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 4,
-};
+const Z_POSITION: Scale = Scale::new("Z position", (-32_768, 32_767), (1, 0, 4));
 
-const X_VELOCITY: Scale = Scale {
-    field: "X Velocity",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 4,
-};
+const X_VELOCITY: Scale = Scale::new("X Velocity", (-32_768, 32_767), (1, 0, 4));
 
-const Y_VELOCITY: Scale = Scale {
-    field: "Y Velocity",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 4,
-};
+const Y_VELOCITY: Scale = Scale::new("Y Velocity", (-32_768, 32_767), (1, 0, 4));
 
-const Z_VELOCITY: Scale = Scale {
-    field: "Z Velocity",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 4,
-};
+const Z_VELOCITY: Scale = Scale::new("Z Velocity", (-32_768, 32_767), (1, 0, 4));
 
-const LATITUDE: Scale = Scale {
-    field: "Latitude",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const LATITUDE: Scale = Scale::new("Latitude", (-32_768, 32_767), (1, 0, 100));
 
-const LONGITUDE: Scale = Scale {
-    field: "Longitude",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const LONGITUDE: Scale = Scale::new("Longitude", (-32_768, 32_767), (1, 0, 100));
 
-const ALTITUDE: Scale = Scale {
-    field: "Altitude",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const ALTITUDE: Scale = Scale::new("Altitude", (0, 65_535), (1, 0, 100));
 
-impl crate::wire::Telemetry for AdcsState {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 190;
+message!(AdcsState {
+    attitude_estimation_mode: ("Attitude Estimation Mode", 0, 4),
+    control_mode: ("Control Mode", 4, 4),
+    adcs_run_mode: ("ADCS Run Mode", 8, 2),
+    asgp4_mode: ("ASGP4 Mode", 10, 2),
+    cubecontrol_signal_enabled: ("CubeControl Signal Enabled", 12, 1),
+    cubecontrol_motor_enabled: ("CubeControl Motor Enabled", 13, 1),
+    cubesense1_enabled: ("CubeSense1 Enabled", 14, 1),
+    cubesense2_enabled: ("CubeSense2 Enabled", 15, 1),
+    cubewheel1_enabled: ("CubeWheel1 Enabled", 16, 1),
+    cubewheel2_enabled: ("CubeWheel2 Enabled", 17, 1),
+    cubewheel3_enabled: ("CubeWheel3 Enabled", 18, 1),
+    cubestar_enabled: ("CubeStar Enabled", 19, 1),
+    gps_receiver_enabled: ("GPS Receiver Enabled", 20, 1),
+    gps_lna_power_enabled: ("GPS LNA Power Enabled", 21, 1),
+    motor_driver_enabled: ("Motor Driver Enabled", 22, 1),
+    sun_is_above_local_horizon: ("Sun is Above Local Horizon", 23, 1),
+    cubesense1_communications_error: ("CubeSense1 Communications Error", 24, 1),
+    cubesense2_communications_error: ("CubeSense2 Communications Error", 25, 1),
+    cubecontrol_signal_communications_error: ("CubeControl Signal Communications Error", 26, 1),
+    cubecontrol_motor_communications_error: ("CubeControl Motor Communications Error", 27, 1),
+    cubewheel1_communications_error: ("CubeWheel1 Communications Error", 28, 1),
+    cubewheel2_communications_error: ("CubeWheel2 Communications Error", 29, 1),
+    cubewheel3_communications_error: ("CubeWheel3 Communications Error", 30, 1),
+    cubestar_communications_error: ("CubeStar Communications Error", 31, 1),
+    magnetometer_range_error: ("Magnetometer Range Error", 32, 1),
+    cam1_sram_overcurrent_detected: ("Cam1 SRAM Overcurrent Detected", 33, 1),
+    cam1_3v3_overcurrent_detected: ("Cam1 3V3 Overcurrent Detected", 34, 1),
+    cam1_sensor_busy_error: ("Cam1 Sensor Busy Error", 35, 1),
+    cam1_sensor_detection_error: ("Cam1 Sensor Detection Error", 36, 1),
+    sun_sensor_range_error: ("Sun Sensor Range Error", 37, 1),
+    cam2_sram_overcurrent_detected: ("Cam2 SRAM Overcurrent Detected", 38, 1),
+    cam2_3v3_overcurrent_detected: ("Cam2 3V3 Overcurrent Detected", 39, 1),
+    cam2_sensor_busy_error: ("Cam2 Sensor Busy Error", 40, 1),
+    cam2_sensor_detection_error: ("Cam2 Sensor Detection Error", 41, 1),
+    nadir_sensor_range_error: ("Nadir Sensor Range Error", 42, 1),
+    rate_sensor_range_error: ("Rate Sensor Range Error", 43, 1),
+    wheel_speed_range_error: ("Wheel Speed Range Error", 44, 1),
+    coarse_sun_sensor_error: ("Coarse Sun Sensor Error", 45, 1),
+    star_tracker_match_error: ("StarTracker Match Error", 46, 1),
+    star_tracker_overcurrent_detected: ("Star Tracker Overcurrent Detected", 47, 1),
+    orbit_parameters_are_invalid: ("Orbit Parameters are Invalid", 48, 1),
+    configuration_is_invalid: ("Configuration is Invalid", 49, 1),
+    control_mode_change_is_not_allowed: ("Control Mode Change is not allowed", 50, 1),
+    estimator_change_is_not_allowed: ("Estimator Change is not allowed", 51, 1),
+    current_magnetometer_sampling_mode: ("Current Magnetometer Sampling Mode", 52, 2),
+    magnetic_field_size_mismatch: ("Modelled and measured magnetic field differs in size", 54, 1),
+    node_recovery_error: ("Node Recovery Error", 55, 1),
+    cubesense1_runtime_error: ("CubeSense1 Runtime Error", 56, 1),
+    cubesense2_runtime_error: ("CubeSense2 Runtime Error", 57, 1),
+    cubecontrol_signal_runtime_error: ("CubeControl Signal Runtime Error", 58, 1),
+    cubecontrol_motor_runtime_error: ("CubeControl Motor Runtime Error", 59, 1),
+    cubewheel1_runtime_error: ("CubeWheel1 Runtime Error", 60, 1),
+    cubewheel2_runtime_error: ("CubeWheel2 Runtime Error", 61, 1),
+    cubewheel3_runtime_error: ("CubeWheel3 Runtime Error", 62, 1),
+    cubestar_runtime_error: ("CubeStar Runtime Error", 63, 1),
+    magnetometer_error: ("Magnetometer Error", 64, 1),
+    rate_sensor_failure: ("Rate Sensor Failure", 65, 1),
+    estimated_roll_angle: ("Estimated Roll Angle", 96, 16).unit("deg").scale(&ESTIMATED_ROLL_ANGLE),
+    estimated_pitch_angle: ("Estimated Pitch Angle", 112, 16)
+        .unit("deg").scale(&ESTIMATED_PITCH_ANGLE),
+    estimated_yaw_angle: ("Estimated Yaw Angle", 128, 16).unit("deg").scale(&ESTIMATED_YAW_ANGLE),
+    estimated_q1: ("Estimated q1", 144, 16),
+    estimated_q2: ("Estimated q2", 160, 16),
+    estimated_q3: ("Estimated q3", 176, 16),
+    estimated_x_angular_rate: ("Estimated X Angular Rate", 192, 16)
+        .unit("deg/s").scale(&ESTIMATED_X_ANGULAR_RATE),
+    estimated_y_angular_rate: ("Estimated Y Angular Rate", 208, 16)
+        .unit("deg/s").scale(&ESTIMATED_Y_ANGULAR_RATE),
+    estimated_z_angular_rate: ("Estimated Z Angular Rate", 224, 16)
+        .unit("deg/s").scale(&ESTIMATED_Z_ANGULAR_RATE),
+    x_position: ("X position", 240, 16).unit("km").scale(&X_POSITION),
+    y_position: ("Y position", 256, 16).unit("km").scale(&Y_POSITION),
+    z_position: ("Z position", 272, 16).unit("km").scale(&Z_POSITION),
+    x_velocity: ("X Velocity", 288, 16).unit("m/s").scale(&X_VELOCITY),
+    y_velocity: ("Y Velocity", 304, 16).unit("m/s").scale(&Y_VELOCITY),
+    z_velocity: ("Z Velocity", 320, 16).unit("m/s").scale(&Z_VELOCITY),
+    latitude: ("Latitude", 336, 16).unit("deg").scale(&LATITUDE),
+    longitude: ("Longitude", 352, 16).unit("deg").scale(&LONGITUDE),
+    altitude: ("Altitude", 368, 16).unit("km").scale(&ALTITUDE),
+    ecef_position_x: ("ECEF Position X", 384, 16),
+    ecef_position_y: ("ECEF Position Y", 400, 16),
+    ecef_position_z: ("ECEF Position Z", 416, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for AdcsState {
+    const TELEMETRY_ID: u32 = 190;
 }

@@ -3,7 +3,7 @@
 //! ADCS System Configuration, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error, Scale};
+use crate::support::{message, put, take, Coded, Error, Scale};
 
 /// ADCS System Configuration: configuration, set by telecommand 30, got by telemetry 225, 173
 /// bytes. Table 201.
@@ -465,229 +465,128 @@ impl AdcsSystemConfiguration {
     }
 }
 
-const ACP_TYPE: Scale = Scale {
-    field: "ACP Type",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const ACP_TYPE: Scale = Scale::new("ACP Type", (0, 15), (1, 0, 1));
 
-const SPECIAL_CONTROL_SELECTION: Scale = Scale {
-    field: "Special Control Selection",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const SPECIAL_CONTROL_SELECTION: Scale =
+    Scale::new("Special Control Selection", (0, 15), (1, 0, 1));
 
-const CUBESENSE1_CAMERA_TYPE: Scale = Scale {
-    field: "CubeSense1 Camera Type",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESENSE1_CAMERA_TYPE: Scale = Scale::new("CubeSense1 Camera Type", (0, 15), (1, 0, 1));
 
-const CUBESENSE2_CAMERA_TYPE: Scale = Scale {
-    field: "CubeSense2 Camera Type",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESENSE2_CAMERA_TYPE: Scale = Scale::new("CubeSense2 Camera Type", (0, 15), (1, 0, 1));
 
-const GPS_TYPE: Scale = Scale {
-    field: "GPS Type",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const GPS_TYPE: Scale = Scale::new("GPS Type", (0, 15), (1, 0, 1));
 
-const CC_SIGNAL_ENABLE_PORT: Scale = Scale {
-    field: "CC Signal Enable Port",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CC_SIGNAL_ENABLE_PORT: Scale = Scale::new("CC Signal Enable Port", (0, 15), (1, 0, 1));
 
-const CC_SIGNAL_ENABLE_PIN: Scale = Scale {
-    field: "CC Signal Enable Pin",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CC_SIGNAL_ENABLE_PIN: Scale = Scale::new("CC Signal Enable Pin", (0, 15), (1, 0, 1));
 
-const CC_MOTOR_ENABLE_PORT: Scale = Scale {
-    field: "CC Motor Enable Port",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CC_MOTOR_ENABLE_PORT: Scale = Scale::new("CC Motor Enable Port", (0, 15), (1, 0, 1));
 
-const CC_MOTOR_ENABLE_PIN: Scale = Scale {
-    field: "CC Motor Enable Pin",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CC_MOTOR_ENABLE_PIN: Scale = Scale::new("CC Motor Enable Pin", (0, 15), (1, 0, 1));
 
-const CC_COMMON_ENABLE_PORT: Scale = Scale {
-    field: "CC Common Enable Port",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CC_COMMON_ENABLE_PORT: Scale = Scale::new("CC Common Enable Port", (0, 15), (1, 0, 1));
 
-const CC_COMMON_ENABLE_PIN: Scale = Scale {
-    field: "CC Common Enable Pin",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CC_COMMON_ENABLE_PIN: Scale = Scale::new("CC Common Enable Pin", (0, 15), (1, 0, 1));
 
-const CUBESENSE1_ENABLE_PORT: Scale = Scale {
-    field: "CubeSense1 Enable Port",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESENSE1_ENABLE_PORT: Scale = Scale::new("CubeSense1 Enable Port", (0, 15), (1, 0, 1));
 
-const CUBESENSE1_ENABLE_PIN: Scale = Scale {
-    field: "CubeSense1 Enable Pin",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESENSE1_ENABLE_PIN: Scale = Scale::new("CubeSense1 Enable Pin", (0, 15), (1, 0, 1));
 
-const CUBESENSE2_ENABLE_PORT: Scale = Scale {
-    field: "CubeSense2 Enable Port",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESENSE2_ENABLE_PORT: Scale = Scale::new("CubeSense2 Enable Port", (0, 15), (1, 0, 1));
 
-const CUBESENSE2_ENABLE_PIN: Scale = Scale {
-    field: "CubeSense2 Enable Pin",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESENSE2_ENABLE_PIN: Scale = Scale::new("CubeSense2 Enable Pin", (0, 15), (1, 0, 1));
 
-const CUBESTAR_ENABLE_PORT: Scale = Scale {
-    field: "CubeStar Enable Port",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESTAR_ENABLE_PORT: Scale = Scale::new("CubeStar Enable Port", (0, 15), (1, 0, 1));
 
-const CUBESTAR_ENABLE_PIN: Scale = Scale {
-    field: "CubeStar Enable Pin",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBESTAR_ENABLE_PIN: Scale = Scale::new("CubeStar Enable Pin", (0, 15), (1, 0, 1));
 
-const CUBEWHEEL1_ENABLE_PORT: Scale = Scale {
-    field: "CubeWheel1 Enable Port",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBEWHEEL1_ENABLE_PORT: Scale = Scale::new("CubeWheel1 Enable Port", (0, 15), (1, 0, 1));
 
-const CUBEWHEEL1_ENABLE_PIN: Scale = Scale {
-    field: "CubeWheel1 Enable Pin",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBEWHEEL1_ENABLE_PIN: Scale = Scale::new("CubeWheel1 Enable Pin", (0, 15), (1, 0, 1));
 
-const CUBEWHEEL2_ENABLE_PORT: Scale = Scale {
-    field: "CubeWheel2 Enable Port",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBEWHEEL2_ENABLE_PORT: Scale = Scale::new("CubeWheel2 Enable Port", (0, 15), (1, 0, 1));
 
-const CUBEWHEEL2_ENABLE_PIN: Scale = Scale {
-    field: "CubeWheel2 Enable Pin",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBEWHEEL2_ENABLE_PIN: Scale = Scale::new("CubeWheel2 Enable Pin", (0, 15), (1, 0, 1));
 
-const CUBEWHEEL3_ENABLE_PORT: Scale = Scale {
-    field: "CubeWheel3 Enable Port",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBEWHEEL3_ENABLE_PORT: Scale = Scale::new("CubeWheel3 Enable Port", (0, 15), (1, 0, 1));
 
-const CUBEWHEEL3_ENABLE_PIN: Scale = Scale {
-    field: "CubeWheel3 Enable Pin",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CUBEWHEEL3_ENABLE_PIN: Scale = Scale::new("CubeWheel3 Enable Pin", (0, 15), (1, 0, 1));
 
-impl crate::wire::Telecommand for AdcsSystemConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 30;
+message!(AdcsSystemConfiguration {
+    acp_type: ("ACP Type", 0, 4),
+    special_control_selection: ("Special Control Selection", 4, 4),
+    cubecontrol_signal_version: ("CubeControl Signal Version", 8, 8),
+    cubecontrol_motor_version: ("CubeControl Motor Version", 16, 8),
+    cubesense1_version: ("CubeSense1 Version", 24, 8),
+    cubesense2_version: ("CubeSense2 Version", 32, 8),
+    cubesense1_camera_type: ("CubeSense1 Camera Type", 40, 4),
+    cubesense2_camera_type: ("CubeSense2 Camera Type", 44, 4),
+    cubestar_version: ("CubeStar Version", 48, 8),
+    gps_type: ("GPS Type", 56, 4),
+    redundant_mtm_included: ("Redundant MTM Included", 60, 1),
+    magnetorquer_x_max_dipole: ("Magnetorquer-X Max Dipole", 64, 32).unit("A.m^2"),
+    magnetorquer_y_max_dipole: ("Magnetorquer-Y Max Dipole", 96, 32).unit("A.m^2"),
+    magnetorquer_z_max_dipole: ("Magnetorquer-Z Max Dipole", 128, 32).unit("A.m^2"),
+    magnetorquer_on_time_resolution: ("Magnetorquer On-time Resolution", 160, 32).unit("s"),
+    magnetorquer_maximum_on_time: ("Magnetorquer Maximum On-time", 192, 32).unit("s"),
+    rw_x_maximum_torque: ("RW-X Maximum Torque", 224, 32).unit("N.m"),
+    rw_y_maximum_torque: ("RW-Y Maximum Torque", 256, 32).unit("N.m"),
+    rw_z_maximum_torque: ("RW-Z Maximum Torque", 288, 32).unit("N.m"),
+    rw_x_maximum_momentum: ("RW-X Maximum Momentum", 320, 32).unit("Nms"),
+    rw_y_maximum_momentum: ("RW-Y Maximum Momentum", 352, 32).unit("Nms"),
+    rw_z_maximum_momentum: ("RW-Z Maximum Momentum", 384, 32).unit("Nms"),
+    rw_x_inertia: ("RW-X Inertia", 416, 32).unit("kg.m^2"),
+    rw_y_inertia: ("RW-Y Inertia", 448, 32).unit("kg.m^2"),
+    rw_z_inertia: ("RW-Z Inertia", 480, 32).unit("kg.m^2"),
+    rw_torque_increment: ("RW Torque Increment", 512, 32).unit("N.m"),
+    primary_mtm_x_bias_d1: ("Primary MTM X-Bias d1", 544, 32),
+    primary_mtm_y_bias_d1: ("Primary MTM Y-Bias d1", 576, 32),
+    primary_mtm_z_bias_d1: ("Primary MTM Z-Bias d1", 608, 32),
+    primary_mtm_x_bias_d2: ("Primary MTM X-Bias d2", 640, 32),
+    primary_mtm_y_bias_d2: ("Primary MTM Y-Bias d2", 672, 32),
+    primary_mtm_z_bias_d2: ("Primary MTM Z-Bias d2", 704, 32),
+    primary_mtm_x_sens_s1: ("Primary MTM X-Sens s1", 736, 32),
+    primary_mtm_y_sens_s1: ("Primary MTM Y-Sens s1", 768, 32),
+    primary_mtm_z_sens_s1: ("Primary MTM Z-Sens s1", 800, 32),
+    primary_mtm_x_sens_s2: ("Primary MTM X-Sens s2", 832, 32),
+    primary_mtm_y_sens_s2: ("Primary MTM Y-Sens s2", 864, 32),
+    primary_mtm_z_sens_s2: ("Primary MTM Z-Sens s2", 896, 32),
+    redundant_mtm_x_bias_d1: ("Redundant MTM X-Bias d1", 928, 32),
+    redundant_mtm_y_bias_d1: ("Redundant MTM Y-Bias d1", 960, 32),
+    redundant_mtm_z_bias_d1: ("Redundant MTM Z-Bias d1", 992, 32),
+    redundant_mtm_x_bias_d2: ("Redundant MTM X-Bias d2", 1_024, 32),
+    redundant_mtm_y_bias_d2: ("Redundant MTM Y-Bias d2", 1_056, 32),
+    redundant_mtm_z_bias_d2: ("Redundant MTM Z-Bias d2", 1_088, 32),
+    redundant_mtm_x_sens_s1: ("Redundant MTM X-Sens s1", 1_120, 32),
+    redundant_mtm_y_sens_s1: ("Redundant MTM Y-Sens s1", 1_152, 32),
+    redundant_mtm_z_sens_s1: ("Redundant MTM Z-Sens s1", 1_184, 32),
+    redundant_mtm_x_sens_s2: ("Redundant MTM X-Sens s2", 1_216, 32),
+    redundant_mtm_y_sens_s2: ("Redundant MTM Y-Sens s2", 1_248, 32),
+    redundant_mtm_z_sens_s2: ("Redundant MTM Z-Sens s2", 1_280, 32),
+    cc_signal_enable_port: ("CC Signal Enable Port", 1_312, 4),
+    cc_signal_enable_pin: ("CC Signal Enable Pin", 1_316, 4),
+    cc_motor_enable_port: ("CC Motor Enable Port", 1_320, 4),
+    cc_motor_enable_pin: ("CC Motor Enable Pin", 1_324, 4),
+    cc_common_enable_port: ("CC Common Enable Port", 1_328, 4),
+    cc_common_enable_pin: ("CC Common Enable Pin", 1_332, 4),
+    cubesense1_enable_port: ("CubeSense1 Enable Port", 1_336, 4),
+    cubesense1_enable_pin: ("CubeSense1 Enable Pin", 1_340, 4),
+    cubesense2_enable_port: ("CubeSense2 Enable Port", 1_344, 4),
+    cubesense2_enable_pin: ("CubeSense2 Enable Pin", 1_348, 4),
+    cubestar_enable_port: ("CubeStar Enable Port", 1_352, 4),
+    cubestar_enable_pin: ("CubeStar Enable Pin", 1_356, 4),
+    cubewheel1_enable_port: ("CubeWheel1 Enable Port", 1_360, 4),
+    cubewheel1_enable_pin: ("CubeWheel1 Enable Pin", 1_364, 4),
+    cubewheel2_enable_port: ("CubeWheel2 Enable Port", 1_368, 4),
+    cubewheel2_enable_pin: ("CubeWheel2 Enable Pin", 1_372, 4),
+    cubewheel3_enable_port: ("CubeWheel3 Enable Port", 1_376, 4),
+    cubewheel3_enable_pin: ("CubeWheel3 Enable Pin", 1_380, 4),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for AdcsSystemConfiguration {
+    const TELECOMMAND_ID: u32 = 30;
 }
 
-impl crate::wire::Telemetry for AdcsSystemConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 225;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for AdcsSystemConfiguration {
+    const TELEMETRY_ID: u32 = 225;
 }

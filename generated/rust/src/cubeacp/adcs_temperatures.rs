@@ -2,7 +2,7 @@
 
 //! ADCS Temperatures, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// ADCS Temperatures: telemetry 174, 6 bytes. Table 132.
 ///
@@ -90,13 +90,29 @@ impl AdcsTemperatures {
         f64::from(self.magnetometer_temperature) / 10.0
     }
 
-    /// Sets Magnetometer Temperature in C, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Magnetometer Temperature in C, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_magnetometer_temperature_c(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_temperature = MAGNETOMETER_TEMPERATURE.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Temperature in C, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_temperature_c_f32(&self) -> f32 {
+        f32::from(self.magnetometer_temperature) / 10.0
+    }
+
+    /// Magnetometer Temperature in thousandths of C, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn magnetometer_temperature_mc(&self) -> i32 {
+        i32::from(self.magnetometer_temperature) * 100
+    }
+
+    /// Sets Magnetometer Temperature in thousandths of C, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_temperature_mc(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_temperature = MAGNETOMETER_TEMPERATURE.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -107,40 +123,46 @@ impl AdcsTemperatures {
     }
 
     /// Sets Redundant Magnetometer Temperature in C, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_temperature_c(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_temperature = REDUNDANT_MAG_TEMPERATURE.raw(value)?;
         Ok(())
     }
+
+    /// Redundant Magnetometer Temperature in C, the nearest float of 32 bits.
+    #[must_use]
+    pub fn redundant_mag_temperature_c_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_temperature) / 10.0
+    }
+
+    /// Redundant Magnetometer Temperature in thousandths of C, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn redundant_mag_temperature_mc(&self) -> i32 {
+        i32::from(self.redundant_mag_temperature) * 100
+    }
+
+    /// Sets Redundant Magnetometer Temperature in thousandths of C, to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_temperature_mc(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_temperature = REDUNDANT_MAG_TEMPERATURE.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const MAGNETOMETER_TEMPERATURE: Scale = Scale {
-    field: "Magnetometer Temperature",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const MAGNETOMETER_TEMPERATURE: Scale =
+    Scale::new("Magnetometer Temperature", (-32_768, 32_767), (1, 0, 10));
 
-const REDUNDANT_MAG_TEMPERATURE: Scale = Scale {
-    field: "Redundant Magnetometer Temperature",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const REDUNDANT_MAG_TEMPERATURE: Scale =
+    Scale::new("Redundant Magnetometer Temperature", (-32_768, 32_767), (1, 0, 10));
 
-impl crate::wire::Telemetry for AdcsTemperatures {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 174;
+message!(AdcsTemperatures {
+    mcu_temperature: ("MCU Temperature", 0, 16).unit("C"),
+    magnetometer_temperature: ("Magnetometer Temperature", 16, 16)
+        .unit("C").scale(&MAGNETOMETER_TEMPERATURE),
+    redundant_mag_temperature: ("Redundant Magnetometer Temperature", 32, 16)
+        .unit("C").scale(&REDUNDANT_MAG_TEMPERATURE),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for AdcsTemperatures {
+    const TELEMETRY_ID: u32 = 174;
 }

@@ -2,7 +2,7 @@
 
 //! Angular Rate Covariance, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Angular Rate Covariance: telemetry 165, 6 bytes. Table 121.
 ///
@@ -83,12 +83,28 @@ impl AngularRateCovariance {
     }
 
     /// Sets X Angular Rate Covariance, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_x_angular_rate_covariance_physical(&mut self, value: f64) -> Result<(), Error> {
         self.x_angular_rate_covariance = X_ANGULAR_RATE_COVARIANCE.raw(value)?;
+        Ok(())
+    }
+
+    /// X Angular Rate Covariance, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_angular_rate_covariance_physical_f32(&self) -> f32 {
+        f32::from(self.x_angular_rate_covariance) / 1_000.0
+    }
+
+    /// X Angular Rate Covariance in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn x_angular_rate_covariance_milli(&self) -> i32 {
+        i32::from(self.x_angular_rate_covariance)
+    }
+
+    /// Sets X Angular Rate Covariance in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_x_angular_rate_covariance_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.x_angular_rate_covariance = X_ANGULAR_RATE_COVARIANCE.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -99,12 +115,28 @@ impl AngularRateCovariance {
     }
 
     /// Sets Y Angular Rate Covariance, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_y_angular_rate_covariance_physical(&mut self, value: f64) -> Result<(), Error> {
         self.y_angular_rate_covariance = Y_ANGULAR_RATE_COVARIANCE.raw(value)?;
+        Ok(())
+    }
+
+    /// Y Angular Rate Covariance, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_angular_rate_covariance_physical_f32(&self) -> f32 {
+        f32::from(self.y_angular_rate_covariance) / 1_000.0
+    }
+
+    /// Y Angular Rate Covariance in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn y_angular_rate_covariance_milli(&self) -> i32 {
+        i32::from(self.y_angular_rate_covariance)
+    }
+
+    /// Sets Y Angular Rate Covariance in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_y_angular_rate_covariance_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.y_angular_rate_covariance = Y_ANGULAR_RATE_COVARIANCE.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -115,49 +147,50 @@ impl AngularRateCovariance {
     }
 
     /// Sets Z Angular Rate Covariance, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_z_angular_rate_covariance_physical(&mut self, value: f64) -> Result<(), Error> {
         self.z_angular_rate_covariance = Z_ANGULAR_RATE_COVARIANCE.raw(value)?;
         Ok(())
     }
+
+    /// Z Angular Rate Covariance, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_angular_rate_covariance_physical_f32(&self) -> f32 {
+        f32::from(self.z_angular_rate_covariance) / 1_000.0
+    }
+
+    /// Z Angular Rate Covariance in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn z_angular_rate_covariance_milli(&self) -> i32 {
+        i32::from(self.z_angular_rate_covariance)
+    }
+
+    /// Sets Z Angular Rate Covariance in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_z_angular_rate_covariance_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.z_angular_rate_covariance = Z_ANGULAR_RATE_COVARIANCE.whole(value.into(), 1, 0)?;
+        Ok(())
+    }
 }
 
-const X_ANGULAR_RATE_COVARIANCE: Scale = Scale {
-    field: "X Angular Rate Covariance",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const X_ANGULAR_RATE_COVARIANCE: Scale =
+    Scale::new("X Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
 
-const Y_ANGULAR_RATE_COVARIANCE: Scale = Scale {
-    field: "Y Angular Rate Covariance",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const Y_ANGULAR_RATE_COVARIANCE: Scale =
+    Scale::new("Y Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
 
-const Z_ANGULAR_RATE_COVARIANCE: Scale = Scale {
-    field: "Z Angular Rate Covariance",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const Z_ANGULAR_RATE_COVARIANCE: Scale =
+    Scale::new("Z Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
 
-impl crate::wire::Telemetry for AngularRateCovariance {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 165;
+message!(AngularRateCovariance {
+    x_angular_rate_covariance: ("X Angular Rate Covariance", 0, 16)
+        .scale(&X_ANGULAR_RATE_COVARIANCE),
+    y_angular_rate_covariance: ("Y Angular Rate Covariance", 16, 16)
+        .scale(&Y_ANGULAR_RATE_COVARIANCE),
+    z_angular_rate_covariance: ("Z Angular Rate Covariance", 32, 16)
+        .scale(&Z_ANGULAR_RATE_COVARIANCE),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for AngularRateCovariance {
+    const TELEMETRY_ID: u32 = 165;
 }

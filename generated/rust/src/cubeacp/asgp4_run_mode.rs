@@ -3,7 +3,7 @@
 //! ASGP4 Run Mode, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// ASGP4 Run Mode: telecommand 31, 1 byte. Table 86.
 ///
@@ -64,12 +64,10 @@ impl Asgp4RunMode {
     }
 }
 
-impl crate::wire::Telecommand for Asgp4RunMode {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 31;
+message!(Asgp4RunMode {
+    asgp4_mode: ("ASGP4 Mode", 0, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for Asgp4RunMode {
+    const TELECOMMAND_ID: u32 = 31;
 }

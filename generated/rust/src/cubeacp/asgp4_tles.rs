@@ -3,7 +3,7 @@
 //! ASGP4 TLEs, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error, Scale};
+use crate::support::{message, put, take, Coded, Error, Scale};
 
 /// ASGP4 TLEs: telemetry 228, 33 bytes. Table 170.
 ///
@@ -146,21 +146,21 @@ impl Asgp4Tles {
     }
 }
 
-const ASGP4_ERROR: Scale = Scale {
-    field: "ASGP4 error",
-    min: 0,
-    max: 127,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const ASGP4_ERROR: Scale = Scale::new("ASGP4 error", (0, 127), (1, 0, 1));
 
-impl crate::wire::Telemetry for Asgp4Tles {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 228;
+message!(Asgp4Tles {
+    asgp4_complete: ("ASGP4 complete", 0, 1),
+    asgp4_error: ("ASGP4 error", 1, 7),
+    asgp4_epoch: ("ASGP4 Epoch", 8, 32),
+    asgp4_inclination: ("ASGP4 inclination", 40, 32),
+    asgp4_raan: ("ASGP4 RAAN", 72, 32),
+    asgp4_ecc: ("ASGP4 ECC", 104, 32),
+    asgp4_aop: ("ASGP4 AOP", 136, 32),
+    asgp4_ma: ("ASGP4 MA", 168, 32),
+    asgp4_mm: ("ASGP4 MM", 200, 32),
+    asgp4_bstar: ("ASGP4 Bstar", 232, 32),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Asgp4Tles {
+    const TELEMETRY_ID: u32 = 228;
 }

@@ -2,7 +2,7 @@
 
 //! ASGP4 Trigger, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// ASGP4 Trigger: telecommand 32, 0 bytes. Table 88.
 ///
@@ -51,12 +51,9 @@ impl Asgp4Trigger {
     }
 }
 
-impl crate::wire::Telecommand for Asgp4Trigger {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 32;
+message!(Asgp4Trigger {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for Asgp4Trigger {
+    const TELECOMMAND_ID: u32 = 32;
 }

@@ -3,7 +3,7 @@
 //! Augmented-SGP4 Parameters, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error, Scale};
+use crate::support::{message, put, take, Coded, Error, Scale};
 
 /// Augmented-SGP4 Parameters: configuration, set by telecommand 28, got by telemetry 227, 30 bytes.
 /// Table 209.
@@ -210,12 +210,28 @@ impl AugmentedSgp4Parameters {
     }
 
     /// Sets Incl. coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_incl_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.incl_coefficient = INCL_COEFFICIENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Incl. coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn incl_coefficient_physical_f32(&self) -> f32 {
+        f32::from(self.incl_coefficient) / 1_000.0
+    }
+
+    /// Incl. coefficient in thousandths, exact: 0 to 65535.
+    #[must_use]
+    pub fn incl_coefficient_milli(&self) -> i32 {
+        i32::from(self.incl_coefficient)
+    }
+
+    /// Sets Incl. coefficient in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_incl_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.incl_coefficient = INCL_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -226,12 +242,28 @@ impl AugmentedSgp4Parameters {
     }
 
     /// Sets Raan coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_raan_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.raan_coefficient = RAAN_COEFFICIENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Raan coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn raan_coefficient_physical_f32(&self) -> f32 {
+        f32::from(self.raan_coefficient) / 1_000.0
+    }
+
+    /// Raan coefficient in thousandths, exact: 0 to 65535.
+    #[must_use]
+    pub fn raan_coefficient_milli(&self) -> i32 {
+        i32::from(self.raan_coefficient)
+    }
+
+    /// Sets Raan coefficient in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_raan_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.raan_coefficient = RAAN_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -242,12 +274,28 @@ impl AugmentedSgp4Parameters {
     }
 
     /// Sets Ecc coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_ecc_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.ecc_coefficient = ECC_COEFFICIENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Ecc coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn ecc_coefficient_physical_f32(&self) -> f32 {
+        f32::from(self.ecc_coefficient) / 1_000.0
+    }
+
+    /// Ecc coefficient in thousandths, exact: 0 to 65535.
+    #[must_use]
+    pub fn ecc_coefficient_milli(&self) -> i32 {
+        i32::from(self.ecc_coefficient)
+    }
+
+    /// Sets Ecc coefficient in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_ecc_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.ecc_coefficient = ECC_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -258,12 +306,28 @@ impl AugmentedSgp4Parameters {
     }
 
     /// Sets Aop coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_aop_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.aop_coefficient = AOP_COEFFICIENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Aop coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn aop_coefficient_physical_f32(&self) -> f32 {
+        f32::from(self.aop_coefficient) / 1_000.0
+    }
+
+    /// Aop coefficient in thousandths, exact: 0 to 65535.
+    #[must_use]
+    pub fn aop_coefficient_milli(&self) -> i32 {
+        i32::from(self.aop_coefficient)
+    }
+
+    /// Sets Aop coefficient in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_aop_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.aop_coefficient = AOP_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -274,12 +338,28 @@ impl AugmentedSgp4Parameters {
     }
 
     /// Sets Time coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_time_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.time_coefficient = TIME_COEFFICIENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Time coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn time_coefficient_physical_f32(&self) -> f32 {
+        f32::from(self.time_coefficient) / 1_000.0
+    }
+
+    /// Time coefficient in thousandths, exact: 0 to 65535.
+    #[must_use]
+    pub fn time_coefficient_milli(&self) -> i32 {
+        i32::from(self.time_coefficient)
+    }
+
+    /// Sets Time coefficient in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_time_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.time_coefficient = TIME_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -290,12 +370,28 @@ impl AugmentedSgp4Parameters {
     }
 
     /// Sets Pos coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_pos_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.pos_coefficient = POS_COEFFICIENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Pos coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn pos_coefficient_physical_f32(&self) -> f32 {
+        f32::from(self.pos_coefficient) / 1_000.0
+    }
+
+    /// Pos coefficient in thousandths, exact: 0 to 65535.
+    #[must_use]
+    pub fn pos_coefficient_milli(&self) -> i32 {
+        i32::from(self.pos_coefficient)
+    }
+
+    /// Sets Pos coefficient in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_pos_coefficient_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.pos_coefficient = POS_COEFFICIENT.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -306,12 +402,28 @@ impl AugmentedSgp4Parameters {
     }
 
     /// Sets Maximum position error, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_maximum_position_error_physical(&mut self, value: f64) -> Result<(), Error> {
         self.maximum_position_error = MAXIMUM_POSITION_ERROR.raw(value)?;
+        Ok(())
+    }
+
+    /// Maximum position error, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn maximum_position_error_physical_f32(&self) -> f32 {
+        f32::from(self.maximum_position_error) / 10.0
+    }
+
+    /// Maximum position error in thousandths, exact: 0 to 25500.
+    #[must_use]
+    pub fn maximum_position_error_milli(&self) -> i32 {
+        i32::from(self.maximum_position_error) * 100
+    }
+
+    /// Sets Maximum position error in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_maximum_position_error_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.maximum_position_error = MAXIMUM_POSITION_ERROR.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -322,13 +434,16 @@ impl AugmentedSgp4Parameters {
     }
 
     /// Sets xp coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_xp_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.xp_coefficient = XP_COEFFICIENT.raw(value)?;
         Ok(())
+    }
+
+    /// xp coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn xp_coefficient_physical_f32(&self) -> f32 {
+        XP_COEFFICIENT.single(self.xp_coefficient)
     }
 
     /// yp coefficient, as a physical value: -214.7483648 to 214.7483647.
@@ -338,13 +453,16 @@ impl AugmentedSgp4Parameters {
     }
 
     /// Sets yp coefficient, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_yp_coefficient_physical(&mut self, value: f64) -> Result<(), Error> {
         self.yp_coefficient = YP_COEFFICIENT.raw(value)?;
         Ok(())
+    }
+
+    /// yp coefficient, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn yp_coefficient_physical_f32(&self) -> f32 {
+        YP_COEFFICIENT.single(self.yp_coefficient)
     }
 
     /// Position sd, as a physical value: 0 to 25.5.
@@ -354,12 +472,28 @@ impl AugmentedSgp4Parameters {
     }
 
     /// Sets Position sd, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_position_sd_physical(&mut self, value: f64) -> Result<(), Error> {
         self.position_sd = POSITION_SD.raw(value)?;
+        Ok(())
+    }
+
+    /// Position sd, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn position_sd_physical_f32(&self) -> f32 {
+        f32::from(self.position_sd) / 10.0
+    }
+
+    /// Position sd in thousandths, exact: 0 to 25500.
+    #[must_use]
+    pub fn position_sd_milli(&self) -> i32 {
+        i32::from(self.position_sd) * 100
+    }
+
+    /// Sets Position sd in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_position_sd_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.position_sd = POSITION_SD.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -370,12 +504,28 @@ impl AugmentedSgp4Parameters {
     }
 
     /// Sets Velocity sd, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_velocity_sd_physical(&mut self, value: f64) -> Result<(), Error> {
         self.velocity_sd = VELOCITY_SD.raw(value)?;
+        Ok(())
+    }
+
+    /// Velocity sd, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn velocity_sd_physical_f32(&self) -> f32 {
+        f32::from(self.velocity_sd) / 100.0
+    }
+
+    /// Velocity sd in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn velocity_sd_milli(&self) -> i32 {
+        i32::from(self.velocity_sd) * 10
+    }
+
+    /// Sets Velocity sd in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_velocity_sd_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.velocity_sd = VELOCITY_SD.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -386,12 +536,28 @@ impl AugmentedSgp4Parameters {
     }
 
     /// Sets Time gain, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_time_gain_physical(&mut self, value: f64) -> Result<(), Error> {
         self.time_gain = TIME_GAIN.raw(value)?;
+        Ok(())
+    }
+
+    /// Time gain, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn time_gain_physical_f32(&self) -> f32 {
+        f32::from(self.time_gain) / 100.0
+    }
+
+    /// Time gain in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn time_gain_milli(&self) -> i32 {
+        i32::from(self.time_gain) * 10
+    }
+
+    /// Sets Time gain in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_time_gain_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.time_gain = TIME_GAIN.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -401,150 +567,85 @@ impl AugmentedSgp4Parameters {
         f64::from(self.max_lag) / 100.0
     }
 
-    /// Sets Max. lag, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Max. lag, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_max_lag_physical(&mut self, value: f64) -> Result<(), Error> {
         self.max_lag = MAX_LAG.raw(value)?;
         Ok(())
     }
-}
 
-const INCL_COEFFICIENT: Scale = Scale {
-    field: "Incl. coefficient",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+    /// Max. lag, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn max_lag_physical_f32(&self) -> f32 {
+        f32::from(self.max_lag) / 100.0
+    }
 
-const RAAN_COEFFICIENT: Scale = Scale {
-    field: "Raan coefficient",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+    /// Max. lag in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn max_lag_milli(&self) -> i32 {
+        i32::from(self.max_lag) * 10
+    }
 
-const ECC_COEFFICIENT: Scale = Scale {
-    field: "Ecc coefficient",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const AOP_COEFFICIENT: Scale = Scale {
-    field: "Aop coefficient",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const TIME_COEFFICIENT: Scale = Scale {
-    field: "Time coefficient",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const POS_COEFFICIENT: Scale = Scale {
-    field: "Pos coefficient",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const MAXIMUM_POSITION_ERROR: Scale = Scale {
-    field: "Maximum position error",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
-
-const XP_COEFFICIENT: Scale = Scale {
-    field: "xp coefficient",
-    min: -2_147_483_648,
-    max: 2_147_483_647,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000_000,
-};
-
-const YP_COEFFICIENT: Scale = Scale {
-    field: "yp coefficient",
-    min: -2_147_483_648,
-    max: 2_147_483_647,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000_000,
-};
-
-const POSITION_SD: Scale = Scale {
-    field: "Position sd",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
-
-const VELOCITY_SD: Scale = Scale {
-    field: "Velocity sd",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const TIME_GAIN: Scale = Scale {
-    field: "Time gain",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const MAX_LAG: Scale = Scale {
-    field: "Max. lag",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-impl crate::wire::Telecommand for AugmentedSgp4Parameters {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 28;
-
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
+    /// Sets Max. lag in thousandths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_max_lag_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.max_lag = MAX_LAG.whole(value.into(), 10, 0)?;
+        Ok(())
     }
 }
 
-impl crate::wire::Telemetry for AugmentedSgp4Parameters {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 227;
+const INCL_COEFFICIENT: Scale = Scale::new("Incl. coefficient", (0, 65_535), (1, 0, 1_000));
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+const RAAN_COEFFICIENT: Scale = Scale::new("Raan coefficient", (0, 65_535), (1, 0, 1_000));
+
+const ECC_COEFFICIENT: Scale = Scale::new("Ecc coefficient", (0, 65_535), (1, 0, 1_000));
+
+const AOP_COEFFICIENT: Scale = Scale::new("Aop coefficient", (0, 65_535), (1, 0, 1_000));
+
+const TIME_COEFFICIENT: Scale = Scale::new("Time coefficient", (0, 65_535), (1, 0, 1_000));
+
+const POS_COEFFICIENT: Scale = Scale::new("Pos coefficient", (0, 65_535), (1, 0, 1_000));
+
+const MAXIMUM_POSITION_ERROR: Scale = Scale::new("Maximum position error", (0, 255), (1, 0, 10));
+
+const XP_COEFFICIENT: Scale =
+    Scale::new("xp coefficient", (-2_147_483_648, 2_147_483_647), (1, 0, 10_000_000));
+
+const YP_COEFFICIENT: Scale =
+    Scale::new("yp coefficient", (-2_147_483_648, 2_147_483_647), (1, 0, 10_000_000));
+
+const POSITION_SD: Scale = Scale::new("Position sd", (0, 255), (1, 0, 10));
+
+const VELOCITY_SD: Scale = Scale::new("Velocity sd", (0, 255), (1, 0, 100));
+
+const TIME_GAIN: Scale = Scale::new("Time gain", (0, 255), (1, 0, 100));
+
+const MAX_LAG: Scale = Scale::new("Max. lag", (0, 255), (1, 0, 100));
+
+message!(AugmentedSgp4Parameters {
+    incl_coefficient: ("Incl. coefficient", 0, 16).scale(&INCL_COEFFICIENT),
+    raan_coefficient: ("Raan coefficient", 16, 16).scale(&RAAN_COEFFICIENT),
+    ecc_coefficient: ("Ecc coefficient", 32, 16).scale(&ECC_COEFFICIENT),
+    aop_coefficient: ("Aop coefficient", 48, 16).scale(&AOP_COEFFICIENT),
+    time_coefficient: ("Time coefficient", 64, 16).scale(&TIME_COEFFICIENT),
+    pos_coefficient: ("Pos coefficient", 80, 16).scale(&POS_COEFFICIENT),
+    maximum_position_error: ("Maximum position error", 96, 8).scale(&MAXIMUM_POSITION_ERROR),
+    asgp4_filter: ("ASGP4 filter", 104, 8),
+    xp_coefficient: ("xp coefficient", 112, 32).scale(&XP_COEFFICIENT),
+    yp_coefficient: ("yp coefficient", 144, 32).scale(&YP_COEFFICIENT),
+    gps_roll_over: ("GPS roll over", 176, 8),
+    position_sd: ("Position sd", 184, 8).scale(&POSITION_SD),
+    velocity_sd: ("Velocity sd", 192, 8).scale(&VELOCITY_SD),
+    min_satellites: ("Min. satellites", 200, 8),
+    time_gain: ("Time gain", 208, 8).scale(&TIME_GAIN),
+    max_lag: ("Max. lag", 216, 8).scale(&MAX_LAG),
+    min_samples: ("Min. samples", 224, 16),
+});
+
+impl crate::Telecommand for AugmentedSgp4Parameters {
+    const TELECOMMAND_ID: u32 = 28;
+}
+
+impl crate::Telemetry for AugmentedSgp4Parameters {
+    const TELEMETRY_ID: u32 = 227;
 }

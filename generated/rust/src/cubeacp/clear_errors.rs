@@ -2,7 +2,7 @@
 
 //! Clear Errors, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Clear Errors: telecommand 12, 1 byte. Table 76.
 ///
@@ -74,12 +74,11 @@ impl ClearErrors {
     }
 }
 
-impl crate::wire::Telecommand for ClearErrors {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 12;
+message!(ClearErrors {
+    adcs_error_flags: ("ADCS Error Flags", 0, 1),
+    hk_error_flags: ("HK Error Flags", 1, 1),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for ClearErrors {
+    const TELECOMMAND_ID: u32 = 12;
 }

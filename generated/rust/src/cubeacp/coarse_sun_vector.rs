@@ -2,7 +2,7 @@
 
 //! Coarse Sun Vector, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Coarse Sun Vector: telemetry 152, 6 bytes. Table 108.
 ///
@@ -79,12 +79,28 @@ impl CoarseSunVector {
     }
 
     /// Sets Coarse Sun X, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_coarse_sun_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.coarse_sun_x = COARSE_SUN_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Coarse Sun X, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn coarse_sun_x_physical_f32(&self) -> f32 {
+        f32::from(self.coarse_sun_x) / 10_000.0
+    }
+
+    /// Coarse Sun X in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn coarse_sun_x_micro(&self) -> i32 {
+        i32::from(self.coarse_sun_x) * 100
+    }
+
+    /// Sets Coarse Sun X in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_coarse_sun_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.coarse_sun_x = COARSE_SUN_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -95,12 +111,28 @@ impl CoarseSunVector {
     }
 
     /// Sets Coarse Sun Y, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_coarse_sun_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.coarse_sun_y = COARSE_SUN_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Coarse Sun Y, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn coarse_sun_y_physical_f32(&self) -> f32 {
+        f32::from(self.coarse_sun_y) / 10_000.0
+    }
+
+    /// Coarse Sun Y in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn coarse_sun_y_micro(&self) -> i32 {
+        i32::from(self.coarse_sun_y) * 100
+    }
+
+    /// Sets Coarse Sun Y in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_coarse_sun_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.coarse_sun_y = COARSE_SUN_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -111,49 +143,44 @@ impl CoarseSunVector {
     }
 
     /// Sets Coarse Sun Z, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_coarse_sun_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.coarse_sun_z = COARSE_SUN_Z.raw(value)?;
         Ok(())
     }
+
+    /// Coarse Sun Z, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn coarse_sun_z_physical_f32(&self) -> f32 {
+        f32::from(self.coarse_sun_z) / 10_000.0
+    }
+
+    /// Coarse Sun Z in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn coarse_sun_z_micro(&self) -> i32 {
+        i32::from(self.coarse_sun_z) * 100
+    }
+
+    /// Sets Coarse Sun Z in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_coarse_sun_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.coarse_sun_z = COARSE_SUN_Z.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const COARSE_SUN_X: Scale = Scale {
-    field: "Coarse Sun X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const COARSE_SUN_X: Scale = Scale::new("Coarse Sun X", (-32_768, 32_767), (1, 0, 10_000));
 
-const COARSE_SUN_Y: Scale = Scale {
-    field: "Coarse Sun Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const COARSE_SUN_Y: Scale = Scale::new("Coarse Sun Y", (-32_768, 32_767), (1, 0, 10_000));
 
-const COARSE_SUN_Z: Scale = Scale {
-    field: "Coarse Sun Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const COARSE_SUN_Z: Scale = Scale::new("Coarse Sun Z", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for CoarseSunVector {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 152;
+message!(CoarseSunVector {
+    coarse_sun_x: ("Coarse Sun X", 0, 16).scale(&COARSE_SUN_X),
+    coarse_sun_y: ("Coarse Sun Y", 16, 16).scale(&COARSE_SUN_Y),
+    coarse_sun_z: ("Coarse Sun Z", 32, 16).scale(&COARSE_SUN_Z),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for CoarseSunVector {
+    const TELEMETRY_ID: u32 = 152;
 }

@@ -2,7 +2,7 @@
 
 //! Commanded Attitude Angles, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Commanded Attitude Angles: configuration, set by telecommand 15, got by telemetry 199, 6 bytes.
 /// Table 186.
@@ -79,13 +79,29 @@ impl CommandedAttitudeAngles {
         f64::from(self.commanded_roll_angle) / 100.0
     }
 
-    /// Sets Commanded Roll Angle in deg, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Commanded Roll Angle in deg, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_commanded_roll_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.commanded_roll_angle = COMMANDED_ROLL_ANGLE.raw(value)?;
+        Ok(())
+    }
+
+    /// Commanded Roll Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn commanded_roll_angle_deg_f32(&self) -> f32 {
+        f32::from(self.commanded_roll_angle) / 100.0
+    }
+
+    /// Commanded Roll Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn commanded_roll_angle_mdeg(&self) -> i32 {
+        i32::from(self.commanded_roll_angle) * 10
+    }
+
+    /// Sets Commanded Roll Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_commanded_roll_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.commanded_roll_angle = COMMANDED_ROLL_ANGLE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -95,13 +111,29 @@ impl CommandedAttitudeAngles {
         f64::from(self.commanded_pitch_angle) / 100.0
     }
 
-    /// Sets Commanded Pitch Angle in deg, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Commanded Pitch Angle in deg, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_commanded_pitch_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.commanded_pitch_angle = COMMANDED_PITCH_ANGLE.raw(value)?;
+        Ok(())
+    }
+
+    /// Commanded Pitch Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn commanded_pitch_angle_deg_f32(&self) -> f32 {
+        f32::from(self.commanded_pitch_angle) / 100.0
+    }
+
+    /// Commanded Pitch Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn commanded_pitch_angle_mdeg(&self) -> i32 {
+        i32::from(self.commanded_pitch_angle) * 10
+    }
+
+    /// Sets Commanded Pitch Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_commanded_pitch_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.commanded_pitch_angle = COMMANDED_PITCH_ANGLE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -111,60 +143,53 @@ impl CommandedAttitudeAngles {
         f64::from(self.commanded_yaw_angle) / 100.0
     }
 
-    /// Sets Commanded Yaw Angle in deg, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Commanded Yaw Angle in deg, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_commanded_yaw_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.commanded_yaw_angle = COMMANDED_YAW_ANGLE.raw(value)?;
         Ok(())
     }
-}
 
-const COMMANDED_ROLL_ANGLE: Scale = Scale {
-    field: "Commanded Roll Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+    /// Commanded Yaw Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn commanded_yaw_angle_deg_f32(&self) -> f32 {
+        f32::from(self.commanded_yaw_angle) / 100.0
+    }
 
-const COMMANDED_PITCH_ANGLE: Scale = Scale {
-    field: "Commanded Pitch Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+    /// Commanded Yaw Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn commanded_yaw_angle_mdeg(&self) -> i32 {
+        i32::from(self.commanded_yaw_angle) * 10
+    }
 
-const COMMANDED_YAW_ANGLE: Scale = Scale {
-    field: "Commanded Yaw Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-impl crate::wire::Telecommand for CommandedAttitudeAngles {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 15;
-
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
+    /// Sets Commanded Yaw Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_commanded_yaw_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.commanded_yaw_angle = COMMANDED_YAW_ANGLE.whole(value.into(), 10, 0)?;
+        Ok(())
     }
 }
 
-impl crate::wire::Telemetry for CommandedAttitudeAngles {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 199;
+const COMMANDED_ROLL_ANGLE: Scale =
+    Scale::new("Commanded Roll Angle", (-32_768, 32_767), (1, 0, 100));
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+const COMMANDED_PITCH_ANGLE: Scale =
+    Scale::new("Commanded Pitch Angle", (-32_768, 32_767), (1, 0, 100));
+
+const COMMANDED_YAW_ANGLE: Scale =
+    Scale::new("Commanded Yaw Angle", (-32_768, 32_767), (1, 0, 100));
+
+message!(CommandedAttitudeAngles {
+    commanded_roll_angle: ("Commanded Roll Angle", 0, 16).unit("deg").scale(&COMMANDED_ROLL_ANGLE),
+    commanded_pitch_angle: ("Commanded Pitch Angle", 16, 16)
+        .unit("deg").scale(&COMMANDED_PITCH_ANGLE),
+    commanded_yaw_angle: ("Commanded Yaw Angle", 32, 16).unit("deg").scale(&COMMANDED_YAW_ANGLE),
+});
+
+impl crate::Telecommand for CommandedAttitudeAngles {
+    const TELECOMMAND_ID: u32 = 15;
+}
+
+impl crate::Telemetry for CommandedAttitudeAngles {
+    const TELEMETRY_ID: u32 = 199;
 }

@@ -2,7 +2,7 @@
 
 //! Convert to JPG file, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Convert to JPG file: telecommand 57, 3 bytes. Table 91.
 ///
@@ -75,12 +75,12 @@ impl ConvertToJpgFile {
     }
 }
 
-impl crate::wire::Telecommand for ConvertToJpgFile {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 57;
+message!(ConvertToJpgFile {
+    source_file_counter: ("Source File Counter", 0, 8),
+    quality_factor: ("Quality Factor", 8, 8),
+    white_balance: ("White Balance", 16, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for ConvertToJpgFile {
+    const TELECOMMAND_ID: u32 = 57;
 }

@@ -3,7 +3,7 @@
 //! CSS Configuration, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error, Scale};
+use crate::support::{message, Coded, Error, Scale};
 
 /// CSS Configuration: configuration, set by telecommand 24, got by telemetry 139, 21 bytes. Table
 /// 183\.
@@ -152,12 +152,28 @@ impl CssConfiguration {
     }
 
     /// Sets CSS1 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css1_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css1_relative_scale = CSS1_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS1 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css1_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css1_relative_scale) / 100.0
+    }
+
+    /// CSS1 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css1_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css1_relative_scale) * 10
+    }
+
+    /// Sets CSS1 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css1_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css1_relative_scale = CSS1_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -168,12 +184,28 @@ impl CssConfiguration {
     }
 
     /// Sets CSS2 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css2_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css2_relative_scale = CSS2_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS2 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css2_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css2_relative_scale) / 100.0
+    }
+
+    /// CSS2 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css2_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css2_relative_scale) * 10
+    }
+
+    /// Sets CSS2 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css2_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css2_relative_scale = CSS2_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -184,12 +216,28 @@ impl CssConfiguration {
     }
 
     /// Sets CSS3 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css3_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css3_relative_scale = CSS3_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS3 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css3_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css3_relative_scale) / 100.0
+    }
+
+    /// CSS3 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css3_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css3_relative_scale) * 10
+    }
+
+    /// Sets CSS3 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css3_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css3_relative_scale = CSS3_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -200,12 +248,28 @@ impl CssConfiguration {
     }
 
     /// Sets CSS4 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css4_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css4_relative_scale = CSS4_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS4 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css4_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css4_relative_scale) / 100.0
+    }
+
+    /// CSS4 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css4_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css4_relative_scale) * 10
+    }
+
+    /// Sets CSS4 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css4_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css4_relative_scale = CSS4_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -216,12 +280,28 @@ impl CssConfiguration {
     }
 
     /// Sets CSS5 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css5_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css5_relative_scale = CSS5_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS5 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css5_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css5_relative_scale) / 100.0
+    }
+
+    /// CSS5 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css5_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css5_relative_scale) * 10
+    }
+
+    /// Sets CSS5 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css5_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css5_relative_scale = CSS5_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -232,12 +312,28 @@ impl CssConfiguration {
     }
 
     /// Sets CSS6 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css6_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css6_relative_scale = CSS6_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS6 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css6_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css6_relative_scale) / 100.0
+    }
+
+    /// CSS6 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css6_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css6_relative_scale) * 10
+    }
+
+    /// Sets CSS6 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css6_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css6_relative_scale = CSS6_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -248,12 +344,28 @@ impl CssConfiguration {
     }
 
     /// Sets CSS7 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css7_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css7_relative_scale = CSS7_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS7 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css7_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css7_relative_scale) / 100.0
+    }
+
+    /// CSS7 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css7_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css7_relative_scale) * 10
+    }
+
+    /// Sets CSS7 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css7_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css7_relative_scale = CSS7_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -264,12 +376,28 @@ impl CssConfiguration {
     }
 
     /// Sets CSS8 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css8_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css8_relative_scale = CSS8_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS8 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css8_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css8_relative_scale) / 100.0
+    }
+
+    /// CSS8 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css8_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css8_relative_scale) * 10
+    }
+
+    /// Sets CSS8 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css8_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css8_relative_scale = CSS8_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -280,12 +408,28 @@ impl CssConfiguration {
     }
 
     /// Sets CSS9 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css9_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css9_relative_scale = CSS9_RELATIVE_SCALE.raw(value)?;
+        Ok(())
+    }
+
+    /// CSS9 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css9_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css9_relative_scale) / 100.0
+    }
+
+    /// CSS9 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css9_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css9_relative_scale) * 10
+    }
+
+    /// Sets CSS9 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css9_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css9_relative_scale = CSS9_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -296,122 +440,80 @@ impl CssConfiguration {
     }
 
     /// Sets CSS10 Relative Scale, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_css10_relative_scale_physical(&mut self, value: f64) -> Result<(), Error> {
         self.css10_relative_scale = CSS10_RELATIVE_SCALE.raw(value)?;
         Ok(())
     }
-}
 
-const CSS1_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS1 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+    /// CSS10 Relative Scale, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn css10_relative_scale_physical_f32(&self) -> f32 {
+        f32::from(self.css10_relative_scale) / 100.0
+    }
 
-const CSS2_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS2 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+    /// CSS10 Relative Scale in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn css10_relative_scale_milli(&self) -> i32 {
+        i32::from(self.css10_relative_scale) * 10
+    }
 
-const CSS3_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS3 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS4_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS4 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS5_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS5 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS6_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS6 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS7_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS7 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS8_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS8 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS9_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS9 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CSS10_RELATIVE_SCALE: Scale = Scale {
-    field: "CSS10 Relative Scale",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-impl crate::wire::Telecommand for CssConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 24;
-
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
+    /// Sets CSS10 Relative Scale in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_css10_relative_scale_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.css10_relative_scale = CSS10_RELATIVE_SCALE.whole(value.into(), 10, 0)?;
+        Ok(())
     }
 }
 
-impl crate::wire::Telemetry for CssConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 139;
+const CSS1_RELATIVE_SCALE: Scale = Scale::new("CSS1 Relative Scale", (0, 255), (1, 0, 100));
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+const CSS2_RELATIVE_SCALE: Scale = Scale::new("CSS2 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS3_RELATIVE_SCALE: Scale = Scale::new("CSS3 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS4_RELATIVE_SCALE: Scale = Scale::new("CSS4 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS5_RELATIVE_SCALE: Scale = Scale::new("CSS5 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS6_RELATIVE_SCALE: Scale = Scale::new("CSS6 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS7_RELATIVE_SCALE: Scale = Scale::new("CSS7 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS8_RELATIVE_SCALE: Scale = Scale::new("CSS8 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS9_RELATIVE_SCALE: Scale = Scale::new("CSS9 Relative Scale", (0, 255), (1, 0, 100));
+
+const CSS10_RELATIVE_SCALE: Scale = Scale::new("CSS10 Relative Scale", (0, 255), (1, 0, 100));
+
+message!(CssConfiguration {
+    css1_configuration: ("CSS1 Configuration", 0, 8),
+    css2_configuration: ("CSS2 Configuration", 8, 8),
+    css3_configuration: ("CSS3 Configuration", 16, 8),
+    css4_configuration: ("CSS4 Configuration", 24, 8),
+    css5_configuration: ("CSS5 Configuration", 32, 8),
+    css6_configuration: ("CSS6 Configuration", 40, 8),
+    css7_configuration: ("CSS7 Configuration", 48, 8),
+    css8_configuration: ("CSS8 Configuration", 56, 8),
+    css9_configuration: ("CSS9 Configuration", 64, 8),
+    css10_configuration: ("CSS10 Configuration", 72, 8),
+    css1_relative_scale: ("CSS1 Relative Scale", 80, 8).scale(&CSS1_RELATIVE_SCALE),
+    css2_relative_scale: ("CSS2 Relative Scale", 88, 8).scale(&CSS2_RELATIVE_SCALE),
+    css3_relative_scale: ("CSS3 Relative Scale", 96, 8).scale(&CSS3_RELATIVE_SCALE),
+    css4_relative_scale: ("CSS4 Relative Scale", 104, 8).scale(&CSS4_RELATIVE_SCALE),
+    css5_relative_scale: ("CSS5 Relative Scale", 112, 8).scale(&CSS5_RELATIVE_SCALE),
+    css6_relative_scale: ("CSS6 Relative Scale", 120, 8).scale(&CSS6_RELATIVE_SCALE),
+    css7_relative_scale: ("CSS7 Relative Scale", 128, 8).scale(&CSS7_RELATIVE_SCALE),
+    css8_relative_scale: ("CSS8 Relative Scale", 136, 8).scale(&CSS8_RELATIVE_SCALE),
+    css9_relative_scale: ("CSS9 Relative Scale", 144, 8).scale(&CSS9_RELATIVE_SCALE),
+    css10_relative_scale: ("CSS10 Relative Scale", 152, 8).scale(&CSS10_RELATIVE_SCALE),
+    css_threshold: ("CSS Threshold", 160, 8),
+});
+
+impl crate::Telecommand for CssConfiguration {
+    const TELECOMMAND_ID: u32 = 24;
+}
+
+impl crate::Telemetry for CssConfiguration {
+    const TELEMETRY_ID: u32 = 139;
 }

@@ -2,7 +2,7 @@
 
 //! CubeControl Current Measurements, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// CubeControl Current Measurements: telemetry 172, 6 bytes. Table 130.
 ///
@@ -75,14 +75,17 @@ impl CubecontrolCurrents {
         (f64::from(self.cubecontrol_3v3_current) * 125.0) / 256.0
     }
 
-    /// Sets CubeControl 3V3 Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets CubeControl 3V3 Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_cubecontrol_3v3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubecontrol_3v3_current = CUBECONTROL_3V3_CURRENT.raw(value)?;
         Ok(())
+    }
+
+    /// CubeControl 3V3 Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubecontrol_3v3_current_ma_f32(&self) -> f32 {
+        (f32::from(self.cubecontrol_3v3_current) * 125.0) / 256.0
     }
 
     /// CubeControl 5V Current in mA: 0 to 31999.51171875.
@@ -91,14 +94,17 @@ impl CubecontrolCurrents {
         (f64::from(self.cubecontrol_5v_current) * 125.0) / 256.0
     }
 
-    /// Sets CubeControl 5V Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets CubeControl 5V Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_cubecontrol_5v_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubecontrol_5v_current = CUBECONTROL_5V_CURRENT.raw(value)?;
         Ok(())
+    }
+
+    /// CubeControl 5V Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubecontrol_5v_current_ma_f32(&self) -> f32 {
+        (f32::from(self.cubecontrol_5v_current) * 125.0) / 256.0
     }
 
     /// CubeControl Vbat Current in mA: 0 to 31999.51171875.
@@ -108,49 +114,37 @@ impl CubecontrolCurrents {
     }
 
     /// Sets CubeControl Vbat Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cubecontrol_vbat_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubecontrol_vbat_current = CUBECONTROL_VBAT_CURRENT.raw(value)?;
         Ok(())
     }
+
+    /// CubeControl Vbat Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubecontrol_vbat_current_ma_f32(&self) -> f32 {
+        (f32::from(self.cubecontrol_vbat_current) * 125.0) / 256.0
+    }
 }
 
-const CUBECONTROL_3V3_CURRENT: Scale = Scale {
-    field: "CubeControl 3V3 Current",
-    min: 0,
-    max: 65_535,
-    factor: 125,
-    offset: 0,
-    divisor: 256,
-};
+const CUBECONTROL_3V3_CURRENT: Scale =
+    Scale::new("CubeControl 3V3 Current", (0, 65_535), (125, 0, 256));
 
-const CUBECONTROL_5V_CURRENT: Scale = Scale {
-    field: "CubeControl 5V Current",
-    min: 0,
-    max: 65_535,
-    factor: 125,
-    offset: 0,
-    divisor: 256,
-};
+const CUBECONTROL_5V_CURRENT: Scale =
+    Scale::new("CubeControl 5V Current", (0, 65_535), (125, 0, 256));
 
-const CUBECONTROL_VBAT_CURRENT: Scale = Scale {
-    field: "CubeControl Vbat Current",
-    min: 0,
-    max: 65_535,
-    factor: 125,
-    offset: 0,
-    divisor: 256,
-};
+const CUBECONTROL_VBAT_CURRENT: Scale =
+    Scale::new("CubeControl Vbat Current", (0, 65_535), (125, 0, 256));
 
-impl crate::wire::Telemetry for CubecontrolCurrents {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 172;
+message!(CubecontrolCurrents {
+    cubecontrol_3v3_current: ("CubeControl 3V3 Current", 0, 16)
+        .unit("mA").scale(&CUBECONTROL_3V3_CURRENT),
+    cubecontrol_5v_current: ("CubeControl 5V Current", 16, 16)
+        .unit("mA").scale(&CUBECONTROL_5V_CURRENT),
+    cubecontrol_vbat_current: ("CubeControl Vbat Current", 32, 16)
+        .unit("mA").scale(&CUBECONTROL_VBAT_CURRENT),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for CubecontrolCurrents {
+    const TELEMETRY_ID: u32 = 172;
 }

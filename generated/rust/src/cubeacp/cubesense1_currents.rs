@@ -2,7 +2,7 @@
 
 //! CubeSense1 Current Measurements, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// CubeSense1 Current Measurements: telemetry 171, 4 bytes. Table 129.
 ///
@@ -73,13 +73,29 @@ impl Cubesense1Currents {
         f64::from(self.cubesense1_3v3_current) / 10.0
     }
 
-    /// Sets CubeSense1 3V3 Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets CubeSense1 3V3 Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_cubesense1_3v3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense1_3v3_current = CUBESENSE1_3V3_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// CubeSense1 3V3 Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubesense1_3v3_current_ma_f32(&self) -> f32 {
+        f32::from(self.cubesense1_3v3_current) / 10.0
+    }
+
+    /// CubeSense1 3V3 Current in uA, exact: 0 to 6553500.
+    #[must_use]
+    pub fn cubesense1_3v3_current_ua(&self) -> i32 {
+        i32::from(self.cubesense1_3v3_current) * 100
+    }
+
+    /// Sets CubeSense1 3V3 Current in uA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
+    pub fn set_cubesense1_3v3_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.cubesense1_3v3_current = CUBESENSE1_3V3_CURRENT.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -90,40 +106,44 @@ impl Cubesense1Currents {
     }
 
     /// Sets CubeSense1 Cam SRAM Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cubesense1_cam_sram_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense1_cam_sram_current = CUBESENSE1_CAM_SRAM_CURRENT.raw(value)?;
         Ok(())
     }
+
+    /// CubeSense1 Cam SRAM Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubesense1_cam_sram_current_ma_f32(&self) -> f32 {
+        f32::from(self.cubesense1_cam_sram_current) / 10.0
+    }
+
+    /// CubeSense1 Cam SRAM Current in uA, exact: 0 to 6553500.
+    #[must_use]
+    pub fn cubesense1_cam_sram_current_ua(&self) -> i32 {
+        i32::from(self.cubesense1_cam_sram_current) * 100
+    }
+
+    /// Sets CubeSense1 Cam SRAM Current in uA, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cubesense1_cam_sram_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.cubesense1_cam_sram_current = CUBESENSE1_CAM_SRAM_CURRENT.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const CUBESENSE1_3V3_CURRENT: Scale = Scale {
-    field: "CubeSense1 3V3 Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const CUBESENSE1_3V3_CURRENT: Scale = Scale::new("CubeSense1 3V3 Current", (0, 65_535), (1, 0, 10));
 
-const CUBESENSE1_CAM_SRAM_CURRENT: Scale = Scale {
-    field: "CubeSense1 Cam SRAM Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const CUBESENSE1_CAM_SRAM_CURRENT: Scale =
+    Scale::new("CubeSense1 Cam SRAM Current", (0, 65_535), (1, 0, 10));
 
-impl crate::wire::Telemetry for Cubesense1Currents {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 171;
+message!(Cubesense1Currents {
+    cubesense1_3v3_current: ("CubeSense1 3V3 Current", 0, 16)
+        .unit("mA").scale(&CUBESENSE1_3V3_CURRENT),
+    cubesense1_cam_sram_current: ("CubeSense1 Cam SRAM Current", 16, 16)
+        .unit("mA").scale(&CUBESENSE1_CAM_SRAM_CURRENT),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Cubesense1Currents {
+    const TELEMETRY_ID: u32 = 171;
 }

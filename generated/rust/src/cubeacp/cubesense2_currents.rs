@@ -2,7 +2,7 @@
 
 //! CubeSense2 Current Measurements, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// CubeSense2 Current Measurements: telemetry 232, 4 bytes. Table 175.
 ///
@@ -76,13 +76,29 @@ impl Cubesense2Currents {
         f64::from(self.cubesense2_3v3_current) / 10.0
     }
 
-    /// Sets CubeSense2 3V3 Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets CubeSense2 3V3 Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_cubesense2_3v3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense2_3v3_current = CUBESENSE2_3V3_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// CubeSense2 3V3 Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubesense2_3v3_current_ma_f32(&self) -> f32 {
+        f32::from(self.cubesense2_3v3_current) / 10.0
+    }
+
+    /// CubeSense2 3V3 Current in uA, exact: 0 to 6553500.
+    #[must_use]
+    pub fn cubesense2_3v3_current_ua(&self) -> i32 {
+        i32::from(self.cubesense2_3v3_current) * 100
+    }
+
+    /// Sets CubeSense2 3V3 Current in uA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
+    pub fn set_cubesense2_3v3_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.cubesense2_3v3_current = CUBESENSE2_3V3_CURRENT.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -93,40 +109,44 @@ impl Cubesense2Currents {
     }
 
     /// Sets CubeSense2 Cam SRAM Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cubesense2_cam_sram_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense2_cam_sram_current = CUBESENSE2_CAM_SRAM_CURRENT.raw(value)?;
         Ok(())
     }
+
+    /// CubeSense2 Cam SRAM Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubesense2_cam_sram_current_ma_f32(&self) -> f32 {
+        f32::from(self.cubesense2_cam_sram_current) / 10.0
+    }
+
+    /// CubeSense2 Cam SRAM Current in uA, exact: 0 to 6553500.
+    #[must_use]
+    pub fn cubesense2_cam_sram_current_ua(&self) -> i32 {
+        i32::from(self.cubesense2_cam_sram_current) * 100
+    }
+
+    /// Sets CubeSense2 Cam SRAM Current in uA, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cubesense2_cam_sram_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.cubesense2_cam_sram_current = CUBESENSE2_CAM_SRAM_CURRENT.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const CUBESENSE2_3V3_CURRENT: Scale = Scale {
-    field: "CubeSense2 3V3 Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const CUBESENSE2_3V3_CURRENT: Scale = Scale::new("CubeSense2 3V3 Current", (0, 65_535), (1, 0, 10));
 
-const CUBESENSE2_CAM_SRAM_CURRENT: Scale = Scale {
-    field: "CubeSense2 Cam SRAM Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const CUBESENSE2_CAM_SRAM_CURRENT: Scale =
+    Scale::new("CubeSense2 Cam SRAM Current", (0, 65_535), (1, 0, 10));
 
-impl crate::wire::Telemetry for Cubesense2Currents {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 232;
+message!(Cubesense2Currents {
+    cubesense2_3v3_current: ("CubeSense2 3V3 Current", 0, 16)
+        .unit("mA").scale(&CUBESENSE2_3V3_CURRENT),
+    cubesense2_cam_sram_current: ("CubeSense2 Cam SRAM Current", 16, 16)
+        .unit("mA").scale(&CUBESENSE2_CAM_SRAM_CURRENT),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Cubesense2Currents {
+    const TELEMETRY_ID: u32 = 232;
 }

@@ -2,7 +2,7 @@
 
 //! CubeSense Configuration, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// CubeSense Configuration: configuration, set by telecommand 25, got by telemetry 203, 112 bytes.
 /// Table 189.
@@ -447,13 +447,28 @@ impl CubesenseConfiguration {
     }
 
     /// Sets Cam1 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam1_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_mounting_alpha = CAM1_MOUNTING_ALPHA.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam1 Sensor Mounting Transform Alpha Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam1_mounting_alpha_deg_f32(&self) -> f32 {
+        f32::from(self.cam1_mounting_alpha) / 100.0
+    }
+
+    /// Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cam1_mounting_alpha_mdeg(&self) -> i32 {
+        i32::from(self.cam1_mounting_alpha) * 10
+    }
+
+    /// Sets Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_cam1_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.cam1_mounting_alpha = CAM1_MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -464,13 +479,28 @@ impl CubesenseConfiguration {
     }
 
     /// Sets Cam1 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam1_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_mounting_beta = CAM1_MOUNTING_BETA.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam1 Sensor Mounting Transform Beta Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam1_mounting_beta_deg_f32(&self) -> f32 {
+        f32::from(self.cam1_mounting_beta) / 100.0
+    }
+
+    /// Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cam1_mounting_beta_mdeg(&self) -> i32 {
+        i32::from(self.cam1_mounting_beta) * 10
+    }
+
+    /// Sets Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_cam1_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.cam1_mounting_beta = CAM1_MOUNTING_BETA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -481,13 +511,28 @@ impl CubesenseConfiguration {
     }
 
     /// Sets Cam1 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam1_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_mounting_gamma = CAM1_MOUNTING_GAMMA.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam1 Sensor Mounting Transform Gamma Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam1_mounting_gamma_deg_f32(&self) -> f32 {
+        f32::from(self.cam1_mounting_gamma) / 100.0
+    }
+
+    /// Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cam1_mounting_gamma_mdeg(&self) -> i32 {
+        i32::from(self.cam1_mounting_gamma) * 10
+    }
+
+    /// Sets Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_cam1_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.cam1_mounting_gamma = CAM1_MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -497,13 +542,29 @@ impl CubesenseConfiguration {
         f64::from(self.cam1_boresight_x) / 100.0
     }
 
-    /// Sets Cam1 Boresight X in pixels, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Cam1 Boresight X in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cam1_boresight_x_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_boresight_x = CAM1_BORESIGHT_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam1 Boresight X in pixels, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam1_boresight_x_pixels_f32(&self) -> f32 {
+        f32::from(self.cam1_boresight_x) / 100.0
+    }
+
+    /// Cam1 Boresight X in thousandths of pixels, exact: 0 to 655350.
+    #[must_use]
+    pub fn cam1_boresight_x_milli_pixels(&self) -> i32 {
+        i32::from(self.cam1_boresight_x) * 10
+    }
+
+    /// Sets Cam1 Boresight X in thousandths of pixels, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cam1_boresight_x_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
+        self.cam1_boresight_x = CAM1_BORESIGHT_X.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -513,13 +574,29 @@ impl CubesenseConfiguration {
         f64::from(self.cam1_boresight_y) / 100.0
     }
 
-    /// Sets Cam1 Boresight Y in pixels, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Cam1 Boresight Y in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cam1_boresight_y_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam1_boresight_y = CAM1_BORESIGHT_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam1 Boresight Y in pixels, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam1_boresight_y_pixels_f32(&self) -> f32 {
+        f32::from(self.cam1_boresight_y) / 100.0
+    }
+
+    /// Cam1 Boresight Y in thousandths of pixels, exact: 0 to 655350.
+    #[must_use]
+    pub fn cam1_boresight_y_milli_pixels(&self) -> i32 {
+        i32::from(self.cam1_boresight_y) * 10
+    }
+
+    /// Sets Cam1 Boresight Y in thousandths of pixels, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cam1_boresight_y_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
+        self.cam1_boresight_y = CAM1_BORESIGHT_Y.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -530,13 +607,28 @@ impl CubesenseConfiguration {
     }
 
     /// Sets Cam2 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam2_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_mounting_alpha = CAM2_MOUNTING_ALPHA.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam2 Sensor Mounting Transform Alpha Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam2_mounting_alpha_deg_f32(&self) -> f32 {
+        f32::from(self.cam2_mounting_alpha) / 100.0
+    }
+
+    /// Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cam2_mounting_alpha_mdeg(&self) -> i32 {
+        i32::from(self.cam2_mounting_alpha) * 10
+    }
+
+    /// Sets Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_cam2_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.cam2_mounting_alpha = CAM2_MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -547,13 +639,28 @@ impl CubesenseConfiguration {
     }
 
     /// Sets Cam2 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam2_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_mounting_beta = CAM2_MOUNTING_BETA.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam2 Sensor Mounting Transform Beta Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam2_mounting_beta_deg_f32(&self) -> f32 {
+        f32::from(self.cam2_mounting_beta) / 100.0
+    }
+
+    /// Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cam2_mounting_beta_mdeg(&self) -> i32 {
+        i32::from(self.cam2_mounting_beta) * 10
+    }
+
+    /// Sets Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_cam2_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.cam2_mounting_beta = CAM2_MOUNTING_BETA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -564,13 +671,28 @@ impl CubesenseConfiguration {
     }
 
     /// Sets Cam2 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cam2_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_mounting_gamma = CAM2_MOUNTING_GAMMA.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam2 Sensor Mounting Transform Gamma Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam2_mounting_gamma_deg_f32(&self) -> f32 {
+        f32::from(self.cam2_mounting_gamma) / 100.0
+    }
+
+    /// Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cam2_mounting_gamma_mdeg(&self) -> i32 {
+        i32::from(self.cam2_mounting_gamma) * 10
+    }
+
+    /// Sets Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_cam2_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.cam2_mounting_gamma = CAM2_MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -580,13 +702,29 @@ impl CubesenseConfiguration {
         f64::from(self.cam2_boresight_x) / 100.0
     }
 
-    /// Sets Cam2 Boresight X in pixels, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Cam2 Boresight X in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cam2_boresight_x_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_boresight_x = CAM2_BORESIGHT_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Cam2 Boresight X in pixels, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam2_boresight_x_pixels_f32(&self) -> f32 {
+        f32::from(self.cam2_boresight_x) / 100.0
+    }
+
+    /// Cam2 Boresight X in thousandths of pixels, exact: 0 to 655350.
+    #[must_use]
+    pub fn cam2_boresight_x_milli_pixels(&self) -> i32 {
+        i32::from(self.cam2_boresight_x) * 10
+    }
+
+    /// Sets Cam2 Boresight X in thousandths of pixels, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cam2_boresight_x_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
+        self.cam2_boresight_x = CAM2_BORESIGHT_X.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -596,123 +734,132 @@ impl CubesenseConfiguration {
         f64::from(self.cam2_boresight_y) / 100.0
     }
 
-    /// Sets Cam2 Boresight Y in pixels, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Cam2 Boresight Y in pixels, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_cam2_boresight_y_pixels(&mut self, value: f64) -> Result<(), Error> {
         self.cam2_boresight_y = CAM2_BORESIGHT_Y.raw(value)?;
         Ok(())
     }
-}
 
-const CAM1_MOUNTING_ALPHA: Scale = Scale {
-    field: "Cam1 Sensor Mounting Transform Alpha Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+    /// Cam2 Boresight Y in pixels, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cam2_boresight_y_pixels_f32(&self) -> f32 {
+        f32::from(self.cam2_boresight_y) / 100.0
+    }
 
-const CAM1_MOUNTING_BETA: Scale = Scale {
-    field: "Cam1 Sensor Mounting Transform Beta Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+    /// Cam2 Boresight Y in thousandths of pixels, exact: 0 to 655350.
+    #[must_use]
+    pub fn cam2_boresight_y_milli_pixels(&self) -> i32 {
+        i32::from(self.cam2_boresight_y) * 10
+    }
 
-const CAM1_MOUNTING_GAMMA: Scale = Scale {
-    field: "Cam1 Sensor Mounting Transform Gamma Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM1_BORESIGHT_X: Scale = Scale {
-    field: "Cam1 Boresight X",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM1_BORESIGHT_Y: Scale = Scale {
-    field: "Cam1 Boresight Y",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM2_MOUNTING_ALPHA: Scale = Scale {
-    field: "Cam2 Sensor Mounting Transform Alpha Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM2_MOUNTING_BETA: Scale = Scale {
-    field: "Cam2 Sensor Mounting Transform Beta Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM2_MOUNTING_GAMMA: Scale = Scale {
-    field: "Cam2 Sensor Mounting Transform Gamma Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM2_BORESIGHT_X: Scale = Scale {
-    field: "Cam2 Boresight X",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CAM2_BORESIGHT_Y: Scale = Scale {
-    field: "Cam2 Boresight Y",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-impl crate::wire::Telecommand for CubesenseConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 25;
-
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
+    /// Sets Cam2 Boresight Y in thousandths of pixels, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cam2_boresight_y_milli_pixels(&mut self, value: i32) -> Result<(), Error> {
+        self.cam2_boresight_y = CAM2_BORESIGHT_Y.whole(value.into(), 10, 0)?;
+        Ok(())
     }
 }
 
-impl crate::wire::Telemetry for CubesenseConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 203;
+const CAM1_MOUNTING_ALPHA: Scale =
+    Scale::new("Cam1 Sensor Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+const CAM1_MOUNTING_BETA: Scale =
+    Scale::new("Cam1 Sensor Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+
+const CAM1_MOUNTING_GAMMA: Scale =
+    Scale::new("Cam1 Sensor Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+
+const CAM1_BORESIGHT_X: Scale = Scale::new("Cam1 Boresight X", (0, 65_535), (1, 0, 100));
+
+const CAM1_BORESIGHT_Y: Scale = Scale::new("Cam1 Boresight Y", (0, 65_535), (1, 0, 100));
+
+const CAM2_MOUNTING_ALPHA: Scale =
+    Scale::new("Cam2 Sensor Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+
+const CAM2_MOUNTING_BETA: Scale =
+    Scale::new("Cam2 Sensor Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+
+const CAM2_MOUNTING_GAMMA: Scale =
+    Scale::new("Cam2 Sensor Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+
+const CAM2_BORESIGHT_X: Scale = Scale::new("Cam2 Boresight X", (0, 65_535), (1, 0, 100));
+
+const CAM2_BORESIGHT_Y: Scale = Scale::new("Cam2 Boresight Y", (0, 65_535), (1, 0, 100));
+
+message!(CubesenseConfiguration {
+    cam1_mounting_alpha: ("Cam1 Sensor Mounting Transform Alpha Angle", 0, 16)
+        .unit("deg").scale(&CAM1_MOUNTING_ALPHA),
+    cam1_mounting_beta: ("Cam1 Sensor Mounting Transform Beta Angle", 16, 16)
+        .unit("deg").scale(&CAM1_MOUNTING_BETA),
+    cam1_mounting_gamma: ("Cam1 Sensor Mounting Transform Gamma Angle", 32, 16)
+        .unit("deg").scale(&CAM1_MOUNTING_GAMMA),
+    cam1_detection_threshold: ("Cam1 detection threshold", 48, 8),
+    cam1_sensor_auto_adjust_mode: ("Cam1 sensor auto adjust mode", 56, 1),
+    cam1_sensor_exposure_time: ("Cam1 sensor exposure time", 64, 16),
+    cam1_boresight_x: ("Cam1 Boresight X", 80, 16).unit("pixels").scale(&CAM1_BORESIGHT_X),
+    cam1_boresight_y: ("Cam1 Boresight Y", 96, 16).unit("pixels").scale(&CAM1_BORESIGHT_Y),
+    cam2_mounting_alpha: ("Cam2 Sensor Mounting Transform Alpha Angle", 112, 16)
+        .unit("deg").scale(&CAM2_MOUNTING_ALPHA),
+    cam2_mounting_beta: ("Cam2 Sensor Mounting Transform Beta Angle", 128, 16)
+        .unit("deg").scale(&CAM2_MOUNTING_BETA),
+    cam2_mounting_gamma: ("Cam2 Sensor Mounting Transform Gamma Angle", 144, 16)
+        .unit("deg").scale(&CAM2_MOUNTING_GAMMA),
+    cam2_detection_threshold: ("Cam2 detection threshold", 160, 8),
+    cam2_sensor_auto_adjust_mode: ("Cam2 sensor auto adjust mode", 168, 1),
+    cam2_sensor_exposure_time: ("Cam2 sensor exposure time", 176, 16),
+    cam2_boresight_x: ("Cam2 Boresight X", 192, 16).unit("pixels").scale(&CAM2_BORESIGHT_X),
+    cam2_boresight_y: ("Cam2 Boresight Y", 208, 16).unit("pixels").scale(&CAM2_BORESIGHT_Y),
+    nadir_max_deviation_percentage: ("Nadir Max Deviation Percentage", 224, 8).unit("%"),
+    nadir_max_bad_edges: ("Nadir Max Bad Edges", 232, 8),
+    nadir_max_radius: ("Nadir Max Radius", 240, 8).unit("deg"),
+    nadir_min_radius: ("Nadir Min Radius", 248, 8).unit("deg"),
+    cam_1_minimum_x_of_area_1: ("Cam 1 Minimum X of area 1", 256, 16),
+    cam_1_maximum_x_of_area_1: ("Cam 1 Maximum X of area 1", 272, 16),
+    cam_1_minimum_y_of_area_1: ("Cam 1 Minimum Y of area 1", 288, 16),
+    cam_1_maximum_y_of_area_1: ("Cam 1 Maximum Y of area 1", 304, 16),
+    cam_1_minimum_x_of_area_2: ("Cam 1 Minimum X of area 2", 320, 16),
+    cam_1_maximum_x_of_area_2: ("Cam 1 Maximum X of area 2", 336, 16),
+    cam_1_minimum_y_of_area_2: ("Cam 1 Minimum Y of area 2", 352, 16),
+    cam_1_maximum_y_of_area_2: ("Cam 1 Maximum Y of area 2", 368, 16),
+    cam_1_minimum_x_of_area_3: ("Cam 1 Minimum X of area 3", 384, 16),
+    cam_1_maximum_x_of_area_3: ("Cam 1 Maximum X of area 3", 400, 16),
+    cam_1_minimum_y_of_area_3: ("Cam 1 Minimum Y of area 3", 416, 16),
+    cam_1_maximum_y_of_area_3: ("Cam 1 Maximum Y of area 3", 432, 16),
+    cam_1_minimum_x_of_area_4: ("Cam 1 Minimum X of area 4", 448, 16),
+    cam_1_maximum_x_of_area_4: ("Cam 1 Maximum X of area 4", 464, 16),
+    cam_1_minimum_y_of_area_4: ("Cam 1 Minimum Y of area 4", 480, 16),
+    cam_1_maximum_y_of_area_4: ("Cam 1 Maximum Y of area 4", 496, 16),
+    cam_1_minimum_x_of_area_5: ("Cam 1 Minimum X of area 5", 512, 16),
+    cam_1_maximum_x_of_area_5: ("Cam 1 Maximum X of area 5", 528, 16),
+    cam_1_minimum_y_of_area_5: ("Cam 1 Minimum Y of area 5", 544, 16),
+    cam_1_maximum_y_of_area_5: ("Cam 1 Maximum Y of area 5", 560, 16),
+    cam_2_minimum_x_of_area_1: ("Cam 2 Minimum X of area 1", 576, 16),
+    cam_2_maximum_x_of_area_1: ("Cam 2 Maximum X of area 1", 592, 16),
+    cam_2_minimum_y_of_area_1: ("Cam 2 Minimum Y of area 1", 608, 16),
+    cam_2_maximum_y_of_area_1: ("Cam 2 Maximum Y of area 1", 624, 16),
+    cam_2_minimum_x_of_area_2: ("Cam 2 Minimum X of area 2", 640, 16),
+    cam_2_maximum_x_of_area_2: ("Cam 2 Maximum X of area 2", 656, 16),
+    cam_2_minimum_y_of_area_2: ("Cam 2 Minimum Y of area 2", 672, 16),
+    cam_2_maximum_y_of_area_2: ("Cam 2 Maximum Y of area 2", 688, 16),
+    cam_2_minimum_x_of_area_3: ("Cam 2 Minimum X of area 3", 704, 16),
+    cam_2_maximum_x_of_area_3: ("Cam 2 Maximum X of area 3", 720, 16),
+    cam_2_minimum_y_of_area_3: ("Cam 2 Minimum Y of area 3", 736, 16),
+    cam_2_maximum_y_of_area_3: ("Cam 2 Maximum Y of area 3", 752, 16),
+    cam_2_minimum_x_of_area_4: ("Cam 2 Minimum X of area 4", 768, 16),
+    cam_2_maximum_x_of_area_4: ("Cam 2 Maximum X of area 4", 784, 16),
+    cam_2_minimum_y_of_area_4: ("Cam 2 Minimum Y of area 4", 800, 16),
+    cam_2_maximum_y_of_area_4: ("Cam 2 Maximum Y of area 4", 816, 16),
+    cam_2_minimum_x_of_area_5: ("Cam 2 Minimum X of area 5", 832, 16),
+    cam_2_maximum_x_of_area_5: ("Cam 2 Maximum X of area 5", 848, 16),
+    cam_2_minimum_y_of_area_5: ("Cam 2 Minimum Y of area 5", 864, 16),
+    cam_2_maximum_y_of_area_5: ("Cam 2 Maximum Y of area 5", 880, 16),
+});
+
+impl crate::Telecommand for CubesenseConfiguration {
+    const TELECOMMAND_ID: u32 = 25;
+}
+
+impl crate::Telemetry for CubesenseConfiguration {
+    const TELEMETRY_ID: u32 = 203;
 }

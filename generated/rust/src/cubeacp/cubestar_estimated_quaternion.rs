@@ -2,7 +2,7 @@
 
 //! CubeStar Estimated Quaternion, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// CubeStar Estimated Quaternion: telemetry 230, 6 bytes. Table 173.
 ///
@@ -89,13 +89,29 @@ impl CubestarEstimatedQuaternion {
         f64::from(self.q0) / 10_000.0
     }
 
-    /// Sets Q0, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Q0, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_q0_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q0 = Q0.raw(value)?;
+        Ok(())
+    }
+
+    /// Q0, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn q0_physical_f32(&self) -> f32 {
+        f32::from(self.q0) / 10_000.0
+    }
+
+    /// Q0 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn q0_micro(&self) -> i32 {
+        i32::from(self.q0) * 100
+    }
+
+    /// Sets Q0 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_q0_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.q0 = Q0.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -105,13 +121,29 @@ impl CubestarEstimatedQuaternion {
         f64::from(self.q1) / 10_000.0
     }
 
-    /// Sets Q1, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Q1, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_q1_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q1 = Q1.raw(value)?;
+        Ok(())
+    }
+
+    /// Q1, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn q1_physical_f32(&self) -> f32 {
+        f32::from(self.q1) / 10_000.0
+    }
+
+    /// Q1 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn q1_micro(&self) -> i32 {
+        i32::from(self.q1) * 100
+    }
+
+    /// Sets Q1 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_q1_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.q1 = Q1.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -121,50 +153,45 @@ impl CubestarEstimatedQuaternion {
         f64::from(self.q2) / 10_000.0
     }
 
-    /// Sets Q2, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Q2, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_q2_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q2 = Q2.raw(value)?;
         Ok(())
     }
+
+    /// Q2, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn q2_physical_f32(&self) -> f32 {
+        f32::from(self.q2) / 10_000.0
+    }
+
+    /// Q2 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn q2_micro(&self) -> i32 {
+        i32::from(self.q2) * 100
+    }
+
+    /// Sets Q2 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_q2_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.q2 = Q2.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const Q0: Scale = Scale {
-    field: "Q0",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Q0: Scale = Scale::new("Q0", (-32_768, 32_767), (1, 0, 10_000));
 
-const Q1: Scale = Scale {
-    field: "Q1",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Q1: Scale = Scale::new("Q1", (-32_768, 32_767), (1, 0, 10_000));
 
-const Q2: Scale = Scale {
-    field: "Q2",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Q2: Scale = Scale::new("Q2", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for CubestarEstimatedQuaternion {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 230;
+message!(CubestarEstimatedQuaternion {
+    q0: ("Q0", 0, 16).scale(&Q0),
+    q1: ("Q1", 16, 16).scale(&Q1),
+    q2: ("Q2", 32, 16).scale(&Q2),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for CubestarEstimatedQuaternion {
+    const TELEMETRY_ID: u32 = 230;
 }

@@ -2,7 +2,7 @@
 
 //! CubeStar Estimated Rates, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// CubeStar Estimated Rates: telemetry 229, 6 bytes. Table 172.
 ///
@@ -86,12 +86,28 @@ impl CubestarEstimatedRates {
     }
 
     /// Sets x-Axis rate, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_x_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.x_axis_rate = X_AXIS_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// x-Axis rate, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_axis_rate_physical_f32(&self) -> f32 {
+        f32::from(self.x_axis_rate) / 10_000.0
+    }
+
+    /// x-Axis rate in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn x_axis_rate_micro(&self) -> i32 {
+        i32::from(self.x_axis_rate) * 100
+    }
+
+    /// Sets x-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_x_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.x_axis_rate = X_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -102,12 +118,28 @@ impl CubestarEstimatedRates {
     }
 
     /// Sets y-Axis rate, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_y_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.y_axis_rate = Y_AXIS_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// y-Axis rate, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_axis_rate_physical_f32(&self) -> f32 {
+        f32::from(self.y_axis_rate) / 10_000.0
+    }
+
+    /// y-Axis rate in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn y_axis_rate_micro(&self) -> i32 {
+        i32::from(self.y_axis_rate) * 100
+    }
+
+    /// Sets y-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_y_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.y_axis_rate = Y_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -118,49 +150,44 @@ impl CubestarEstimatedRates {
     }
 
     /// Sets z-Axis rate, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_z_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.z_axis_rate = Z_AXIS_RATE.raw(value)?;
         Ok(())
     }
+
+    /// z-Axis rate, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_axis_rate_physical_f32(&self) -> f32 {
+        f32::from(self.z_axis_rate) / 10_000.0
+    }
+
+    /// z-Axis rate in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn z_axis_rate_micro(&self) -> i32 {
+        i32::from(self.z_axis_rate) * 100
+    }
+
+    /// Sets z-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_z_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.z_axis_rate = Z_AXIS_RATE.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const X_AXIS_RATE: Scale = Scale {
-    field: "x-Axis rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const X_AXIS_RATE: Scale = Scale::new("x-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
 
-const Y_AXIS_RATE: Scale = Scale {
-    field: "y-Axis rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Y_AXIS_RATE: Scale = Scale::new("y-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
 
-const Z_AXIS_RATE: Scale = Scale {
-    field: "z-Axis rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Z_AXIS_RATE: Scale = Scale::new("z-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for CubestarEstimatedRates {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 229;
+message!(CubestarEstimatedRates {
+    x_axis_rate: ("x-Axis rate", 0, 16).scale(&X_AXIS_RATE),
+    y_axis_rate: ("y-Axis rate", 16, 16).scale(&Y_AXIS_RATE),
+    z_axis_rate: ("z-Axis rate", 32, 16).scale(&Z_AXIS_RATE),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for CubestarEstimatedRates {
+    const TELEMETRY_ID: u32 = 229;
 }

@@ -3,7 +3,7 @@
 //! Current ADCS State, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{flags, Coded, Error, Scale};
+use crate::support::{flags, message, Coded, Error, Scale};
 
 /// Current ADCS State: telemetry 132, 6 bytes. Table 98.
 ///
@@ -293,48 +293,57 @@ impl CurrentAdcsState {
     }
 }
 
-const ATTITUDE_ESTIMATION_MODE: Scale = Scale {
-    field: "Attitude Estimation Mode",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const ATTITUDE_ESTIMATION_MODE: Scale = Scale::new("Attitude Estimation Mode", (0, 15), (1, 0, 1));
 
-const CONTROL_MODE: Scale = Scale {
-    field: "Control Mode",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CONTROL_MODE: Scale = Scale::new("Control Mode", (0, 15), (1, 0, 1));
 
-const ADCS_RUN_MODE: Scale = Scale {
-    field: "ADCS Run Mode",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const ADCS_RUN_MODE: Scale = Scale::new("ADCS Run Mode", (0, 3), (1, 0, 1));
 
-const ASGP4_MODE: Scale = Scale {
-    field: "ASGP4 Mode",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const ASGP4_MODE: Scale = Scale::new("ASGP4 Mode", (0, 3), (1, 0, 1));
 
-impl crate::wire::Telemetry for CurrentAdcsState {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 132;
+message!(CurrentAdcsState {
+    attitude_estimation_mode: ("Attitude Estimation Mode", 0, 4),
+    control_mode: ("Control Mode", 4, 4),
+    adcs_run_mode: ("ADCS Run Mode", 8, 2),
+    asgp4_mode: ("ASGP4 Mode", 10, 2),
+    cubecontrol_signal_enabled: ("CubeControl Signal Enabled", 12, 1),
+    cubecontrol_motor_enabled: ("CubeControl Motor Enabled", 13, 1),
+    cubesense1_enabled: ("CubeSense1 Enabled", 14, 1),
+    cubesense2_enabled: ("CubeSense2 Enabled", 15, 1),
+    cubewheel1_enabled: ("CubeWheel1 Enabled", 16, 1),
+    cubewheel2_enabled: ("CubeWheel2 Enabled", 17, 1),
+    cubewheel3_enabled: ("CubeWheel3 Enabled", 18, 1),
+    cubestar_enabled: ("CubeStar Enabled", 19, 1),
+    gps_receiver_enabled: ("GPS Receiver Enabled", 20, 1),
+    gps_lna_power_enabled: ("GPS LNA Power Enabled", 21, 1),
+    motor_driver_enabled: ("Motor Driver Enabled", 22, 1),
+    sun_is_above_local_horizon: ("Sun is Above Local Horizon", 23, 1),
+    cubesense1_communications_error: ("CubeSense1 Communications Error", 24, 1),
+    cubesense2_communications_error: ("CubeSense2 Communications Error", 25, 1),
+    cubecontrol_signal_communications_error: ("CubeControl Signal Communications Error", 26, 1),
+    cubecontrol_motor_communications_error: ("CubeControl Motor Communications Error", 27, 1),
+    cubewheel1_communications_error: ("CubeWheel1 Communications Error", 28, 1),
+    cubewheel2_communications_error: ("CubeWheel2 Communications Error", 29, 1),
+    cubewheel3_communications_error: ("CubeWheel3 Communications Error", 30, 1),
+    cubestar_communications_error: ("CubeStar Communications Error", 31, 1),
+    magnetometer_range_error: ("Magnetometer Range Error", 32, 1),
+    cam1_sram_overcurrent_detected: ("Cam1 SRAM Overcurrent Detected", 33, 1),
+    cam1_3v3_overcurrent_detected: ("Cam1 3V3 Overcurrent Detected", 34, 1),
+    cam1_sensor_busy_error: ("Cam1 Sensor Busy Error", 35, 1),
+    cam1_sensor_detection_error: ("Cam1 Sensor Detection Error", 36, 1),
+    sun_sensor_range_error: ("Sun Sensor Range Error", 37, 1),
+    cam2_sram_overcurrent_detected: ("Cam2 SRAM Overcurrent Detected", 38, 1),
+    cam2_3v3_overcurrent_detected: ("Cam2 3V3 Overcurrent Detected", 39, 1),
+    cam2_sensor_busy_error: ("Cam2 Sensor Busy Error", 40, 1),
+    cam2_sensor_detection_error: ("Cam2 Sensor Detection Error", 41, 1),
+    nadir_sensor_range_error: ("Nadir Sensor Range Error", 42, 1),
+    rate_sensor_range_error: ("Rate Sensor Range Error", 43, 1),
+    wheel_speed_range_error: ("Wheel Speed Range Error", 44, 1),
+    coarse_sun_sensor_error: ("Coarse Sun Sensor Error", 45, 1),
+    star_tracker_match_error: ("StarTracker Match Error", 46, 1),
+    star_tracker_overcurrent_detected: ("Star Tracker Overcurrent Detected", 47, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for CurrentAdcsState {
+    const TELEMETRY_ID: u32 = 132;
 }

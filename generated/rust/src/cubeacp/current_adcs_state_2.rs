@@ -3,7 +3,7 @@
 //! Current ADCS State 2, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{flags, Coded, Error, Scale};
+use crate::support::{flags, message, Coded, Error, Scale};
 
 /// Current ADCS State 2: telemetry 224, 6 bytes. Table 169.
 ///
@@ -160,21 +160,29 @@ impl CurrentAdcsState2 {
     }
 }
 
-const CURRENT_MAGNETOMETER_SAMPLING_MODE: Scale = Scale {
-    field: "Current Magnetometer Sampling Mode",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CURRENT_MAGNETOMETER_SAMPLING_MODE: Scale =
+    Scale::new("Current Magnetometer Sampling Mode", (0, 3), (1, 0, 1));
 
-impl crate::wire::Telemetry for CurrentAdcsState2 {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 224;
+message!(CurrentAdcsState2 {
+    orbit_parameters_are_invalid: ("Orbit Parameters are Invalid", 0, 1),
+    configuration_is_invalid: ("Configuration is Invalid", 1, 1),
+    control_mode_change_is_not_allowed: ("Control Mode Change is not allowed", 2, 1),
+    estimator_change_is_not_allowed: ("Estimator Change is not allowed", 3, 1),
+    current_magnetometer_sampling_mode: ("Current Magnetometer Sampling Mode", 4, 2),
+    magnetic_field_size_mismatch: ("Modelled and measured magnetic field differs in size", 6, 1),
+    node_recovery_error: ("Node Recovery Error", 7, 1),
+    cubesense1_runtime_error: ("CubeSense1 Runtime Error", 8, 1),
+    cubesense2_runtime_error: ("CubeSense2 Runtime Error", 9, 1),
+    cubecontrol_signal_runtime_error: ("CubeControl Signal Runtime Error", 10, 1),
+    cubecontrol_motor_runtime_error: ("CubeControl Motor Runtime Error", 11, 1),
+    cubewheel1_runtime_error: ("CubeWheel1 Runtime Error", 12, 1),
+    cubewheel2_runtime_error: ("CubeWheel2 Runtime Error", 13, 1),
+    cubewheel3_runtime_error: ("CubeWheel3 Runtime Error", 14, 1),
+    cubestar_runtime_error: ("CubeStar Runtime Error", 15, 1),
+    magnetometer_error: ("Magnetometer Error", 16, 1),
+    rate_sensor_failure: ("Rate Sensor Failure", 17, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for CurrentAdcsState2 {
+    const TELEMETRY_ID: u32 = 224;
 }

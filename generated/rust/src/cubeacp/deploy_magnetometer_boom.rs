@@ -2,7 +2,7 @@
 
 //! Deploy Magnetometer Boom, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Deploy Magnetometer Boom: telecommand 7, 1 byte. Table 73.
 ///
@@ -68,12 +68,10 @@ impl DeployMagnetometerBoom {
     }
 }
 
-impl crate::wire::Telecommand for DeployMagnetometerBoom {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 7;
+message!(DeployMagnetometerBoom {
+    timeout: ("Timeout", 0, 8).unit("s"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for DeployMagnetometerBoom {
+    const TELECOMMAND_ID: u32 = 7;
 }

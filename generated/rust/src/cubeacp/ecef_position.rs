@@ -2,7 +2,7 @@
 
 //! ECEF Position, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// ECEF Position: telemetry 219, 6 bytes. Table 166.
 ///
@@ -83,12 +83,12 @@ impl EcefPosition {
     }
 }
 
-impl crate::wire::Telemetry for EcefPosition {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 219;
+message!(EcefPosition {
+    ecef_position_x: ("ECEF Position X", 0, 16),
+    ecef_position_y: ("ECEF Position Y", 16, 16),
+    ecef_position_z: ("ECEF Position Z", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for EcefPosition {
+    const TELEMETRY_ID: u32 = 219;
 }

@@ -2,7 +2,7 @@
 
 //! Enumerations. Every one keeps values that have no name.
 
-use crate::support::Enumeration;
+use crate::support::enumeration;
 
 /// AdcsRunMode: an enumeration. Table 75.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -65,14 +65,6 @@ impl AdcsRunMode {
     }
 }
 
-impl Enumeration for AdcsRunMode {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for AdcsRunMode {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -86,12 +78,7 @@ impl From<u8> for AdcsRunMode {
     }
 }
 
-impl From<AdcsRunMode> for u8 {
-    #[inline]
-    fn from(value: AdcsRunMode) -> Self {
-        value.raw()
-    }
-}
+enumeration!(AdcsRunMode: u8);
 
 /// ConModeSelect: an enumeration. Table 78.
 ///
@@ -241,14 +228,6 @@ impl ConModeSelect {
     }
 }
 
-impl Enumeration for ConModeSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for ConModeSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -274,12 +253,7 @@ impl From<u8> for ConModeSelect {
     }
 }
 
-impl From<ConModeSelect> for u8 {
-    #[inline]
-    fn from(value: ConModeSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(ConModeSelect: u8);
 
 /// EstimModeSelect: an enumeration. Table 80.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -352,14 +326,6 @@ impl EstimModeSelect {
     }
 }
 
-impl Enumeration for EstimModeSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for EstimModeSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -377,12 +343,7 @@ impl From<u8> for EstimModeSelect {
     }
 }
 
-impl From<EstimModeSelect> for u8 {
-    #[inline]
-    fn from(value: EstimModeSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(EstimModeSelect: u8);
 
 /// GpsSolutionStatus: an enumeration. Table 85.
 ///
@@ -467,14 +428,6 @@ impl GpsSolutionStatus {
     }
 }
 
-impl Enumeration for GpsSolutionStatus {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for GpsSolutionStatus {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -496,12 +449,7 @@ impl From<u8> for GpsSolutionStatus {
     }
 }
 
-impl From<GpsSolutionStatus> for u8 {
-    #[inline]
-    fn from(value: GpsSolutionStatus) -> Self {
-        value.raw()
-    }
-}
+enumeration!(GpsSolutionStatus: u8);
 
 /// Asgp4ModeSelect: an enumeration. Table 87.
 ///
@@ -559,14 +507,6 @@ impl Asgp4ModeSelect {
     }
 }
 
-impl Enumeration for Asgp4ModeSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for Asgp4ModeSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -580,12 +520,7 @@ impl From<u8> for Asgp4ModeSelect {
     }
 }
 
-impl From<Asgp4ModeSelect> for u8 {
-    #[inline]
-    fn from(value: Asgp4ModeSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(Asgp4ModeSelect: u8);
 
 /// MagModeVal: an enumeration. Table 90.
 ///
@@ -645,14 +580,6 @@ impl MagModeVal {
     }
 }
 
-impl Enumeration for MagModeVal {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for MagModeVal {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -666,12 +593,7 @@ impl From<u8> for MagModeVal {
     }
 }
 
-impl From<MagModeVal> for u8 {
-    #[inline]
-    fn from(value: MagModeVal) -> Self {
-        value.raw()
-    }
-}
+enumeration!(MagModeVal: u8);
 
 /// CamSelect: an enumeration. Table 95.
 ///
@@ -720,14 +642,6 @@ impl CamSelect {
     }
 }
 
-impl Enumeration for CamSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for CamSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -740,12 +654,7 @@ impl From<u8> for CamSelect {
     }
 }
 
-impl From<CamSelect> for u8 {
-    #[inline]
-    fn from(value: CamSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(CamSelect: u8);
 
 /// ImSize: an enumeration. Table 96.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -808,14 +717,6 @@ impl ImSize {
     }
 }
 
-impl Enumeration for ImSize {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for ImSize {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -830,12 +731,7 @@ impl From<u8> for ImSize {
     }
 }
 
-impl From<ImSize> for u8 {
-    #[inline]
-    fn from(value: ImSize) -> Self {
-        value.raw()
-    }
-}
+enumeration!(ImSize: u8);
 
 /// JpgConvertResult: an enumeration. Table 100.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -884,14 +780,6 @@ impl JpgConvertResult {
     }
 }
 
-impl Enumeration for JpgConvertResult {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for JpgConvertResult {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -905,12 +793,7 @@ impl From<u8> for JpgConvertResult {
     }
 }
 
-impl From<JpgConvertResult> for u8 {
-    #[inline]
-    fn from(value: JpgConvertResult) -> Self {
-        value.raw()
-    }
-}
+enumeration!(JpgConvertResult: u8);
 
 /// CaptureResult: an enumeration. Table 123.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -971,14 +854,6 @@ impl CaptureResult {
     }
 }
 
-impl Enumeration for CaptureResult {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for CaptureResult {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -994,12 +869,7 @@ impl From<u8> for CaptureResult {
     }
 }
 
-impl From<CaptureResult> for u8 {
-    #[inline]
-    fn from(value: CaptureResult) -> Self {
-        value.raw()
-    }
-}
+enumeration!(CaptureResult: u8);
 
 /// DetectResult: an enumeration. Table 124.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1074,14 +944,6 @@ impl DetectResult {
     }
 }
 
-impl Enumeration for DetectResult {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for DetectResult {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1099,12 +961,7 @@ impl From<u8> for DetectResult {
     }
 }
 
-impl From<DetectResult> for u8 {
-    #[inline]
-    fn from(value: DetectResult) -> Self {
-        value.raw()
-    }
-}
+enumeration!(DetectResult: u8);
 
 /// StarIDModeVal: an enumeration. Table 147.
 ///
@@ -1148,14 +1005,6 @@ impl StarIdModeVal {
     }
 }
 
-impl Enumeration for StarIdModeVal {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for StarIdModeVal {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1167,12 +1016,7 @@ impl From<u8> for StarIdModeVal {
     }
 }
 
-impl From<StarIdModeVal> for u8 {
-    #[inline]
-    fn from(value: StarIdModeVal) -> Self {
-        value.raw()
-    }
-}
+enumeration!(StarIdModeVal: u8);
 
 /// ExecutionWaypoints: an enumeration. Table 168.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1263,14 +1107,6 @@ impl ExecutionWaypoints {
     }
 }
 
-impl Enumeration for ExecutionWaypoints {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for ExecutionWaypoints {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1293,12 +1129,7 @@ impl From<u8> for ExecutionWaypoints {
     }
 }
 
-impl From<ExecutionWaypoints> for u8 {
-    #[inline]
-    fn from(value: ExecutionWaypoints) -> Self {
-        value.raw()
-    }
-}
+enumeration!(ExecutionWaypoints: u8);
 
 /// AsgpError: an enumeration. Table 171.
 ///
@@ -1359,14 +1190,6 @@ impl AsgpError {
     }
 }
 
-impl Enumeration for AsgpError {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for AsgpError {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1380,12 +1203,7 @@ impl From<u8> for AsgpError {
     }
 }
 
-impl From<AsgpError> for u8 {
-    #[inline]
-    fn from(value: AsgpError) -> Self {
-        value.raw()
-    }
-}
+enumeration!(AsgpError: u8);
 
 /// ImSaveStatus: an enumeration. Table 177.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1440,14 +1258,6 @@ impl ImSaveStatus {
     }
 }
 
-impl Enumeration for ImSaveStatus {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for ImSaveStatus {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1462,12 +1272,7 @@ impl From<u8> for ImSaveStatus {
     }
 }
 
-impl From<ImSaveStatus> for u8 {
-    #[inline]
-    fn from(value: ImSaveStatus) -> Self {
-        value.raw()
-    }
-}
+enumeration!(ImSaveStatus: u8);
 
 /// AxisSelect: an enumeration. Table 180.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1532,14 +1337,6 @@ impl AxisSelect {
     }
 }
 
-impl Enumeration for AxisSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for AxisSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1556,12 +1353,7 @@ impl From<u8> for AxisSelect {
     }
 }
 
-impl From<AxisSelect> for u8 {
-    #[inline]
-    fn from(value: AxisSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(AxisSelect: u8);
 
 /// PowerSelect: an enumeration. Table 185.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1609,14 +1401,6 @@ impl PowerSelect {
     }
 }
 
-impl Enumeration for PowerSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for PowerSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1629,12 +1413,7 @@ impl From<u8> for PowerSelect {
     }
 }
 
-impl From<PowerSelect> for u8 {
-    #[inline]
-    fn from(value: PowerSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(PowerSelect: u8);
 
 /// AsgpFilter: an enumeration. Table 193.
 ///
@@ -1680,14 +1459,6 @@ impl AsgpFilter {
     }
 }
 
-impl Enumeration for AsgpFilter {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for AsgpFilter {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1699,12 +1470,7 @@ impl From<u8> for AsgpFilter {
     }
 }
 
-impl From<AsgpFilter> for u8 {
-    #[inline]
-    fn from(value: AsgpFilter) -> Self {
-        value.raw()
-    }
-}
+enumeration!(AsgpFilter: u8);
 
 /// AcpProgramType: an enumeration. Table 202.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1745,14 +1511,6 @@ impl AcpProgramType {
     }
 }
 
-impl Enumeration for AcpProgramType {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for AcpProgramType {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1764,12 +1522,7 @@ impl From<u8> for AcpProgramType {
     }
 }
 
-impl From<AcpProgramType> for u8 {
-    #[inline]
-    fn from(value: AcpProgramType) -> Self {
-        value.raw()
-    }
-}
+enumeration!(AcpProgramType: u8);
 
 /// SpecialConSelect: an enumeration. Table 203.
 ///
@@ -1836,14 +1589,6 @@ impl SpecialConSelect {
     }
 }
 
-impl Enumeration for SpecialConSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for SpecialConSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1858,12 +1603,7 @@ impl From<u8> for SpecialConSelect {
     }
 }
 
-impl From<SpecialConSelect> for u8 {
-    #[inline]
-    fn from(value: SpecialConSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(SpecialConSelect: u8);
 
 /// CsCamType: an enumeration. Table 204.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1904,14 +1644,6 @@ impl CsCamType {
     }
 }
 
-impl Enumeration for CsCamType {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for CsCamType {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1923,12 +1655,7 @@ impl From<u8> for CsCamType {
     }
 }
 
-impl From<CsCamType> for u8 {
-    #[inline]
-    fn from(value: CsCamType) -> Self {
-        value.raw()
-    }
-}
+enumeration!(CsCamType: u8);
 
 /// GpsSelect: an enumeration. Table 205.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -1973,14 +1700,6 @@ impl GpsSelect {
     }
 }
 
-impl Enumeration for GpsSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for GpsSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -1993,12 +1712,7 @@ impl From<u8> for GpsSelect {
     }
 }
 
-impl From<GpsSelect> for u8 {
-    #[inline]
-    fn from(value: GpsSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(GpsSelect: u8);
 
 /// GpioPort: an enumeration. Table 206.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -2055,14 +1769,6 @@ impl GpioPort {
     }
 }
 
-impl Enumeration for GpioPort {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for GpioPort {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -2078,12 +1784,7 @@ impl From<u8> for GpioPort {
     }
 }
 
-impl From<GpioPort> for u8 {
-    #[inline]
-    fn from(value: GpioPort) -> Self {
-        value.raw()
-    }
-}
+enumeration!(GpioPort: u8);
 
 /// GpioPortPin: an enumeration. Table 207.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -2180,14 +1881,6 @@ impl GpioPortPin {
     }
 }
 
-impl Enumeration for GpioPortPin {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for GpioPortPin {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -2213,12 +1906,7 @@ impl From<u8> for GpioPortPin {
     }
 }
 
-impl From<GpioPortPin> for u8 {
-    #[inline]
-    fn from(value: GpioPortPin) -> Self {
-        value.raw()
-    }
-}
+enumeration!(GpioPortPin: u8);
 
 /// SdLogSelect: an enumeration. Table 211.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -2264,14 +1952,6 @@ impl SdLogSelect {
     }
 }
 
-impl Enumeration for SdLogSelect {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for SdLogSelect {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -2283,9 +1963,4 @@ impl From<u8> for SdLogSelect {
     }
 }
 
-impl From<SdLogSelect> for u8 {
-    #[inline]
-    fn from(value: SdLogSelect) -> Self {
-        value.raw()
-    }
-}
+enumeration!(SdLogSelect: u8);

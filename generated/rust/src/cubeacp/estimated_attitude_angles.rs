@@ -2,7 +2,7 @@
 
 //! Estimated Attitude Angles, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Estimated Attitude Angles: telemetry 146, 6 bytes. Table 102.
 ///
@@ -78,13 +78,29 @@ impl EstimatedAttitudeAngles {
         f64::from(self.estimated_roll_angle) / 100.0
     }
 
-    /// Sets Estimated Roll Angle in deg, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Estimated Roll Angle in deg, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_estimated_roll_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_roll_angle = ESTIMATED_ROLL_ANGLE.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated Roll Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_roll_angle_deg_f32(&self) -> f32 {
+        f32::from(self.estimated_roll_angle) / 100.0
+    }
+
+    /// Estimated Roll Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn estimated_roll_angle_mdeg(&self) -> i32 {
+        i32::from(self.estimated_roll_angle) * 10
+    }
+
+    /// Sets Estimated Roll Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_estimated_roll_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_roll_angle = ESTIMATED_ROLL_ANGLE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -94,13 +110,29 @@ impl EstimatedAttitudeAngles {
         f64::from(self.estimated_pitch_angle) / 100.0
     }
 
-    /// Sets Estimated Pitch Angle in deg, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Estimated Pitch Angle in deg, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_estimated_pitch_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_pitch_angle = ESTIMATED_PITCH_ANGLE.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated Pitch Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_pitch_angle_deg_f32(&self) -> f32 {
+        f32::from(self.estimated_pitch_angle) / 100.0
+    }
+
+    /// Estimated Pitch Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn estimated_pitch_angle_mdeg(&self) -> i32 {
+        i32::from(self.estimated_pitch_angle) * 10
+    }
+
+    /// Sets Estimated Pitch Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_estimated_pitch_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_pitch_angle = ESTIMATED_PITCH_ANGLE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -110,50 +142,49 @@ impl EstimatedAttitudeAngles {
         f64::from(self.estimated_yaw_angle) / 100.0
     }
 
-    /// Sets Estimated Yaw Angle in deg, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Estimated Yaw Angle in deg, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_estimated_yaw_angle_deg(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_yaw_angle = ESTIMATED_YAW_ANGLE.raw(value)?;
         Ok(())
     }
+
+    /// Estimated Yaw Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_yaw_angle_deg_f32(&self) -> f32 {
+        f32::from(self.estimated_yaw_angle) / 100.0
+    }
+
+    /// Estimated Yaw Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn estimated_yaw_angle_mdeg(&self) -> i32 {
+        i32::from(self.estimated_yaw_angle) * 10
+    }
+
+    /// Sets Estimated Yaw Angle in thousandths of deg, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_estimated_yaw_angle_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_yaw_angle = ESTIMATED_YAW_ANGLE.whole(value.into(), 10, 0)?;
+        Ok(())
+    }
 }
 
-const ESTIMATED_ROLL_ANGLE: Scale = Scale {
-    field: "Estimated Roll Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const ESTIMATED_ROLL_ANGLE: Scale =
+    Scale::new("Estimated Roll Angle", (-32_768, 32_767), (1, 0, 100));
 
-const ESTIMATED_PITCH_ANGLE: Scale = Scale {
-    field: "Estimated Pitch Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const ESTIMATED_PITCH_ANGLE: Scale =
+    Scale::new("Estimated Pitch Angle", (-32_768, 32_767), (1, 0, 100));
 
-const ESTIMATED_YAW_ANGLE: Scale = Scale {
-    field: "Estimated Yaw Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const ESTIMATED_YAW_ANGLE: Scale =
+    Scale::new("Estimated Yaw Angle", (-32_768, 32_767), (1, 0, 100));
 
-impl crate::wire::Telemetry for EstimatedAttitudeAngles {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 146;
+message!(EstimatedAttitudeAngles {
+    estimated_roll_angle: ("Estimated Roll Angle", 0, 16).unit("deg").scale(&ESTIMATED_ROLL_ANGLE),
+    estimated_pitch_angle: ("Estimated Pitch Angle", 16, 16)
+        .unit("deg").scale(&ESTIMATED_PITCH_ANGLE),
+    estimated_yaw_angle: ("Estimated Yaw Angle", 32, 16).unit("deg").scale(&ESTIMATED_YAW_ANGLE),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for EstimatedAttitudeAngles {
+    const TELEMETRY_ID: u32 = 146;
 }

@@ -2,7 +2,7 @@
 
 //! Estimated Gyro Bias, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Estimated Gyro Bias: telemetry 161, 6 bytes. Table 117.
 ///
@@ -78,12 +78,28 @@ impl EstimatedGyroBias {
     }
 
     /// Sets Estimated X-gyro Bias in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_x_gyro_bias_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_x_gyro_bias = ESTIMATED_X_GYRO_BIAS.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated X-gyro Bias in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_x_gyro_bias_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.estimated_x_gyro_bias) / 1_000.0
+    }
+
+    /// Estimated X-gyro Bias in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn estimated_x_gyro_bias_mdeg_per_s(&self) -> i32 {
+        i32::from(self.estimated_x_gyro_bias)
+    }
+
+    /// Sets Estimated X-gyro Bias in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_estimated_x_gyro_bias_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_x_gyro_bias = ESTIMATED_X_GYRO_BIAS.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -94,12 +110,28 @@ impl EstimatedGyroBias {
     }
 
     /// Sets Estimated Y-gyro Bias in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_y_gyro_bias_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_y_gyro_bias = ESTIMATED_Y_GYRO_BIAS.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated Y-gyro Bias in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_y_gyro_bias_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.estimated_y_gyro_bias) / 1_000.0
+    }
+
+    /// Estimated Y-gyro Bias in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn estimated_y_gyro_bias_mdeg_per_s(&self) -> i32 {
+        i32::from(self.estimated_y_gyro_bias)
+    }
+
+    /// Sets Estimated Y-gyro Bias in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_estimated_y_gyro_bias_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_y_gyro_bias = ESTIMATED_Y_GYRO_BIAS.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -110,49 +142,50 @@ impl EstimatedGyroBias {
     }
 
     /// Sets Estimated Z-gyro Bias in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_z_gyro_bias_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_z_gyro_bias = ESTIMATED_Z_GYRO_BIAS.raw(value)?;
         Ok(())
     }
+
+    /// Estimated Z-gyro Bias in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_z_gyro_bias_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.estimated_z_gyro_bias) / 1_000.0
+    }
+
+    /// Estimated Z-gyro Bias in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn estimated_z_gyro_bias_mdeg_per_s(&self) -> i32 {
+        i32::from(self.estimated_z_gyro_bias)
+    }
+
+    /// Sets Estimated Z-gyro Bias in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_estimated_z_gyro_bias_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_z_gyro_bias = ESTIMATED_Z_GYRO_BIAS.whole(value.into(), 1, 0)?;
+        Ok(())
+    }
 }
 
-const ESTIMATED_X_GYRO_BIAS: Scale = Scale {
-    field: "Estimated X-gyro Bias",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const ESTIMATED_X_GYRO_BIAS: Scale =
+    Scale::new("Estimated X-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
 
-const ESTIMATED_Y_GYRO_BIAS: Scale = Scale {
-    field: "Estimated Y-gyro Bias",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const ESTIMATED_Y_GYRO_BIAS: Scale =
+    Scale::new("Estimated Y-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
 
-const ESTIMATED_Z_GYRO_BIAS: Scale = Scale {
-    field: "Estimated Z-gyro Bias",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const ESTIMATED_Z_GYRO_BIAS: Scale =
+    Scale::new("Estimated Z-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
 
-impl crate::wire::Telemetry for EstimatedGyroBias {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 161;
+message!(EstimatedGyroBias {
+    estimated_x_gyro_bias: ("Estimated X-gyro Bias", 0, 16)
+        .unit("deg/s").scale(&ESTIMATED_X_GYRO_BIAS),
+    estimated_y_gyro_bias: ("Estimated Y-gyro Bias", 16, 16)
+        .unit("deg/s").scale(&ESTIMATED_Y_GYRO_BIAS),
+    estimated_z_gyro_bias: ("Estimated Z-gyro Bias", 32, 16)
+        .unit("deg/s").scale(&ESTIMATED_Z_GYRO_BIAS),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for EstimatedGyroBias {
+    const TELEMETRY_ID: u32 = 161;
 }

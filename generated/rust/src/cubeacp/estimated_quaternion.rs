@@ -2,7 +2,7 @@
 
 //! Estimated Quaternion, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Estimated Quaternion: telemetry 218, 6 bytes. Table 165.
 ///
@@ -78,12 +78,12 @@ impl EstimatedQuaternion {
     }
 }
 
-impl crate::wire::Telemetry for EstimatedQuaternion {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 218;
+message!(EstimatedQuaternion {
+    estimated_q1: ("Estimated q1", 0, 16),
+    estimated_q2: ("Estimated q2", 16, 16),
+    estimated_q3: ("Estimated q3", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for EstimatedQuaternion {
+    const TELEMETRY_ID: u32 = 218;
 }

@@ -2,7 +2,7 @@
 
 //! Estimation Data, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Estimation Data: telemetry 193, 42 bytes. Table 152.
 ///
@@ -193,12 +193,29 @@ impl EstimationData {
     }
 
     /// Sets IGRF Modelled Magnetic Field X in uT, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_igrf_modelled_magnetic_field_x_ut(&mut self, value: f64) -> Result<(), Error> {
         self.igrf_modelled_magnetic_field_x = IGRF_MODELLED_MAGNETIC_FIELD_X.raw(value)?;
+        Ok(())
+    }
+
+    /// IGRF Modelled Magnetic Field X in uT, the nearest float of 32 bits.
+    #[must_use]
+    pub fn igrf_modelled_magnetic_field_x_ut_f32(&self) -> f32 {
+        f32::from(self.igrf_modelled_magnetic_field_x) / 100.0
+    }
+
+    /// IGRF Modelled Magnetic Field X in nT, exact: -327680 to 327670.
+    #[must_use]
+    pub fn igrf_modelled_magnetic_field_x_nt(&self) -> i32 {
+        i32::from(self.igrf_modelled_magnetic_field_x) * 10
+    }
+
+    /// Sets IGRF Modelled Magnetic Field X in nT, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_igrf_modelled_magnetic_field_x_nt(&mut self, value: i32) -> Result<(), Error> {
+        self.igrf_modelled_magnetic_field_x =
+            IGRF_MODELLED_MAGNETIC_FIELD_X.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -209,12 +226,29 @@ impl EstimationData {
     }
 
     /// Sets IGRF Modelled Magnetic Field Y in uT, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_igrf_modelled_magnetic_field_y_ut(&mut self, value: f64) -> Result<(), Error> {
         self.igrf_modelled_magnetic_field_y = IGRF_MODELLED_MAGNETIC_FIELD_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// IGRF Modelled Magnetic Field Y in uT, the nearest float of 32 bits.
+    #[must_use]
+    pub fn igrf_modelled_magnetic_field_y_ut_f32(&self) -> f32 {
+        f32::from(self.igrf_modelled_magnetic_field_y) / 100.0
+    }
+
+    /// IGRF Modelled Magnetic Field Y in nT, exact: -327680 to 327670.
+    #[must_use]
+    pub fn igrf_modelled_magnetic_field_y_nt(&self) -> i32 {
+        i32::from(self.igrf_modelled_magnetic_field_y) * 10
+    }
+
+    /// Sets IGRF Modelled Magnetic Field Y in nT, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_igrf_modelled_magnetic_field_y_nt(&mut self, value: i32) -> Result<(), Error> {
+        self.igrf_modelled_magnetic_field_y =
+            IGRF_MODELLED_MAGNETIC_FIELD_Y.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -225,12 +259,29 @@ impl EstimationData {
     }
 
     /// Sets IGRF Modelled Magnetic Field Z in uT, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_igrf_modelled_magnetic_field_z_ut(&mut self, value: f64) -> Result<(), Error> {
         self.igrf_modelled_magnetic_field_z = IGRF_MODELLED_MAGNETIC_FIELD_Z.raw(value)?;
+        Ok(())
+    }
+
+    /// IGRF Modelled Magnetic Field Z in uT, the nearest float of 32 bits.
+    #[must_use]
+    pub fn igrf_modelled_magnetic_field_z_ut_f32(&self) -> f32 {
+        f32::from(self.igrf_modelled_magnetic_field_z) / 100.0
+    }
+
+    /// IGRF Modelled Magnetic Field Z in nT, exact: -327680 to 327670.
+    #[must_use]
+    pub fn igrf_modelled_magnetic_field_z_nt(&self) -> i32 {
+        i32::from(self.igrf_modelled_magnetic_field_z) * 10
+    }
+
+    /// Sets IGRF Modelled Magnetic Field Z in nT, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_igrf_modelled_magnetic_field_z_nt(&mut self, value: i32) -> Result<(), Error> {
+        self.igrf_modelled_magnetic_field_z =
+            IGRF_MODELLED_MAGNETIC_FIELD_Z.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -241,12 +292,28 @@ impl EstimationData {
     }
 
     /// Sets Modelled Sun Vector X, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_modelled_sun_vector_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.modelled_sun_vector_x = MODELLED_SUN_VECTOR_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Modelled Sun Vector X, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn modelled_sun_vector_x_physical_f32(&self) -> f32 {
+        f32::from(self.modelled_sun_vector_x) / 10_000.0
+    }
+
+    /// Modelled Sun Vector X in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn modelled_sun_vector_x_micro(&self) -> i32 {
+        i32::from(self.modelled_sun_vector_x) * 100
+    }
+
+    /// Sets Modelled Sun Vector X in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_modelled_sun_vector_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.modelled_sun_vector_x = MODELLED_SUN_VECTOR_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -257,12 +324,28 @@ impl EstimationData {
     }
 
     /// Sets Modelled Sun Vector Y, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_modelled_sun_vector_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.modelled_sun_vector_y = MODELLED_SUN_VECTOR_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Modelled Sun Vector Y, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn modelled_sun_vector_y_physical_f32(&self) -> f32 {
+        f32::from(self.modelled_sun_vector_y) / 10_000.0
+    }
+
+    /// Modelled Sun Vector Y in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn modelled_sun_vector_y_micro(&self) -> i32 {
+        i32::from(self.modelled_sun_vector_y) * 100
+    }
+
+    /// Sets Modelled Sun Vector Y in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_modelled_sun_vector_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.modelled_sun_vector_y = MODELLED_SUN_VECTOR_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -273,12 +356,28 @@ impl EstimationData {
     }
 
     /// Sets Modelled Sun Vector Z, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_modelled_sun_vector_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.modelled_sun_vector_z = MODELLED_SUN_VECTOR_Z.raw(value)?;
+        Ok(())
+    }
+
+    /// Modelled Sun Vector Z, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn modelled_sun_vector_z_physical_f32(&self) -> f32 {
+        f32::from(self.modelled_sun_vector_z) / 10_000.0
+    }
+
+    /// Modelled Sun Vector Z in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn modelled_sun_vector_z_micro(&self) -> i32 {
+        i32::from(self.modelled_sun_vector_z) * 100
+    }
+
+    /// Sets Modelled Sun Vector Z in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_modelled_sun_vector_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.modelled_sun_vector_z = MODELLED_SUN_VECTOR_Z.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -289,12 +388,28 @@ impl EstimationData {
     }
 
     /// Sets Estimated X-gyro Bias in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_x_gyro_bias_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_x_gyro_bias = ESTIMATED_X_GYRO_BIAS.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated X-gyro Bias in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_x_gyro_bias_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.estimated_x_gyro_bias) / 1_000.0
+    }
+
+    /// Estimated X-gyro Bias in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn estimated_x_gyro_bias_mdeg_per_s(&self) -> i32 {
+        i32::from(self.estimated_x_gyro_bias)
+    }
+
+    /// Sets Estimated X-gyro Bias in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_estimated_x_gyro_bias_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_x_gyro_bias = ESTIMATED_X_GYRO_BIAS.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -305,12 +420,28 @@ impl EstimationData {
     }
 
     /// Sets Estimated Y-gyro Bias in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_y_gyro_bias_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_y_gyro_bias = ESTIMATED_Y_GYRO_BIAS.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated Y-gyro Bias in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_y_gyro_bias_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.estimated_y_gyro_bias) / 1_000.0
+    }
+
+    /// Estimated Y-gyro Bias in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn estimated_y_gyro_bias_mdeg_per_s(&self) -> i32 {
+        i32::from(self.estimated_y_gyro_bias)
+    }
+
+    /// Sets Estimated Y-gyro Bias in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_estimated_y_gyro_bias_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_y_gyro_bias = ESTIMATED_Y_GYRO_BIAS.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -321,12 +452,28 @@ impl EstimationData {
     }
 
     /// Sets Estimated Z-gyro Bias in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_z_gyro_bias_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_z_gyro_bias = ESTIMATED_Z_GYRO_BIAS.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated Z-gyro Bias in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_z_gyro_bias_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.estimated_z_gyro_bias) / 1_000.0
+    }
+
+    /// Estimated Z-gyro Bias in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn estimated_z_gyro_bias_mdeg_per_s(&self) -> i32 {
+        i32::from(self.estimated_z_gyro_bias)
+    }
+
+    /// Sets Estimated Z-gyro Bias in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_estimated_z_gyro_bias_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_z_gyro_bias = ESTIMATED_Z_GYRO_BIAS.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -337,12 +484,28 @@ impl EstimationData {
     }
 
     /// Sets Innovation Vector X, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_innovation_vector_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.innovation_vector_x = INNOVATION_VECTOR_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Innovation Vector X, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn innovation_vector_x_physical_f32(&self) -> f32 {
+        f32::from(self.innovation_vector_x) / 10_000.0
+    }
+
+    /// Innovation Vector X in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn innovation_vector_x_micro(&self) -> i32 {
+        i32::from(self.innovation_vector_x) * 100
+    }
+
+    /// Sets Innovation Vector X in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_innovation_vector_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.innovation_vector_x = INNOVATION_VECTOR_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -353,12 +516,28 @@ impl EstimationData {
     }
 
     /// Sets Innovation Vector Y, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_innovation_vector_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.innovation_vector_y = INNOVATION_VECTOR_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Innovation Vector Y, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn innovation_vector_y_physical_f32(&self) -> f32 {
+        f32::from(self.innovation_vector_y) / 10_000.0
+    }
+
+    /// Innovation Vector Y in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn innovation_vector_y_micro(&self) -> i32 {
+        i32::from(self.innovation_vector_y) * 100
+    }
+
+    /// Sets Innovation Vector Y in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_innovation_vector_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.innovation_vector_y = INNOVATION_VECTOR_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -369,12 +548,28 @@ impl EstimationData {
     }
 
     /// Sets Innovation Vector Z, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_innovation_vector_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.innovation_vector_z = INNOVATION_VECTOR_Z.raw(value)?;
+        Ok(())
+    }
+
+    /// Innovation Vector Z, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn innovation_vector_z_physical_f32(&self) -> f32 {
+        f32::from(self.innovation_vector_z) / 10_000.0
+    }
+
+    /// Innovation Vector Z in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn innovation_vector_z_micro(&self) -> i32 {
+        i32::from(self.innovation_vector_z) * 100
+    }
+
+    /// Sets Innovation Vector Z in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_innovation_vector_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.innovation_vector_z = INNOVATION_VECTOR_Z.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -385,12 +580,28 @@ impl EstimationData {
     }
 
     /// Sets Quaternion Error - Q1, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_error_q1_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_error_q1 = QUATERNION_ERROR_Q1.raw(value)?;
+        Ok(())
+    }
+
+    /// Quaternion Error - Q1, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn quaternion_error_q1_physical_f32(&self) -> f32 {
+        f32::from(self.quaternion_error_q1) / 10_000.0
+    }
+
+    /// Quaternion Error - Q1 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn quaternion_error_q1_micro(&self) -> i32 {
+        i32::from(self.quaternion_error_q1) * 100
+    }
+
+    /// Sets Quaternion Error - Q1 in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_quaternion_error_q1_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.quaternion_error_q1 = QUATERNION_ERROR_Q1.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -401,12 +612,28 @@ impl EstimationData {
     }
 
     /// Sets Quaternion Error - Q2, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_error_q2_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_error_q2 = QUATERNION_ERROR_Q2.raw(value)?;
+        Ok(())
+    }
+
+    /// Quaternion Error - Q2, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn quaternion_error_q2_physical_f32(&self) -> f32 {
+        f32::from(self.quaternion_error_q2) / 10_000.0
+    }
+
+    /// Quaternion Error - Q2 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn quaternion_error_q2_micro(&self) -> i32 {
+        i32::from(self.quaternion_error_q2) * 100
+    }
+
+    /// Sets Quaternion Error - Q2 in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_quaternion_error_q2_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.quaternion_error_q2 = QUATERNION_ERROR_Q2.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -417,12 +644,28 @@ impl EstimationData {
     }
 
     /// Sets Quaternion Error - Q3, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_error_q3_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_error_q3 = QUATERNION_ERROR_Q3.raw(value)?;
+        Ok(())
+    }
+
+    /// Quaternion Error - Q3, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn quaternion_error_q3_physical_f32(&self) -> f32 {
+        f32::from(self.quaternion_error_q3) / 10_000.0
+    }
+
+    /// Quaternion Error - Q3 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn quaternion_error_q3_micro(&self) -> i32 {
+        i32::from(self.quaternion_error_q3) * 100
+    }
+
+    /// Sets Quaternion Error - Q3 in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_quaternion_error_q3_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.quaternion_error_q3 = QUATERNION_ERROR_Q3.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -433,13 +676,28 @@ impl EstimationData {
     }
 
     /// Sets Quaternion Covariance - Q1 RMS, as a physical value, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_covariance_q1_rms_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_covariance_q1_rms = QUATERNION_COVARIANCE_Q1_RMS.raw(value)?;
+        Ok(())
+    }
+
+    /// Quaternion Covariance - Q1 RMS, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn quaternion_covariance_q1_rms_physical_f32(&self) -> f32 {
+        f32::from(self.quaternion_covariance_q1_rms) / 1_000.0
+    }
+
+    /// Quaternion Covariance - Q1 RMS in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn quaternion_covariance_q1_rms_milli(&self) -> i32 {
+        i32::from(self.quaternion_covariance_q1_rms)
+    }
+
+    /// Sets Quaternion Covariance - Q1 RMS in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_quaternion_covariance_q1_rms_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.quaternion_covariance_q1_rms = QUATERNION_COVARIANCE_Q1_RMS.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -450,13 +708,28 @@ impl EstimationData {
     }
 
     /// Sets Quaternion Covariance - Q2 RMS, as a physical value, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_covariance_q2_rms_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_covariance_q2_rms = QUATERNION_COVARIANCE_Q2_RMS.raw(value)?;
+        Ok(())
+    }
+
+    /// Quaternion Covariance - Q2 RMS, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn quaternion_covariance_q2_rms_physical_f32(&self) -> f32 {
+        f32::from(self.quaternion_covariance_q2_rms) / 1_000.0
+    }
+
+    /// Quaternion Covariance - Q2 RMS in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn quaternion_covariance_q2_rms_milli(&self) -> i32 {
+        i32::from(self.quaternion_covariance_q2_rms)
+    }
+
+    /// Sets Quaternion Covariance - Q2 RMS in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_quaternion_covariance_q2_rms_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.quaternion_covariance_q2_rms = QUATERNION_COVARIANCE_Q2_RMS.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -467,13 +740,28 @@ impl EstimationData {
     }
 
     /// Sets Quaternion Covariance - Q3 RMS, as a physical value, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_covariance_q3_rms_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_covariance_q3_rms = QUATERNION_COVARIANCE_Q3_RMS.raw(value)?;
+        Ok(())
+    }
+
+    /// Quaternion Covariance - Q3 RMS, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn quaternion_covariance_q3_rms_physical_f32(&self) -> f32 {
+        f32::from(self.quaternion_covariance_q3_rms) / 1_000.0
+    }
+
+    /// Quaternion Covariance - Q3 RMS in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn quaternion_covariance_q3_rms_milli(&self) -> i32 {
+        i32::from(self.quaternion_covariance_q3_rms)
+    }
+
+    /// Sets Quaternion Covariance - Q3 RMS in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_quaternion_covariance_q3_rms_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.quaternion_covariance_q3_rms = QUATERNION_COVARIANCE_Q3_RMS.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -484,12 +772,28 @@ impl EstimationData {
     }
 
     /// Sets X Angular Rate Covariance, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_x_angular_rate_covariance_physical(&mut self, value: f64) -> Result<(), Error> {
         self.x_angular_rate_covariance = X_ANGULAR_RATE_COVARIANCE.raw(value)?;
+        Ok(())
+    }
+
+    /// X Angular Rate Covariance, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_angular_rate_covariance_physical_f32(&self) -> f32 {
+        f32::from(self.x_angular_rate_covariance) / 1_000.0
+    }
+
+    /// X Angular Rate Covariance in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn x_angular_rate_covariance_milli(&self) -> i32 {
+        i32::from(self.x_angular_rate_covariance)
+    }
+
+    /// Sets X Angular Rate Covariance in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_x_angular_rate_covariance_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.x_angular_rate_covariance = X_ANGULAR_RATE_COVARIANCE.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -500,12 +804,28 @@ impl EstimationData {
     }
 
     /// Sets Y Angular Rate Covariance, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_y_angular_rate_covariance_physical(&mut self, value: f64) -> Result<(), Error> {
         self.y_angular_rate_covariance = Y_ANGULAR_RATE_COVARIANCE.raw(value)?;
+        Ok(())
+    }
+
+    /// Y Angular Rate Covariance, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_angular_rate_covariance_physical_f32(&self) -> f32 {
+        f32::from(self.y_angular_rate_covariance) / 1_000.0
+    }
+
+    /// Y Angular Rate Covariance in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn y_angular_rate_covariance_milli(&self) -> i32 {
+        i32::from(self.y_angular_rate_covariance)
+    }
+
+    /// Sets Y Angular Rate Covariance in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_y_angular_rate_covariance_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.y_angular_rate_covariance = Y_ANGULAR_RATE_COVARIANCE.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -516,211 +836,131 @@ impl EstimationData {
     }
 
     /// Sets Z Angular Rate Covariance, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_z_angular_rate_covariance_physical(&mut self, value: f64) -> Result<(), Error> {
         self.z_angular_rate_covariance = Z_ANGULAR_RATE_COVARIANCE.raw(value)?;
         Ok(())
     }
+
+    /// Z Angular Rate Covariance, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_angular_rate_covariance_physical_f32(&self) -> f32 {
+        f32::from(self.z_angular_rate_covariance) / 1_000.0
+    }
+
+    /// Z Angular Rate Covariance in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn z_angular_rate_covariance_milli(&self) -> i32 {
+        i32::from(self.z_angular_rate_covariance)
+    }
+
+    /// Sets Z Angular Rate Covariance in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_z_angular_rate_covariance_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.z_angular_rate_covariance = Z_ANGULAR_RATE_COVARIANCE.whole(value.into(), 1, 0)?;
+        Ok(())
+    }
 }
 
-const IGRF_MODELLED_MAGNETIC_FIELD_X: Scale = Scale {
-    field: "IGRF Modelled Magnetic Field X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const IGRF_MODELLED_MAGNETIC_FIELD_X: Scale =
+    Scale::new("IGRF Modelled Magnetic Field X", (-32_768, 32_767), (1, 0, 100));
 
-const IGRF_MODELLED_MAGNETIC_FIELD_Y: Scale = Scale {
-    field: "IGRF Modelled Magnetic Field Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const IGRF_MODELLED_MAGNETIC_FIELD_Y: Scale =
+    Scale::new("IGRF Modelled Magnetic Field Y", (-32_768, 32_767), (1, 0, 100));
 
-const IGRF_MODELLED_MAGNETIC_FIELD_Z: Scale = Scale {
-    field: "IGRF Modelled Magnetic Field Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const IGRF_MODELLED_MAGNETIC_FIELD_Z: Scale =
+    Scale::new("IGRF Modelled Magnetic Field Z", (-32_768, 32_767), (1, 0, 100));
 
-const MODELLED_SUN_VECTOR_X: Scale = Scale {
-    field: "Modelled Sun Vector X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const MODELLED_SUN_VECTOR_X: Scale =
+    Scale::new("Modelled Sun Vector X", (-32_768, 32_767), (1, 0, 10_000));
 
-const MODELLED_SUN_VECTOR_Y: Scale = Scale {
-    field: "Modelled Sun Vector Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const MODELLED_SUN_VECTOR_Y: Scale =
+    Scale::new("Modelled Sun Vector Y", (-32_768, 32_767), (1, 0, 10_000));
 
-const MODELLED_SUN_VECTOR_Z: Scale = Scale {
-    field: "Modelled Sun Vector Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const MODELLED_SUN_VECTOR_Z: Scale =
+    Scale::new("Modelled Sun Vector Z", (-32_768, 32_767), (1, 0, 10_000));
 
-const ESTIMATED_X_GYRO_BIAS: Scale = Scale {
-    field: "Estimated X-gyro Bias",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const ESTIMATED_X_GYRO_BIAS: Scale =
+    Scale::new("Estimated X-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
 
-const ESTIMATED_Y_GYRO_BIAS: Scale = Scale {
-    field: "Estimated Y-gyro Bias",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const ESTIMATED_Y_GYRO_BIAS: Scale =
+    Scale::new("Estimated Y-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
 
-const ESTIMATED_Z_GYRO_BIAS: Scale = Scale {
-    field: "Estimated Z-gyro Bias",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const ESTIMATED_Z_GYRO_BIAS: Scale =
+    Scale::new("Estimated Z-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
 
-const INNOVATION_VECTOR_X: Scale = Scale {
-    field: "Innovation Vector X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const INNOVATION_VECTOR_X: Scale =
+    Scale::new("Innovation Vector X", (-32_768, 32_767), (1, 0, 10_000));
 
-const INNOVATION_VECTOR_Y: Scale = Scale {
-    field: "Innovation Vector Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const INNOVATION_VECTOR_Y: Scale =
+    Scale::new("Innovation Vector Y", (-32_768, 32_767), (1, 0, 10_000));
 
-const INNOVATION_VECTOR_Z: Scale = Scale {
-    field: "Innovation Vector Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const INNOVATION_VECTOR_Z: Scale =
+    Scale::new("Innovation Vector Z", (-32_768, 32_767), (1, 0, 10_000));
 
-const QUATERNION_ERROR_Q1: Scale = Scale {
-    field: "Quaternion Error - Q1",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const QUATERNION_ERROR_Q1: Scale =
+    Scale::new("Quaternion Error - Q1", (-32_768, 32_767), (1, 0, 10_000));
 
-const QUATERNION_ERROR_Q2: Scale = Scale {
-    field: "Quaternion Error - Q2",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const QUATERNION_ERROR_Q2: Scale =
+    Scale::new("Quaternion Error - Q2", (-32_768, 32_767), (1, 0, 10_000));
 
-const QUATERNION_ERROR_Q3: Scale = Scale {
-    field: "Quaternion Error - Q3",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const QUATERNION_ERROR_Q3: Scale =
+    Scale::new("Quaternion Error - Q3", (-32_768, 32_767), (1, 0, 10_000));
 
-const QUATERNION_COVARIANCE_Q1_RMS: Scale = Scale {
-    field: "Quaternion Covariance - Q1 RMS",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const QUATERNION_COVARIANCE_Q1_RMS: Scale =
+    Scale::new("Quaternion Covariance - Q1 RMS", (-32_768, 32_767), (1, 0, 1_000));
 
-const QUATERNION_COVARIANCE_Q2_RMS: Scale = Scale {
-    field: "Quaternion Covariance - Q2 RMS",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const QUATERNION_COVARIANCE_Q2_RMS: Scale =
+    Scale::new("Quaternion Covariance - Q2 RMS", (-32_768, 32_767), (1, 0, 1_000));
 
-const QUATERNION_COVARIANCE_Q3_RMS: Scale = Scale {
-    field: "Quaternion Covariance - Q3 RMS",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const QUATERNION_COVARIANCE_Q3_RMS: Scale =
+    Scale::new("Quaternion Covariance - Q3 RMS", (-32_768, 32_767), (1, 0, 1_000));
 
-const X_ANGULAR_RATE_COVARIANCE: Scale = Scale {
-    field: "X Angular Rate Covariance",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const X_ANGULAR_RATE_COVARIANCE: Scale =
+    Scale::new("X Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
 
-const Y_ANGULAR_RATE_COVARIANCE: Scale = Scale {
-    field: "Y Angular Rate Covariance",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const Y_ANGULAR_RATE_COVARIANCE: Scale =
+    Scale::new("Y Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
 
-const Z_ANGULAR_RATE_COVARIANCE: Scale = Scale {
-    field: "Z Angular Rate Covariance",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const Z_ANGULAR_RATE_COVARIANCE: Scale =
+    Scale::new("Z Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
 
-impl crate::wire::Telemetry for EstimationData {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 193;
+message!(EstimationData {
+    igrf_modelled_magnetic_field_x: ("IGRF Modelled Magnetic Field X", 0, 16)
+        .unit("uT").scale(&IGRF_MODELLED_MAGNETIC_FIELD_X),
+    igrf_modelled_magnetic_field_y: ("IGRF Modelled Magnetic Field Y", 16, 16)
+        .unit("uT").scale(&IGRF_MODELLED_MAGNETIC_FIELD_Y),
+    igrf_modelled_magnetic_field_z: ("IGRF Modelled Magnetic Field Z", 32, 16)
+        .unit("uT").scale(&IGRF_MODELLED_MAGNETIC_FIELD_Z),
+    modelled_sun_vector_x: ("Modelled Sun Vector X", 48, 16).scale(&MODELLED_SUN_VECTOR_X),
+    modelled_sun_vector_y: ("Modelled Sun Vector Y", 64, 16).scale(&MODELLED_SUN_VECTOR_Y),
+    modelled_sun_vector_z: ("Modelled Sun Vector Z", 80, 16).scale(&MODELLED_SUN_VECTOR_Z),
+    estimated_x_gyro_bias: ("Estimated X-gyro Bias", 96, 16)
+        .unit("deg/s").scale(&ESTIMATED_X_GYRO_BIAS),
+    estimated_y_gyro_bias: ("Estimated Y-gyro Bias", 112, 16)
+        .unit("deg/s").scale(&ESTIMATED_Y_GYRO_BIAS),
+    estimated_z_gyro_bias: ("Estimated Z-gyro Bias", 128, 16)
+        .unit("deg/s").scale(&ESTIMATED_Z_GYRO_BIAS),
+    innovation_vector_x: ("Innovation Vector X", 144, 16).scale(&INNOVATION_VECTOR_X),
+    innovation_vector_y: ("Innovation Vector Y", 160, 16).scale(&INNOVATION_VECTOR_Y),
+    innovation_vector_z: ("Innovation Vector Z", 176, 16).scale(&INNOVATION_VECTOR_Z),
+    quaternion_error_q1: ("Quaternion Error - Q1", 192, 16).scale(&QUATERNION_ERROR_Q1),
+    quaternion_error_q2: ("Quaternion Error - Q2", 208, 16).scale(&QUATERNION_ERROR_Q2),
+    quaternion_error_q3: ("Quaternion Error - Q3", 224, 16).scale(&QUATERNION_ERROR_Q3),
+    quaternion_covariance_q1_rms: ("Quaternion Covariance - Q1 RMS", 240, 16)
+        .scale(&QUATERNION_COVARIANCE_Q1_RMS),
+    quaternion_covariance_q2_rms: ("Quaternion Covariance - Q2 RMS", 256, 16)
+        .scale(&QUATERNION_COVARIANCE_Q2_RMS),
+    quaternion_covariance_q3_rms: ("Quaternion Covariance - Q3 RMS", 272, 16)
+        .scale(&QUATERNION_COVARIANCE_Q3_RMS),
+    x_angular_rate_covariance: ("X Angular Rate Covariance", 288, 16)
+        .scale(&X_ANGULAR_RATE_COVARIANCE),
+    y_angular_rate_covariance: ("Y Angular Rate Covariance", 304, 16)
+        .scale(&Y_ANGULAR_RATE_COVARIANCE),
+    z_angular_rate_covariance: ("Z Angular Rate Covariance", 320, 16)
+        .scale(&Z_ANGULAR_RATE_COVARIANCE),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for EstimationData {
+    const TELEMETRY_ID: u32 = 193;
 }

@@ -2,7 +2,7 @@
 
 //! Estimation Innovation Vector, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Estimation Innovation Vector: telemetry 162, 6 bytes. Table 118.
 ///
@@ -83,12 +83,28 @@ impl EstimationInnovationVector {
     }
 
     /// Sets Innovation Vector X, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_innovation_vector_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.innovation_vector_x = INNOVATION_VECTOR_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Innovation Vector X, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn innovation_vector_x_physical_f32(&self) -> f32 {
+        f32::from(self.innovation_vector_x) / 10_000.0
+    }
+
+    /// Innovation Vector X in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn innovation_vector_x_micro(&self) -> i32 {
+        i32::from(self.innovation_vector_x) * 100
+    }
+
+    /// Sets Innovation Vector X in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_innovation_vector_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.innovation_vector_x = INNOVATION_VECTOR_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -99,12 +115,28 @@ impl EstimationInnovationVector {
     }
 
     /// Sets Innovation Vector Y, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_innovation_vector_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.innovation_vector_y = INNOVATION_VECTOR_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Innovation Vector Y, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn innovation_vector_y_physical_f32(&self) -> f32 {
+        f32::from(self.innovation_vector_y) / 10_000.0
+    }
+
+    /// Innovation Vector Y in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn innovation_vector_y_micro(&self) -> i32 {
+        i32::from(self.innovation_vector_y) * 100
+    }
+
+    /// Sets Innovation Vector Y in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_innovation_vector_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.innovation_vector_y = INNOVATION_VECTOR_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -115,49 +147,47 @@ impl EstimationInnovationVector {
     }
 
     /// Sets Innovation Vector Z, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_innovation_vector_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.innovation_vector_z = INNOVATION_VECTOR_Z.raw(value)?;
         Ok(())
     }
+
+    /// Innovation Vector Z, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn innovation_vector_z_physical_f32(&self) -> f32 {
+        f32::from(self.innovation_vector_z) / 10_000.0
+    }
+
+    /// Innovation Vector Z in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn innovation_vector_z_micro(&self) -> i32 {
+        i32::from(self.innovation_vector_z) * 100
+    }
+
+    /// Sets Innovation Vector Z in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_innovation_vector_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.innovation_vector_z = INNOVATION_VECTOR_Z.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const INNOVATION_VECTOR_X: Scale = Scale {
-    field: "Innovation Vector X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const INNOVATION_VECTOR_X: Scale =
+    Scale::new("Innovation Vector X", (-32_768, 32_767), (1, 0, 10_000));
 
-const INNOVATION_VECTOR_Y: Scale = Scale {
-    field: "Innovation Vector Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const INNOVATION_VECTOR_Y: Scale =
+    Scale::new("Innovation Vector Y", (-32_768, 32_767), (1, 0, 10_000));
 
-const INNOVATION_VECTOR_Z: Scale = Scale {
-    field: "Innovation Vector Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const INNOVATION_VECTOR_Z: Scale =
+    Scale::new("Innovation Vector Z", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for EstimationInnovationVector {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 162;
+message!(EstimationInnovationVector {
+    innovation_vector_x: ("Innovation Vector X", 0, 16).scale(&INNOVATION_VECTOR_X),
+    innovation_vector_y: ("Innovation Vector Y", 16, 16).scale(&INNOVATION_VECTOR_Y),
+    innovation_vector_z: ("Innovation Vector Z", 32, 16).scale(&INNOVATION_VECTOR_Z),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for EstimationInnovationVector {
+    const TELEMETRY_ID: u32 = 162;
 }

@@ -3,7 +3,7 @@
 //! Estimation Parameters, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{flags, put, take, Coded, Error, Scale};
+use crate::support::{flags, message, put, take, Coded, Error, Scale};
 
 /// Estimation Parameters: configuration, set by telecommand 27, got by telemetry 223, 31 bytes.
 /// Table 200.
@@ -196,58 +196,40 @@ impl EstimationParameters {
     }
 }
 
-const MAGNETOMETER_MODE: Scale = Scale {
-    field: "Magnetometer Mode",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const MAGNETOMETER_MODE: Scale = Scale::new("Magnetometer Mode", (0, 3), (1, 0, 1));
 
-const RAW_MAGNETOMETER_SELECTION: Scale = Scale {
-    field: "Magnetometer Selection for RAW MTM TLM",
-    min: 0,
-    max: 3,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const RAW_MAGNETOMETER_SELECTION: Scale =
+    Scale::new("Magnetometer Selection for RAW MTM TLM", (0, 3), (1, 0, 1));
 
-const CAM1_PERIOD: Scale = Scale {
-    field: "Cam1 period",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CAM1_PERIOD: Scale = Scale::new("Cam1 period", (0, 15), (1, 0, 1));
 
-const CAM2_PERIOD: Scale = Scale {
-    field: "Cam2 period",
-    min: 0,
-    max: 15,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const CAM2_PERIOD: Scale = Scale::new("Cam2 period", (0, 15), (1, 0, 1));
 
-impl crate::wire::Telecommand for EstimationParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 27;
+message!(EstimationParameters {
+    magnetometer_rate_filter_system_noise: ("Magnetometer Rate Filter System Noise", 0, 32),
+    ekf_system_noise: ("EKF System Noise", 32, 32),
+    css_measurement_noise: ("CSS Measurement Noise", 64, 32),
+    sun_sensor_measurement_noise: ("Sun Sensor Measurement Noise", 96, 32),
+    nadir_sensor_measurement_noise: ("Nadir Sensor Measurement Noise", 128, 32),
+    magnetometer_measurement_noise: ("Magnetometer Measurement Noise", 160, 32),
+    star_tracker_measurement_noise: ("Star Tracker Measurement Noise", 192, 32),
+    use_sun_sensor: ("Use Sun Sensor", 224, 1),
+    use_nadir_sensor: ("Use Nadir Sensor", 225, 1),
+    use_css: ("Use CSS", 226, 1),
+    use_star_tracker: ("Use Star Tracker", 227, 1),
+    nadir_sensor_terminator_test: ("Nadir sensor terminator test", 228, 1),
+    automatic_magnetometer_recovery: ("Automatic Magnetometer Recovery", 229, 1),
+    magnetometer_mode: ("Magnetometer Mode", 230, 2),
+    raw_magnetometer_selection: ("Magnetometer Selection for RAW MTM TLM", 232, 2),
+    estimation_transition_on_rate_sensor_error: ("Automatic Estimation Transition due to Rate Sensor Errors", 234, 1),
+    cam1_period: ("Cam1 period", 240, 4).unit("s"),
+    cam2_period: ("Cam2 period", 244, 4).unit("s"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for EstimationParameters {
+    const TELECOMMAND_ID: u32 = 27;
 }
 
-impl crate::wire::Telemetry for EstimationParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 223;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for EstimationParameters {
+    const TELEMETRY_ID: u32 = 223;
 }

@@ -2,7 +2,7 @@
 
 //! Fine Estimated Angular Rates, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Fine Estimated Angular Rates: telemetry 201, 6 bytes. Table 157.
 ///
@@ -93,12 +93,28 @@ impl FineAngularRates {
     }
 
     /// Sets Estimated X Angular Rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_x_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_x_angular_rate = ESTIMATED_X_ANGULAR_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated X Angular Rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_x_angular_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.estimated_x_angular_rate) / 1_000.0
+    }
+
+    /// Estimated X Angular Rate in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn estimated_x_angular_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.estimated_x_angular_rate)
+    }
+
+    /// Sets Estimated X Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_estimated_x_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_x_angular_rate = ESTIMATED_X_ANGULAR_RATE.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -109,12 +125,28 @@ impl FineAngularRates {
     }
 
     /// Sets Estimated Y Angular Rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_y_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_y_angular_rate = ESTIMATED_Y_ANGULAR_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// Estimated Y Angular Rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_y_angular_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.estimated_y_angular_rate) / 1_000.0
+    }
+
+    /// Estimated Y Angular Rate in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn estimated_y_angular_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.estimated_y_angular_rate)
+    }
+
+    /// Sets Estimated Y Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_estimated_y_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_y_angular_rate = ESTIMATED_Y_ANGULAR_RATE.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -125,49 +157,50 @@ impl FineAngularRates {
     }
 
     /// Sets Estimated Z Angular Rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_estimated_z_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.estimated_z_angular_rate = ESTIMATED_Z_ANGULAR_RATE.raw(value)?;
         Ok(())
     }
+
+    /// Estimated Z Angular Rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn estimated_z_angular_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.estimated_z_angular_rate) / 1_000.0
+    }
+
+    /// Estimated Z Angular Rate in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn estimated_z_angular_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.estimated_z_angular_rate)
+    }
+
+    /// Sets Estimated Z Angular Rate in thousandths of deg/s, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_estimated_z_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.estimated_z_angular_rate = ESTIMATED_Z_ANGULAR_RATE.whole(value.into(), 1, 0)?;
+        Ok(())
+    }
 }
 
-const ESTIMATED_X_ANGULAR_RATE: Scale = Scale {
-    field: "Estimated X Angular Rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const ESTIMATED_X_ANGULAR_RATE: Scale =
+    Scale::new("Estimated X Angular Rate", (-32_768, 32_767), (1, 0, 1_000));
 
-const ESTIMATED_Y_ANGULAR_RATE: Scale = Scale {
-    field: "Estimated Y Angular Rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const ESTIMATED_Y_ANGULAR_RATE: Scale =
+    Scale::new("Estimated Y Angular Rate", (-32_768, 32_767), (1, 0, 1_000));
 
-const ESTIMATED_Z_ANGULAR_RATE: Scale = Scale {
-    field: "Estimated Z Angular Rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const ESTIMATED_Z_ANGULAR_RATE: Scale =
+    Scale::new("Estimated Z Angular Rate", (-32_768, 32_767), (1, 0, 1_000));
 
-impl crate::wire::Telemetry for FineAngularRates {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 201;
+message!(FineAngularRates {
+    estimated_x_angular_rate: ("Estimated X Angular Rate", 0, 16)
+        .unit("deg/s").scale(&ESTIMATED_X_ANGULAR_RATE),
+    estimated_y_angular_rate: ("Estimated Y Angular Rate", 16, 16)
+        .unit("deg/s").scale(&ESTIMATED_Y_ANGULAR_RATE),
+    estimated_z_angular_rate: ("Estimated Z Angular Rate", 32, 16)
+        .unit("deg/s").scale(&ESTIMATED_Z_ANGULAR_RATE),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for FineAngularRates {
+    const TELEMETRY_ID: u32 = 201;
 }

@@ -2,7 +2,7 @@
 
 //! Fine Sun Vector, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Fine Sun Vector: telemetry 153, 6 bytes. Table 109.
 ///
@@ -78,13 +78,29 @@ impl FineSunVector {
         f64::from(self.sun_x) / 10_000.0
     }
 
-    /// Sets Sun X, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Sun X, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_sun_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sun_x = SUN_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Sun X, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn sun_x_physical_f32(&self) -> f32 {
+        f32::from(self.sun_x) / 10_000.0
+    }
+
+    /// Sun X in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn sun_x_micro(&self) -> i32 {
+        i32::from(self.sun_x) * 100
+    }
+
+    /// Sets Sun X in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_sun_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.sun_x = SUN_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -94,13 +110,29 @@ impl FineSunVector {
         f64::from(self.sun_y) / 10_000.0
     }
 
-    /// Sets Sun Y, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Sun Y, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_sun_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sun_y = SUN_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Sun Y, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn sun_y_physical_f32(&self) -> f32 {
+        f32::from(self.sun_y) / 10_000.0
+    }
+
+    /// Sun Y in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn sun_y_micro(&self) -> i32 {
+        i32::from(self.sun_y) * 100
+    }
+
+    /// Sets Sun Y in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_sun_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.sun_y = SUN_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -110,50 +142,45 @@ impl FineSunVector {
         f64::from(self.sun_z) / 10_000.0
     }
 
-    /// Sets Sun Z, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Sun Z, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_sun_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sun_z = SUN_Z.raw(value)?;
         Ok(())
     }
+
+    /// Sun Z, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn sun_z_physical_f32(&self) -> f32 {
+        f32::from(self.sun_z) / 10_000.0
+    }
+
+    /// Sun Z in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn sun_z_micro(&self) -> i32 {
+        i32::from(self.sun_z) * 100
+    }
+
+    /// Sets Sun Z in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_sun_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.sun_z = SUN_Z.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const SUN_X: Scale = Scale {
-    field: "Sun X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const SUN_X: Scale = Scale::new("Sun X", (-32_768, 32_767), (1, 0, 10_000));
 
-const SUN_Y: Scale = Scale {
-    field: "Sun Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const SUN_Y: Scale = Scale::new("Sun Y", (-32_768, 32_767), (1, 0, 10_000));
 
-const SUN_Z: Scale = Scale {
-    field: "Sun Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const SUN_Z: Scale = Scale::new("Sun Z", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for FineSunVector {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 153;
+message!(FineSunVector {
+    sun_x: ("Sun X", 0, 16).scale(&SUN_X),
+    sun_y: ("Sun Y", 16, 16).scale(&SUN_Y),
+    sun_z: ("Sun Z", 32, 16).scale(&SUN_Z),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for FineSunVector {
+    const TELEMETRY_ID: u32 = 153;
 }

@@ -2,7 +2,7 @@
 
 //! IGRF Modelled Magnetic Field Vector, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// IGRF Modelled Magnetic Field Vector: telemetry 159, 6 bytes. Table 115.
 ///
@@ -78,12 +78,28 @@ impl IgrfModelledMagneticFieldVector {
     }
 
     /// Sets IGRF Modelled Magnetic Field X in uT, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_field_x_ut(&mut self, value: f64) -> Result<(), Error> {
         self.field_x = FIELD_X.raw(value)?;
+        Ok(())
+    }
+
+    /// IGRF Modelled Magnetic Field X in uT, the nearest float of 32 bits.
+    #[must_use]
+    pub fn field_x_ut_f32(&self) -> f32 {
+        f32::from(self.field_x) / 100.0
+    }
+
+    /// IGRF Modelled Magnetic Field X in nT, exact: -327680 to 327670.
+    #[must_use]
+    pub fn field_x_nt(&self) -> i32 {
+        i32::from(self.field_x) * 10
+    }
+
+    /// Sets IGRF Modelled Magnetic Field X in nT, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_field_x_nt(&mut self, value: i32) -> Result<(), Error> {
+        self.field_x = FIELD_X.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -94,12 +110,28 @@ impl IgrfModelledMagneticFieldVector {
     }
 
     /// Sets IGRF Modelled Magnetic Field Y in uT, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_field_y_ut(&mut self, value: f64) -> Result<(), Error> {
         self.field_y = FIELD_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// IGRF Modelled Magnetic Field Y in uT, the nearest float of 32 bits.
+    #[must_use]
+    pub fn field_y_ut_f32(&self) -> f32 {
+        f32::from(self.field_y) / 100.0
+    }
+
+    /// IGRF Modelled Magnetic Field Y in nT, exact: -327680 to 327670.
+    #[must_use]
+    pub fn field_y_nt(&self) -> i32 {
+        i32::from(self.field_y) * 10
+    }
+
+    /// Sets IGRF Modelled Magnetic Field Y in nT, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_field_y_nt(&mut self, value: i32) -> Result<(), Error> {
+        self.field_y = FIELD_Y.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -110,49 +142,44 @@ impl IgrfModelledMagneticFieldVector {
     }
 
     /// Sets IGRF Modelled Magnetic Field Z in uT, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_field_z_ut(&mut self, value: f64) -> Result<(), Error> {
         self.field_z = FIELD_Z.raw(value)?;
         Ok(())
     }
+
+    /// IGRF Modelled Magnetic Field Z in uT, the nearest float of 32 bits.
+    #[must_use]
+    pub fn field_z_ut_f32(&self) -> f32 {
+        f32::from(self.field_z) / 100.0
+    }
+
+    /// IGRF Modelled Magnetic Field Z in nT, exact: -327680 to 327670.
+    #[must_use]
+    pub fn field_z_nt(&self) -> i32 {
+        i32::from(self.field_z) * 10
+    }
+
+    /// Sets IGRF Modelled Magnetic Field Z in nT, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_field_z_nt(&mut self, value: i32) -> Result<(), Error> {
+        self.field_z = FIELD_Z.whole(value.into(), 10, 0)?;
+        Ok(())
+    }
 }
 
-const FIELD_X: Scale = Scale {
-    field: "IGRF Modelled Magnetic Field X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const FIELD_X: Scale = Scale::new("IGRF Modelled Magnetic Field X", (-32_768, 32_767), (1, 0, 100));
 
-const FIELD_Y: Scale = Scale {
-    field: "IGRF Modelled Magnetic Field Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const FIELD_Y: Scale = Scale::new("IGRF Modelled Magnetic Field Y", (-32_768, 32_767), (1, 0, 100));
 
-const FIELD_Z: Scale = Scale {
-    field: "IGRF Modelled Magnetic Field Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const FIELD_Z: Scale = Scale::new("IGRF Modelled Magnetic Field Z", (-32_768, 32_767), (1, 0, 100));
 
-impl crate::wire::Telemetry for IgrfModelledMagneticFieldVector {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 159;
+message!(IgrfModelledMagneticFieldVector {
+    field_x: ("IGRF Modelled Magnetic Field X", 0, 16).unit("uT").scale(&FIELD_X),
+    field_y: ("IGRF Modelled Magnetic Field Y", 16, 16).unit("uT").scale(&FIELD_Y),
+    field_z: ("IGRF Modelled Magnetic Field Z", 32, 16).unit("uT").scale(&FIELD_Z),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for IgrfModelledMagneticFieldVector {
+    const TELEMETRY_ID: u32 = 159;
 }

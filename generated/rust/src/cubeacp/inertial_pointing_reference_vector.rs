@@ -2,7 +2,7 @@
 
 //! Inertial Pointing Reference Vector, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Inertial Pointing Reference Vector: configuration, set by telecommand 34, got by telemetry 238,
 /// 6 bytes. Table 214.
@@ -91,12 +91,28 @@ impl InertialPointingReferenceVector {
     }
 
     /// Sets Inertial Reference X, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_reference_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.reference_x = REFERENCE_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Inertial Reference X, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn reference_x_physical_f32(&self) -> f32 {
+        f32::from(self.reference_x) / 10_000.0
+    }
+
+    /// Inertial Reference X in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn reference_x_micro(&self) -> i32 {
+        i32::from(self.reference_x) * 100
+    }
+
+    /// Sets Inertial Reference X in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_reference_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.reference_x = REFERENCE_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -107,12 +123,28 @@ impl InertialPointingReferenceVector {
     }
 
     /// Sets Inertial Reference Y, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_reference_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.reference_y = REFERENCE_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Inertial Reference Y, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn reference_y_physical_f32(&self) -> f32 {
+        f32::from(self.reference_y) / 10_000.0
+    }
+
+    /// Inertial Reference Y in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn reference_y_micro(&self) -> i32 {
+        i32::from(self.reference_y) * 100
+    }
+
+    /// Sets Inertial Reference Y in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_reference_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.reference_y = REFERENCE_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -123,59 +155,48 @@ impl InertialPointingReferenceVector {
     }
 
     /// Sets Inertial Reference Z, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_reference_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.reference_z = REFERENCE_Z.raw(value)?;
         Ok(())
     }
-}
 
-const REFERENCE_X: Scale = Scale {
-    field: "Inertial Reference X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+    /// Inertial Reference Z, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn reference_z_physical_f32(&self) -> f32 {
+        f32::from(self.reference_z) / 10_000.0
+    }
 
-const REFERENCE_Y: Scale = Scale {
-    field: "Inertial Reference Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+    /// Inertial Reference Z in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn reference_z_micro(&self) -> i32 {
+        i32::from(self.reference_z) * 100
+    }
 
-const REFERENCE_Z: Scale = Scale {
-    field: "Inertial Reference Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
-
-impl crate::wire::Telecommand for InertialPointingReferenceVector {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 34;
-
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
+    /// Sets Inertial Reference Z in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_reference_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.reference_z = REFERENCE_Z.whole(value.into(), 100, 0)?;
+        Ok(())
     }
 }
 
-impl crate::wire::Telemetry for InertialPointingReferenceVector {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 238;
+const REFERENCE_X: Scale = Scale::new("Inertial Reference X", (-32_768, 32_767), (1, 0, 10_000));
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+const REFERENCE_Y: Scale = Scale::new("Inertial Reference Y", (-32_768, 32_767), (1, 0, 10_000));
+
+const REFERENCE_Z: Scale = Scale::new("Inertial Reference Z", (-32_768, 32_767), (1, 0, 10_000));
+
+message!(InertialPointingReferenceVector {
+    reference_x: ("Inertial Reference X", 0, 16).scale(&REFERENCE_X),
+    reference_y: ("Inertial Reference Y", 16, 16).scale(&REFERENCE_Y),
+    reference_z: ("Inertial Reference Z", 32, 16).scale(&REFERENCE_Z),
+});
+
+impl crate::Telecommand for InertialPointingReferenceVector {
+    const TELECOMMAND_ID: u32 = 34;
+}
+
+impl crate::Telemetry for InertialPointingReferenceVector {
+    const TELEMETRY_ID: u32 = 238;
 }

@@ -3,7 +3,7 @@
 //! JPG Conversion Progress, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// JPG Conversion Progress: telemetry 133, 3 bytes. Table 99.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -69,12 +69,12 @@ impl JpgConversionProgress {
     }
 }
 
-impl crate::wire::Telemetry for JpgConversionProgress {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 133;
+message!(JpgConversionProgress {
+    progress_percentage: ("Progress Percentage", 0, 8).unit("%"),
+    conversion_result: ("Conversion Result", 8, 8),
+    output_file_counter: ("Output File Counter", 16, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for JpgConversionProgress {
+    const TELEMETRY_ID: u32 = 133;
 }

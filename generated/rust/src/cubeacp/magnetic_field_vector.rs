@@ -2,7 +2,7 @@
 
 //! Magnetic Field Vector, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Magnetic Field Vector: telemetry 151, 6 bytes. Table 107.
 ///
@@ -81,13 +81,29 @@ impl MagneticFieldVector {
         f64::from(self.magnetic_field_x) / 100.0
     }
 
-    /// Sets Magnetic Field X in uT, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Magnetic Field X in uT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_magnetic_field_x_ut(&mut self, value: f64) -> Result<(), Error> {
         self.magnetic_field_x = MAGNETIC_FIELD_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetic Field X in uT, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetic_field_x_ut_f32(&self) -> f32 {
+        f32::from(self.magnetic_field_x) / 100.0
+    }
+
+    /// Magnetic Field X in nT, exact: -327680 to 327670.
+    #[must_use]
+    pub fn magnetic_field_x_nt(&self) -> i32 {
+        i32::from(self.magnetic_field_x) * 10
+    }
+
+    /// Sets Magnetic Field X in nT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_magnetic_field_x_nt(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetic_field_x = MAGNETIC_FIELD_X.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -97,13 +113,29 @@ impl MagneticFieldVector {
         f64::from(self.magnetic_field_y) / 100.0
     }
 
-    /// Sets Magnetic Field Y in uT, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Magnetic Field Y in uT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_magnetic_field_y_ut(&mut self, value: f64) -> Result<(), Error> {
         self.magnetic_field_y = MAGNETIC_FIELD_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetic Field Y in uT, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetic_field_y_ut_f32(&self) -> f32 {
+        f32::from(self.magnetic_field_y) / 100.0
+    }
+
+    /// Magnetic Field Y in nT, exact: -327680 to 327670.
+    #[must_use]
+    pub fn magnetic_field_y_nt(&self) -> i32 {
+        i32::from(self.magnetic_field_y) * 10
+    }
+
+    /// Sets Magnetic Field Y in nT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_magnetic_field_y_nt(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetic_field_y = MAGNETIC_FIELD_Y.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -113,50 +145,45 @@ impl MagneticFieldVector {
         f64::from(self.magnetic_field_z) / 100.0
     }
 
-    /// Sets Magnetic Field Z in uT, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Magnetic Field Z in uT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_magnetic_field_z_ut(&mut self, value: f64) -> Result<(), Error> {
         self.magnetic_field_z = MAGNETIC_FIELD_Z.raw(value)?;
         Ok(())
     }
+
+    /// Magnetic Field Z in uT, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetic_field_z_ut_f32(&self) -> f32 {
+        f32::from(self.magnetic_field_z) / 100.0
+    }
+
+    /// Magnetic Field Z in nT, exact: -327680 to 327670.
+    #[must_use]
+    pub fn magnetic_field_z_nt(&self) -> i32 {
+        i32::from(self.magnetic_field_z) * 10
+    }
+
+    /// Sets Magnetic Field Z in nT, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_magnetic_field_z_nt(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetic_field_z = MAGNETIC_FIELD_Z.whole(value.into(), 10, 0)?;
+        Ok(())
+    }
 }
 
-const MAGNETIC_FIELD_X: Scale = Scale {
-    field: "Magnetic Field X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const MAGNETIC_FIELD_X: Scale = Scale::new("Magnetic Field X", (-32_768, 32_767), (1, 0, 100));
 
-const MAGNETIC_FIELD_Y: Scale = Scale {
-    field: "Magnetic Field Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const MAGNETIC_FIELD_Y: Scale = Scale::new("Magnetic Field Y", (-32_768, 32_767), (1, 0, 100));
 
-const MAGNETIC_FIELD_Z: Scale = Scale {
-    field: "Magnetic Field Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const MAGNETIC_FIELD_Z: Scale = Scale::new("Magnetic Field Z", (-32_768, 32_767), (1, 0, 100));
 
-impl crate::wire::Telemetry for MagneticFieldVector {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 151;
+message!(MagneticFieldVector {
+    magnetic_field_x: ("Magnetic Field X", 0, 16).unit("uT").scale(&MAGNETIC_FIELD_X),
+    magnetic_field_y: ("Magnetic Field Y", 16, 16).unit("uT").scale(&MAGNETIC_FIELD_Y),
+    magnetic_field_z: ("Magnetic Field Z", 32, 16).unit("uT").scale(&MAGNETIC_FIELD_Z),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for MagneticFieldVector {
+    const TELEMETRY_ID: u32 = 151;
 }

@@ -2,7 +2,7 @@
 
 //! Magnetorquer Command, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Magnetorquer Command: telemetry 157, 6 bytes. Table 113.
 ///
@@ -88,12 +88,12 @@ impl MagnetorquerCommand {
     }
 }
 
-impl crate::wire::Telemetry for MagnetorquerCommand {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 157;
+message!(MagnetorquerCommand {
+    x_magnetorquer_command: ("X Magnetorquer Command", 0, 16).unit("10ms units"),
+    y_magnetorquer_command: ("Y Magnetorquer Command", 16, 16).unit("10ms units"),
+    z_magnetorquer_command: ("Z Magnetorquer Command", 32, 16).unit("10ms units"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for MagnetorquerCommand {
+    const TELEMETRY_ID: u32 = 157;
 }

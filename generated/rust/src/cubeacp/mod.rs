@@ -357,6 +357,10 @@ pub use self::inertial_pointing_reference_vector::InertialPointingReferenceVecto
 
 pub use crate::wire::links::cubeacp::{LINK, LONGEST};
 
+/// The node as a type: [`LINK`], a client for it and the messages that the client takes have it in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Node {}
+
 /// What the node answers when asked for its type.
 pub const NODE_TYPE: u8 = 10;
 /// Version of the interface described here.
@@ -1116,6 +1120,165 @@ impl Telecommand {
         }
     }
 }
+
+/// Its name and the values of its fields: physical ones, with their units.
+impl ::core::fmt::Display for Telecommand {
+    fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+        match self {
+            Self::Reset(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ResetLogPointer(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdvanceLogPointer(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ResetBootRegisters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FormatSdCard(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EraseFile(message) => ::core::fmt::Display::fmt(message, out),
+            Self::LoadFileDownloadBlock(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdvanceFileListReadPointer(message) => ::core::fmt::Display::fmt(message, out),
+            Self::InitiateFileUpload(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FileUploadPacket(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FinalizeUploadBlock(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ResetUploadBlock(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ResetFileListReadPointer(message) => ::core::fmt::Display::fmt(message, out),
+            Self::InitiateDownloadBurst(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CacheEnabledState(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SramScrubParameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CurrentUnixTime(message) => ::core::fmt::Display::fmt(message, out),
+            Self::UnixTimeSaveToFlash(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap1(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap2(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap3(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap4(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap5(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap6(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap7(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap8(message) => ::core::fmt::Display::fmt(message, out),
+            Self::DeployMagnetometerBoom(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetAdcsRunMode(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ClearErrors(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetAttitudeControlMode(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetAttitudeEstimationMode(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetMagnetorquerOutput(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetWheelSpeed(message) => ::core::fmt::Display::fmt(message, out),
+            Self::TriggerAdcsLoop(message) => ::core::fmt::Display::fmt(message, out),
+            Self::TriggerSimulatedLoop(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Asgp4RunMode(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Asgp4Trigger(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetModeOfMagnetometerOperation(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::ConvertToJpgFile(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SaveConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SaveOrbitParameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SaveImage(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetMagnetorquerConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetWheelConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetRateGyroConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CssConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdcsPowerControl(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CommandedAttitudeAngles(message) => ::core::fmt::Display::fmt(message, out),
+            Self::TrackingControllerTargetReference(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::SetStarTrackerConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CubesenseConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::MagnetometerConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RedundantMagConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdcsConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Sgp4OrbitParameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetDetumblingControlParameters(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::SetYWheelControlParameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetReactionWheelControlParameters(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::SetTrackingControllerGainParameters(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::MomentOfInertiaMatrix(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EstimationParameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdcsSystemConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::UserCodedControllerAndEstimatorParameters(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::AugmentedSgp4Parameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SdLog1Configuration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SdLog2Configuration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::UartLogConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::InertialPointingReferenceVector(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+        }
+    }
+}
+
+impl crate::wire::TelecommandOf<Node> for crate::common::Reset {}
+impl crate::wire::TelecommandOf<Node> for crate::common::ResetLogPointer {}
+impl crate::wire::TelecommandOf<Node> for crate::common::AdvanceLogPointer {}
+impl crate::wire::TelecommandOf<Node> for crate::common::ResetBootRegisters {}
+impl crate::wire::TelecommandOf<Node> for crate::common::FormatSdCard {}
+impl crate::wire::TelecommandOf<Node> for crate::common::EraseFile {}
+impl crate::wire::TelecommandOf<Node> for crate::common::LoadFileDownloadBlock {}
+impl crate::wire::TelecommandOf<Node> for crate::common::AdvanceFileListReadPointer {}
+impl crate::wire::TelecommandOf<Node> for crate::common::InitiateFileUpload {}
+impl crate::wire::TelecommandOf<Node> for crate::common::FileUploadPacket {}
+impl crate::wire::TelecommandOf<Node> for crate::common::FinalizeUploadBlock {}
+impl crate::wire::TelecommandOf<Node> for crate::common::ResetUploadBlock {}
+impl crate::wire::TelecommandOf<Node> for crate::common::ResetFileListReadPointer {}
+impl crate::wire::TelecommandOf<Node> for crate::common::InitiateDownloadBurst {}
+impl crate::wire::TelecommandOf<Node> for crate::common::CacheEnabledState {}
+impl crate::wire::TelecommandOf<Node> for crate::common::SramScrubParameters {}
+impl crate::wire::TelecommandOf<Node> for crate::common::CurrentUnixTime {}
+impl crate::wire::TelecommandOf<Node> for crate::common::UnixTimeSaveToFlash {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap1 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap2 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap3 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap4 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap5 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap6 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap7 {}
+impl crate::wire::TelecommandOf<Node> for crate::common::HoleMap8 {}
+impl crate::wire::TelecommandOf<Node> for DeployMagnetometerBoom {}
+impl crate::wire::TelecommandOf<Node> for SetAdcsRunMode {}
+impl crate::wire::TelecommandOf<Node> for ClearErrors {}
+impl crate::wire::TelecommandOf<Node> for SetAttitudeControlMode {}
+impl crate::wire::TelecommandOf<Node> for SetAttitudeEstimationMode {}
+impl crate::wire::TelecommandOf<Node> for SetMagnetorquerOutput {}
+impl crate::wire::TelecommandOf<Node> for SetWheelSpeed {}
+impl crate::wire::TelecommandOf<Node> for TriggerAdcsLoop {}
+impl crate::wire::TelecommandOf<Node> for TriggerSimulatedLoop {}
+impl crate::wire::TelecommandOf<Node> for Asgp4RunMode {}
+impl crate::wire::TelecommandOf<Node> for Asgp4Trigger {}
+impl crate::wire::TelecommandOf<Node> for SetModeOfMagnetometerOperation {}
+impl crate::wire::TelecommandOf<Node> for ConvertToJpgFile {}
+impl crate::wire::TelecommandOf<Node> for SaveConfiguration {}
+impl crate::wire::TelecommandOf<Node> for SaveOrbitParameters {}
+impl crate::wire::TelecommandOf<Node> for SaveImage {}
+impl crate::wire::TelecommandOf<Node> for SetMagnetorquerConfiguration {}
+impl crate::wire::TelecommandOf<Node> for SetWheelConfiguration {}
+impl crate::wire::TelecommandOf<Node> for SetRateGyroConfiguration {}
+impl crate::wire::TelecommandOf<Node> for CssConfiguration {}
+impl crate::wire::TelecommandOf<Node> for AdcsPowerControl {}
+impl crate::wire::TelecommandOf<Node> for CommandedAttitudeAngles {}
+impl crate::wire::TelecommandOf<Node> for TrackingControllerTargetReference {}
+impl crate::wire::TelecommandOf<Node> for SetStarTrackerConfiguration {}
+impl crate::wire::TelecommandOf<Node> for CubesenseConfiguration {}
+impl crate::wire::TelecommandOf<Node> for MagnetometerConfiguration {}
+impl crate::wire::TelecommandOf<Node> for RedundantMagConfiguration {}
+impl crate::wire::TelecommandOf<Node> for AdcsConfiguration {}
+impl crate::wire::TelecommandOf<Node> for Sgp4OrbitParameters {}
+impl crate::wire::TelecommandOf<Node> for SetDetumblingControlParameters {}
+impl crate::wire::TelecommandOf<Node> for SetYWheelControlParameters {}
+impl crate::wire::TelecommandOf<Node> for SetReactionWheelControlParameters {}
+impl crate::wire::TelecommandOf<Node> for SetTrackingControllerGainParameters {}
+impl crate::wire::TelecommandOf<Node> for MomentOfInertiaMatrix {}
+impl crate::wire::TelecommandOf<Node> for EstimationParameters {}
+impl crate::wire::TelecommandOf<Node> for AdcsSystemConfiguration {}
+impl crate::wire::TelecommandOf<Node> for UserCodedControllerAndEstimatorParameters {}
+impl crate::wire::TelecommandOf<Node> for AugmentedSgp4Parameters {}
+impl crate::wire::TelecommandOf<Node> for SdLog1Configuration {}
+impl crate::wire::TelecommandOf<Node> for SdLog2Configuration {}
+impl crate::wire::TelecommandOf<Node> for UartLogConfiguration {}
+impl crate::wire::TelecommandOf<Node> for InertialPointingReferenceVector {}
 
 /// Every telemetry of the node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -2479,3 +2642,284 @@ impl Telemetry {
         }
     }
 }
+
+/// Its name and the values of its fields: physical ones, with their units.
+impl ::core::fmt::Display for Telemetry {
+    fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+        match self {
+            Self::Identification(message) => ::core::fmt::Display::fmt(message, out),
+            Self::BootAndRunningProgramStatus(message) => ::core::fmt::Display::fmt(message, out),
+            Self::BootIndexAndStatus(message) => ::core::fmt::Display::fmt(message, out),
+            Self::LastLoggedEvent(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SramLatchupCounters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EdacErrorCounters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CommunicationStatus(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SdCardFormatEraseProgress(message) => ::core::fmt::Display::fmt(message, out),
+            Self::TelecommandAcknowledge(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FileDownloadBufferWithFileContents(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::DownloadBlockReady(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FileInformation(message) => ::core::fmt::Display::fmt(message, out),
+            Self::InitializeUploadComplete(message) => ::core::fmt::Display::fmt(message, out),
+            Self::UploadBlockComplete(message) => ::core::fmt::Display::fmt(message, out),
+            Self::BlockChecksum(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CacheEnabledState(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SramScrubParameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CurrentUnixTime(message) => ::core::fmt::Display::fmt(message, out),
+            Self::UnixTimeSaveToFlash(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap1(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap2(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap3(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap4(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap5(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap6(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap7(message) => ::core::fmt::Display::fmt(message, out),
+            Self::HoleMap8(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CurrentAdcsState(message) => ::core::fmt::Display::fmt(message, out),
+            Self::JpgConversionProgress(message) => ::core::fmt::Display::fmt(message, out),
+            Self::State(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EstimatedAttitudeAngles(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EstimatedAngularRates(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SatellitePositionEci(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SatelliteVelocityEci(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SatellitePositionLlh(message) => ::core::fmt::Display::fmt(message, out),
+            Self::MagneticFieldVector(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CoarseSunVector(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FineSunVector(message) => ::core::fmt::Display::fmt(message, out),
+            Self::NadirVector(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RateSensorRates(message) => ::core::fmt::Display::fmt(message, out),
+            Self::WheelSpeed(message) => ::core::fmt::Display::fmt(message, out),
+            Self::MagnetorquerCommand(message) => ::core::fmt::Display::fmt(message, out),
+            Self::WheelSpeedCommands(message) => ::core::fmt::Display::fmt(message, out),
+            Self::IgrfModelledMagneticFieldVector(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::ModelledSunVector(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EstimatedGyroBias(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EstimationInnovationVector(message) => ::core::fmt::Display::fmt(message, out),
+            Self::QuaternionErrorVector(message) => ::core::fmt::Display::fmt(message, out),
+            Self::QuaternionCovariance(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AngularRateCovariance(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RawCam2Sensor(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RawCam1Sensor(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RawCss1To6(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RawCss7To10(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RawMagnetometer(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Cubesense1Currents(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CubecontrolCurrents(message) => ::core::fmt::Display::fmt(message, out),
+            Self::WheelCurrents(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdcsTemperatures(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RateSensorTemperatures(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RawGpsStatus(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RawGpsTime(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RawGpsX(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RawGpsY(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RawGpsZ(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Star1BodyVector(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Star2BodyVector(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Star3BodyVector(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Star1OrbitVector(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Star2OrbitVector(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Star3OrbitVector(message) => ::core::fmt::Display::fmt(message, out),
+            Self::StarMagnitude(message) => ::core::fmt::Display::fmt(message, out),
+            Self::StarPerformance1(message) => ::core::fmt::Display::fmt(message, out),
+            Self::StarTiming(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdcsState(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdcsMeasurements(message) => ::core::fmt::Display::fmt(message, out),
+            Self::ActuatorCommands(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EstimationData(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RawSensorMeasurements(message) => ::core::fmt::Display::fmt(message, out),
+            Self::PowerAndTemperature(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdcsExecutionTimes(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdcsMiscCurrents(message) => ::core::fmt::Display::fmt(message, out),
+            Self::FineAngularRates(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RawGpsMeasurements(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RawStarTracker(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Star1RawData(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Star2RawData(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Star3RawData(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SecondaryMagnetometerRawMeasurements(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::RawRateSensor(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EstimatedQuaternion(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EcefPosition(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AcpExecutionState(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CurrentAdcsState2(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Asgp4Tles(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CubestarEstimatedRates(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CubestarEstimatedQuaternion(message) => ::core::fmt::Display::fmt(message, out),
+            Self::StarPerformance2(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Cubesense2Currents(message) => ::core::fmt::Display::fmt(message, out),
+            Self::StatusOfImageCaptureAndSaveOperation(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::SetMagnetorquerConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetWheelConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetRateGyroConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CssConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdcsPowerControl(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CommandedAttitudeAngles(message) => ::core::fmt::Display::fmt(message, out),
+            Self::TrackingControllerTargetReference(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::SetStarTrackerConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::CubesenseConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::MagnetometerConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RedundantMagConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdcsConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::Sgp4OrbitParameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetDetumblingControlParameters(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::SetYWheelControlParameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SetReactionWheelControlParameters(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::SetTrackingControllerGainParameters(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::MomentOfInertiaMatrix(message) => ::core::fmt::Display::fmt(message, out),
+            Self::EstimationParameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::AdcsSystemConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::UserCodedControllerAndEstimatorParameters(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::AugmentedSgp4Parameters(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SdLog1Configuration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::SdLog2Configuration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::UartLogConfiguration(message) => ::core::fmt::Display::fmt(message, out),
+            Self::InertialPointingReferenceVector(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+        }
+    }
+}
+
+impl crate::wire::TelemetryOf<Node> for crate::common::Identification {}
+impl crate::wire::TelemetryOf<Node> for crate::common::BootAndRunningProgramStatus {}
+impl crate::wire::TelemetryOf<Node> for crate::common::BootIndexAndStatus {}
+impl crate::wire::TelemetryOf<Node> for crate::common::LastLoggedEvent {}
+impl crate::wire::TelemetryOf<Node> for crate::common::SramLatchupCounters {}
+impl crate::wire::TelemetryOf<Node> for crate::common::EdacErrorCounters {}
+impl crate::wire::TelemetryOf<Node> for crate::common::CommunicationStatus {}
+impl crate::wire::TelemetryOf<Node> for crate::common::SdCardFormatEraseProgress {}
+impl crate::wire::TelemetryOf<Node> for crate::common::TelecommandAcknowledge {}
+impl crate::wire::TelemetryOf<Node> for crate::common::FileDownloadBufferWithFileContents {}
+impl crate::wire::TelemetryOf<Node> for crate::common::DownloadBlockReady {}
+impl crate::wire::TelemetryOf<Node> for crate::common::FileInformation {}
+impl crate::wire::TelemetryOf<Node> for crate::common::InitializeUploadComplete {}
+impl crate::wire::TelemetryOf<Node> for crate::common::UploadBlockComplete {}
+impl crate::wire::TelemetryOf<Node> for crate::common::BlockChecksum {}
+impl crate::wire::TelemetryOf<Node> for crate::common::CacheEnabledState {}
+impl crate::wire::TelemetryOf<Node> for crate::common::SramScrubParameters {}
+impl crate::wire::TelemetryOf<Node> for crate::common::CurrentUnixTime {}
+impl crate::wire::TelemetryOf<Node> for crate::common::UnixTimeSaveToFlash {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap1 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap2 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap3 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap4 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap5 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap6 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap7 {}
+impl crate::wire::TelemetryOf<Node> for crate::common::HoleMap8 {}
+impl crate::wire::TelemetryOf<Node> for CurrentAdcsState {}
+impl crate::wire::TelemetryOf<Node> for JpgConversionProgress {}
+impl crate::wire::TelemetryOf<Node> for State {}
+impl crate::wire::TelemetryOf<Node> for EstimatedAttitudeAngles {}
+impl crate::wire::TelemetryOf<Node> for EstimatedAngularRates {}
+impl crate::wire::TelemetryOf<Node> for SatellitePositionEci {}
+impl crate::wire::TelemetryOf<Node> for SatelliteVelocityEci {}
+impl crate::wire::TelemetryOf<Node> for SatellitePositionLlh {}
+impl crate::wire::TelemetryOf<Node> for MagneticFieldVector {}
+impl crate::wire::TelemetryOf<Node> for CoarseSunVector {}
+impl crate::wire::TelemetryOf<Node> for FineSunVector {}
+impl crate::wire::TelemetryOf<Node> for NadirVector {}
+impl crate::wire::TelemetryOf<Node> for RateSensorRates {}
+impl crate::wire::TelemetryOf<Node> for WheelSpeed {}
+impl crate::wire::TelemetryOf<Node> for MagnetorquerCommand {}
+impl crate::wire::TelemetryOf<Node> for WheelSpeedCommands {}
+impl crate::wire::TelemetryOf<Node> for IgrfModelledMagneticFieldVector {}
+impl crate::wire::TelemetryOf<Node> for ModelledSunVector {}
+impl crate::wire::TelemetryOf<Node> for EstimatedGyroBias {}
+impl crate::wire::TelemetryOf<Node> for EstimationInnovationVector {}
+impl crate::wire::TelemetryOf<Node> for QuaternionErrorVector {}
+impl crate::wire::TelemetryOf<Node> for QuaternionCovariance {}
+impl crate::wire::TelemetryOf<Node> for AngularRateCovariance {}
+impl crate::wire::TelemetryOf<Node> for RawCam2Sensor {}
+impl crate::wire::TelemetryOf<Node> for RawCam1Sensor {}
+impl crate::wire::TelemetryOf<Node> for RawCss1To6 {}
+impl crate::wire::TelemetryOf<Node> for RawCss7To10 {}
+impl crate::wire::TelemetryOf<Node> for RawMagnetometer {}
+impl crate::wire::TelemetryOf<Node> for Cubesense1Currents {}
+impl crate::wire::TelemetryOf<Node> for CubecontrolCurrents {}
+impl crate::wire::TelemetryOf<Node> for WheelCurrents {}
+impl crate::wire::TelemetryOf<Node> for AdcsTemperatures {}
+impl crate::wire::TelemetryOf<Node> for RateSensorTemperatures {}
+impl crate::wire::TelemetryOf<Node> for RawGpsStatus {}
+impl crate::wire::TelemetryOf<Node> for RawGpsTime {}
+impl crate::wire::TelemetryOf<Node> for RawGpsX {}
+impl crate::wire::TelemetryOf<Node> for RawGpsY {}
+impl crate::wire::TelemetryOf<Node> for RawGpsZ {}
+impl crate::wire::TelemetryOf<Node> for Star1BodyVector {}
+impl crate::wire::TelemetryOf<Node> for Star2BodyVector {}
+impl crate::wire::TelemetryOf<Node> for Star3BodyVector {}
+impl crate::wire::TelemetryOf<Node> for Star1OrbitVector {}
+impl crate::wire::TelemetryOf<Node> for Star2OrbitVector {}
+impl crate::wire::TelemetryOf<Node> for Star3OrbitVector {}
+impl crate::wire::TelemetryOf<Node> for StarMagnitude {}
+impl crate::wire::TelemetryOf<Node> for StarPerformance1 {}
+impl crate::wire::TelemetryOf<Node> for StarTiming {}
+impl crate::wire::TelemetryOf<Node> for AdcsState {}
+impl crate::wire::TelemetryOf<Node> for AdcsMeasurements {}
+impl crate::wire::TelemetryOf<Node> for ActuatorCommands {}
+impl crate::wire::TelemetryOf<Node> for EstimationData {}
+impl crate::wire::TelemetryOf<Node> for RawSensorMeasurements {}
+impl crate::wire::TelemetryOf<Node> for PowerAndTemperature {}
+impl crate::wire::TelemetryOf<Node> for AdcsExecutionTimes {}
+impl crate::wire::TelemetryOf<Node> for AdcsMiscCurrents {}
+impl crate::wire::TelemetryOf<Node> for FineAngularRates {}
+impl crate::wire::TelemetryOf<Node> for RawGpsMeasurements {}
+impl crate::wire::TelemetryOf<Node> for RawStarTracker {}
+impl crate::wire::TelemetryOf<Node> for Star1RawData {}
+impl crate::wire::TelemetryOf<Node> for Star2RawData {}
+impl crate::wire::TelemetryOf<Node> for Star3RawData {}
+impl crate::wire::TelemetryOf<Node> for SecondaryMagnetometerRawMeasurements {}
+impl crate::wire::TelemetryOf<Node> for RawRateSensor {}
+impl crate::wire::TelemetryOf<Node> for EstimatedQuaternion {}
+impl crate::wire::TelemetryOf<Node> for EcefPosition {}
+impl crate::wire::TelemetryOf<Node> for AcpExecutionState {}
+impl crate::wire::TelemetryOf<Node> for CurrentAdcsState2 {}
+impl crate::wire::TelemetryOf<Node> for Asgp4Tles {}
+impl crate::wire::TelemetryOf<Node> for CubestarEstimatedRates {}
+impl crate::wire::TelemetryOf<Node> for CubestarEstimatedQuaternion {}
+impl crate::wire::TelemetryOf<Node> for StarPerformance2 {}
+impl crate::wire::TelemetryOf<Node> for Cubesense2Currents {}
+impl crate::wire::TelemetryOf<Node> for StatusOfImageCaptureAndSaveOperation {}
+impl crate::wire::TelemetryOf<Node> for SetMagnetorquerConfiguration {}
+impl crate::wire::TelemetryOf<Node> for SetWheelConfiguration {}
+impl crate::wire::TelemetryOf<Node> for SetRateGyroConfiguration {}
+impl crate::wire::TelemetryOf<Node> for CssConfiguration {}
+impl crate::wire::TelemetryOf<Node> for AdcsPowerControl {}
+impl crate::wire::TelemetryOf<Node> for CommandedAttitudeAngles {}
+impl crate::wire::TelemetryOf<Node> for TrackingControllerTargetReference {}
+impl crate::wire::TelemetryOf<Node> for SetStarTrackerConfiguration {}
+impl crate::wire::TelemetryOf<Node> for CubesenseConfiguration {}
+impl crate::wire::TelemetryOf<Node> for MagnetometerConfiguration {}
+impl crate::wire::TelemetryOf<Node> for RedundantMagConfiguration {}
+impl crate::wire::TelemetryOf<Node> for AdcsConfiguration {}
+impl crate::wire::TelemetryOf<Node> for Sgp4OrbitParameters {}
+impl crate::wire::TelemetryOf<Node> for SetDetumblingControlParameters {}
+impl crate::wire::TelemetryOf<Node> for SetYWheelControlParameters {}
+impl crate::wire::TelemetryOf<Node> for SetReactionWheelControlParameters {}
+impl crate::wire::TelemetryOf<Node> for SetTrackingControllerGainParameters {}
+impl crate::wire::TelemetryOf<Node> for MomentOfInertiaMatrix {}
+impl crate::wire::TelemetryOf<Node> for EstimationParameters {}
+impl crate::wire::TelemetryOf<Node> for AdcsSystemConfiguration {}
+impl crate::wire::TelemetryOf<Node> for UserCodedControllerAndEstimatorParameters {}
+impl crate::wire::TelemetryOf<Node> for AugmentedSgp4Parameters {}
+impl crate::wire::TelemetryOf<Node> for SdLog1Configuration {}
+impl crate::wire::TelemetryOf<Node> for SdLog2Configuration {}
+impl crate::wire::TelemetryOf<Node> for UartLogConfiguration {}
+impl crate::wire::TelemetryOf<Node> for InertialPointingReferenceVector {}

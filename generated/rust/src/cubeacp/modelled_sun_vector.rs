@@ -2,7 +2,7 @@
 
 //! Modelled Sun Vector, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Modelled Sun Vector: telemetry 160, 6 bytes. Table 116.
 ///
@@ -78,12 +78,28 @@ impl ModelledSunVector {
     }
 
     /// Sets Modelled Sun Vector X, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_modelled_sun_vector_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.modelled_sun_vector_x = MODELLED_SUN_VECTOR_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Modelled Sun Vector X, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn modelled_sun_vector_x_physical_f32(&self) -> f32 {
+        f32::from(self.modelled_sun_vector_x) / 10_000.0
+    }
+
+    /// Modelled Sun Vector X in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn modelled_sun_vector_x_micro(&self) -> i32 {
+        i32::from(self.modelled_sun_vector_x) * 100
+    }
+
+    /// Sets Modelled Sun Vector X in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_modelled_sun_vector_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.modelled_sun_vector_x = MODELLED_SUN_VECTOR_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -94,12 +110,28 @@ impl ModelledSunVector {
     }
 
     /// Sets Modelled Sun Vector Y, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_modelled_sun_vector_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.modelled_sun_vector_y = MODELLED_SUN_VECTOR_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Modelled Sun Vector Y, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn modelled_sun_vector_y_physical_f32(&self) -> f32 {
+        f32::from(self.modelled_sun_vector_y) / 10_000.0
+    }
+
+    /// Modelled Sun Vector Y in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn modelled_sun_vector_y_micro(&self) -> i32 {
+        i32::from(self.modelled_sun_vector_y) * 100
+    }
+
+    /// Sets Modelled Sun Vector Y in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_modelled_sun_vector_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.modelled_sun_vector_y = MODELLED_SUN_VECTOR_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -110,49 +142,47 @@ impl ModelledSunVector {
     }
 
     /// Sets Modelled Sun Vector Z, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_modelled_sun_vector_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.modelled_sun_vector_z = MODELLED_SUN_VECTOR_Z.raw(value)?;
         Ok(())
     }
+
+    /// Modelled Sun Vector Z, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn modelled_sun_vector_z_physical_f32(&self) -> f32 {
+        f32::from(self.modelled_sun_vector_z) / 10_000.0
+    }
+
+    /// Modelled Sun Vector Z in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn modelled_sun_vector_z_micro(&self) -> i32 {
+        i32::from(self.modelled_sun_vector_z) * 100
+    }
+
+    /// Sets Modelled Sun Vector Z in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_modelled_sun_vector_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.modelled_sun_vector_z = MODELLED_SUN_VECTOR_Z.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const MODELLED_SUN_VECTOR_X: Scale = Scale {
-    field: "Modelled Sun Vector X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const MODELLED_SUN_VECTOR_X: Scale =
+    Scale::new("Modelled Sun Vector X", (-32_768, 32_767), (1, 0, 10_000));
 
-const MODELLED_SUN_VECTOR_Y: Scale = Scale {
-    field: "Modelled Sun Vector Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const MODELLED_SUN_VECTOR_Y: Scale =
+    Scale::new("Modelled Sun Vector Y", (-32_768, 32_767), (1, 0, 10_000));
 
-const MODELLED_SUN_VECTOR_Z: Scale = Scale {
-    field: "Modelled Sun Vector Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const MODELLED_SUN_VECTOR_Z: Scale =
+    Scale::new("Modelled Sun Vector Z", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for ModelledSunVector {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 160;
+message!(ModelledSunVector {
+    modelled_sun_vector_x: ("Modelled Sun Vector X", 0, 16).scale(&MODELLED_SUN_VECTOR_X),
+    modelled_sun_vector_y: ("Modelled Sun Vector Y", 16, 16).scale(&MODELLED_SUN_VECTOR_Y),
+    modelled_sun_vector_z: ("Modelled Sun Vector Z", 32, 16).scale(&MODELLED_SUN_VECTOR_Z),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for ModelledSunVector {
+    const TELEMETRY_ID: u32 = 160;
 }

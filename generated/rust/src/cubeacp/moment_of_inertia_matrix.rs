@@ -2,7 +2,7 @@
 
 //! Moment of Inertia Matrix, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Moment of Inertia Matrix: configuration, set by telecommand 41, got by telemetry 222, 24 bytes.
 /// Table 199.
@@ -90,22 +90,19 @@ impl MomentOfInertiaMatrix {
     }
 }
 
-impl crate::wire::Telecommand for MomentOfInertiaMatrix {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 41;
+message!(MomentOfInertiaMatrix {
+    moment_of_inertia_ixx: ("Moment Of Inertia - Ixx", 0, 32).unit("kg.m^2"),
+    moment_of_inertia_iyy: ("Moment Of Inertia - Iyy", 32, 32).unit("kg.m^2"),
+    moment_of_inertia_izz: ("Moment Of Inertia - Izz", 64, 32).unit("kg.m^2"),
+    product_of_inertia_ixy: ("Product Of Inertia - Ixy", 96, 32).unit("kg.m^2"),
+    product_of_inertia_ixz: ("Product Of Inertia - Ixz", 128, 32).unit("kg.m^2"),
+    product_of_inertia_iyz: ("Product Of Inertia - Iyz", 160, 32).unit("kg.m^2"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for MomentOfInertiaMatrix {
+    const TELECOMMAND_ID: u32 = 41;
 }
 
-impl crate::wire::Telemetry for MomentOfInertiaMatrix {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 222;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for MomentOfInertiaMatrix {
+    const TELEMETRY_ID: u32 = 222;
 }

@@ -2,7 +2,7 @@
 
 //! Nadir Vector, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Nadir Vector: telemetry 154, 6 bytes. Table 110.
 ///
@@ -78,13 +78,29 @@ impl NadirVector {
         f64::from(self.nadir_x) / 10_000.0
     }
 
-    /// Sets Nadir X, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Nadir X, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_nadir_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.nadir_x = NADIR_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Nadir X, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn nadir_x_physical_f32(&self) -> f32 {
+        f32::from(self.nadir_x) / 10_000.0
+    }
+
+    /// Nadir X in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn nadir_x_micro(&self) -> i32 {
+        i32::from(self.nadir_x) * 100
+    }
+
+    /// Sets Nadir X in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_nadir_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.nadir_x = NADIR_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -94,13 +110,29 @@ impl NadirVector {
         f64::from(self.nadir_y) / 10_000.0
     }
 
-    /// Sets Nadir Y, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Nadir Y, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_nadir_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.nadir_y = NADIR_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Nadir Y, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn nadir_y_physical_f32(&self) -> f32 {
+        f32::from(self.nadir_y) / 10_000.0
+    }
+
+    /// Nadir Y in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn nadir_y_micro(&self) -> i32 {
+        i32::from(self.nadir_y) * 100
+    }
+
+    /// Sets Nadir Y in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_nadir_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.nadir_y = NADIR_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -110,50 +142,45 @@ impl NadirVector {
         f64::from(self.nadir_z) / 10_000.0
     }
 
-    /// Sets Nadir Z, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Nadir Z, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_nadir_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.nadir_z = NADIR_Z.raw(value)?;
         Ok(())
     }
+
+    /// Nadir Z, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn nadir_z_physical_f32(&self) -> f32 {
+        f32::from(self.nadir_z) / 10_000.0
+    }
+
+    /// Nadir Z in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn nadir_z_micro(&self) -> i32 {
+        i32::from(self.nadir_z) * 100
+    }
+
+    /// Sets Nadir Z in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_nadir_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.nadir_z = NADIR_Z.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const NADIR_X: Scale = Scale {
-    field: "Nadir X",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const NADIR_X: Scale = Scale::new("Nadir X", (-32_768, 32_767), (1, 0, 10_000));
 
-const NADIR_Y: Scale = Scale {
-    field: "Nadir Y",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const NADIR_Y: Scale = Scale::new("Nadir Y", (-32_768, 32_767), (1, 0, 10_000));
 
-const NADIR_Z: Scale = Scale {
-    field: "Nadir Z",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const NADIR_Z: Scale = Scale::new("Nadir Z", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for NadirVector {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 154;
+message!(NadirVector {
+    nadir_x: ("Nadir X", 0, 16).scale(&NADIR_X),
+    nadir_y: ("Nadir Y", 16, 16).scale(&NADIR_Y),
+    nadir_z: ("Nadir Z", 32, 16).scale(&NADIR_Z),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for NadirVector {
+    const TELEMETRY_ID: u32 = 154;
 }

@@ -2,7 +2,7 @@
 
 //! Power and Temperature Measurements, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Power and Temperature Measurements: telemetry 195, 38 bytes. Table 154.
 ///
@@ -190,13 +190,29 @@ impl PowerAndTemperature {
         f64::from(self.cubesense1_3v3_current) / 10.0
     }
 
-    /// Sets CubeSense1 3V3 Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets CubeSense1 3V3 Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_cubesense1_3v3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense1_3v3_current = CUBESENSE1_3V3_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// CubeSense1 3V3 Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubesense1_3v3_current_ma_f32(&self) -> f32 {
+        f32::from(self.cubesense1_3v3_current) / 10.0
+    }
+
+    /// CubeSense1 3V3 Current in uA, exact: 0 to 6553500.
+    #[must_use]
+    pub fn cubesense1_3v3_current_ua(&self) -> i32 {
+        i32::from(self.cubesense1_3v3_current) * 100
+    }
+
+    /// Sets CubeSense1 3V3 Current in uA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
+    pub fn set_cubesense1_3v3_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.cubesense1_3v3_current = CUBESENSE1_3V3_CURRENT.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -207,12 +223,28 @@ impl PowerAndTemperature {
     }
 
     /// Sets CubeSense1 Cam SRAM Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cubesense1_cam_sram_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense1_cam_sram_current = CUBESENSE1_CAM_SRAM_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// CubeSense1 Cam SRAM Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubesense1_cam_sram_current_ma_f32(&self) -> f32 {
+        f32::from(self.cubesense1_cam_sram_current) / 10.0
+    }
+
+    /// CubeSense1 Cam SRAM Current in uA, exact: 0 to 6553500.
+    #[must_use]
+    pub fn cubesense1_cam_sram_current_ua(&self) -> i32 {
+        i32::from(self.cubesense1_cam_sram_current) * 100
+    }
+
+    /// Sets CubeSense1 Cam SRAM Current in uA, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cubesense1_cam_sram_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.cubesense1_cam_sram_current = CUBESENSE1_CAM_SRAM_CURRENT.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -222,13 +254,29 @@ impl PowerAndTemperature {
         f64::from(self.cubesense2_3v3_current) / 10.0
     }
 
-    /// Sets CubeSense2 3V3 Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets CubeSense2 3V3 Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_cubesense2_3v3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense2_3v3_current = CUBESENSE2_3V3_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// CubeSense2 3V3 Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubesense2_3v3_current_ma_f32(&self) -> f32 {
+        f32::from(self.cubesense2_3v3_current) / 10.0
+    }
+
+    /// CubeSense2 3V3 Current in uA, exact: 0 to 6553500.
+    #[must_use]
+    pub fn cubesense2_3v3_current_ua(&self) -> i32 {
+        i32::from(self.cubesense2_3v3_current) * 100
+    }
+
+    /// Sets CubeSense2 3V3 Current in uA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit.
+    pub fn set_cubesense2_3v3_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.cubesense2_3v3_current = CUBESENSE2_3V3_CURRENT.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -239,12 +287,28 @@ impl PowerAndTemperature {
     }
 
     /// Sets CubeSense2 Cam SRAM Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cubesense2_cam_sram_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubesense2_cam_sram_current = CUBESENSE2_CAM_SRAM_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// CubeSense2 Cam SRAM Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubesense2_cam_sram_current_ma_f32(&self) -> f32 {
+        f32::from(self.cubesense2_cam_sram_current) / 10.0
+    }
+
+    /// CubeSense2 Cam SRAM Current in uA, exact: 0 to 6553500.
+    #[must_use]
+    pub fn cubesense2_cam_sram_current_ua(&self) -> i32 {
+        i32::from(self.cubesense2_cam_sram_current) * 100
+    }
+
+    /// Sets CubeSense2 Cam SRAM Current in uA, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cubesense2_cam_sram_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.cubesense2_cam_sram_current = CUBESENSE2_CAM_SRAM_CURRENT.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -254,14 +318,17 @@ impl PowerAndTemperature {
         (f64::from(self.cubecontrol_3v3_current) * 125.0) / 256.0
     }
 
-    /// Sets CubeControl 3V3 Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets CubeControl 3V3 Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_cubecontrol_3v3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubecontrol_3v3_current = CUBECONTROL_3V3_CURRENT.raw(value)?;
         Ok(())
+    }
+
+    /// CubeControl 3V3 Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubecontrol_3v3_current_ma_f32(&self) -> f32 {
+        (f32::from(self.cubecontrol_3v3_current) * 125.0) / 256.0
     }
 
     /// CubeControl 5V Current in mA: 0 to 31999.51171875.
@@ -270,14 +337,17 @@ impl PowerAndTemperature {
         (f64::from(self.cubecontrol_5v_current) * 125.0) / 256.0
     }
 
-    /// Sets CubeControl 5V Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets CubeControl 5V Current in mA, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_cubecontrol_5v_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubecontrol_5v_current = CUBECONTROL_5V_CURRENT.raw(value)?;
         Ok(())
+    }
+
+    /// CubeControl 5V Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubecontrol_5v_current_ma_f32(&self) -> f32 {
+        (f32::from(self.cubecontrol_5v_current) * 125.0) / 256.0
     }
 
     /// CubeControl Vbat Current in mA: 0 to 31999.51171875.
@@ -287,13 +357,16 @@ impl PowerAndTemperature {
     }
 
     /// Sets CubeControl Vbat Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_cubecontrol_vbat_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubecontrol_vbat_current = CUBECONTROL_VBAT_CURRENT.raw(value)?;
         Ok(())
+    }
+
+    /// CubeControl Vbat Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubecontrol_vbat_current_ma_f32(&self) -> f32 {
+        (f32::from(self.cubecontrol_vbat_current) * 125.0) / 256.0
     }
 
     /// Wheel1Current in mA: 0 to 655.35.
@@ -302,13 +375,29 @@ impl PowerAndTemperature {
         f64::from(self.wheel1_current) / 100.0
     }
 
-    /// Sets Wheel1Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Wheel1Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_wheel1_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.wheel1_current = WHEEL1_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Wheel1Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn wheel1_current_ma_f32(&self) -> f32 {
+        f32::from(self.wheel1_current) / 100.0
+    }
+
+    /// Wheel1Current in uA, exact: 0 to 655350.
+    #[must_use]
+    pub fn wheel1_current_ua(&self) -> i32 {
+        i32::from(self.wheel1_current) * 10
+    }
+
+    /// Sets Wheel1Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_wheel1_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.wheel1_current = WHEEL1_CURRENT.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -318,13 +407,29 @@ impl PowerAndTemperature {
         f64::from(self.wheel2_current) / 100.0
     }
 
-    /// Sets Wheel2Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Wheel2Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_wheel2_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.wheel2_current = WHEEL2_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Wheel2Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn wheel2_current_ma_f32(&self) -> f32 {
+        f32::from(self.wheel2_current) / 100.0
+    }
+
+    /// Wheel2Current in uA, exact: 0 to 655350.
+    #[must_use]
+    pub fn wheel2_current_ua(&self) -> i32 {
+        i32::from(self.wheel2_current) * 10
+    }
+
+    /// Sets Wheel2Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_wheel2_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.wheel2_current = WHEEL2_CURRENT.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -334,13 +439,29 @@ impl PowerAndTemperature {
         f64::from(self.wheel3_current) / 100.0
     }
 
-    /// Sets Wheel3Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Wheel3Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_wheel3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.wheel3_current = WHEEL3_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Wheel3Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn wheel3_current_ma_f32(&self) -> f32 {
+        f32::from(self.wheel3_current) / 100.0
+    }
+
+    /// Wheel3Current in uA, exact: 0 to 655350.
+    #[must_use]
+    pub fn wheel3_current_ua(&self) -> i32 {
+        i32::from(self.wheel3_current) * 10
+    }
+
+    /// Sets Wheel3Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_wheel3_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.wheel3_current = WHEEL3_CURRENT.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -350,13 +471,29 @@ impl PowerAndTemperature {
         f64::from(self.cubestar_current) / 100.0
     }
 
-    /// Sets CubeStarCurrent in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets CubeStarCurrent in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_cubestar_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.cubestar_current = CUBESTAR_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// CubeStarCurrent in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubestar_current_ma_f32(&self) -> f32 {
+        f32::from(self.cubestar_current) / 100.0
+    }
+
+    /// CubeStarCurrent in uA, exact: 0 to 655350.
+    #[must_use]
+    pub fn cubestar_current_ua(&self) -> i32 {
+        i32::from(self.cubestar_current) * 10
+    }
+
+    /// Sets CubeStarCurrent in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_cubestar_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.cubestar_current = CUBESTAR_CURRENT.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -366,13 +503,29 @@ impl PowerAndTemperature {
         f64::from(self.magnetorquer_current) / 10.0
     }
 
-    /// Sets Magnetorquer Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Magnetorquer Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit or is not finite.
     pub fn set_magnetorquer_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.magnetorquer_current = MAGNETORQUER_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetorquer Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetorquer_current_ma_f32(&self) -> f32 {
+        f32::from(self.magnetorquer_current) / 10.0
+    }
+
+    /// Magnetorquer Current in uA, exact: 0 to 6553500.
+    #[must_use]
+    pub fn magnetorquer_current_ua(&self) -> i32 {
+        i32::from(self.magnetorquer_current) * 100
+    }
+
+    /// Sets Magnetorquer Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_magnetorquer_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetorquer_current = MAGNETORQUER_CURRENT.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -382,13 +535,29 @@ impl PowerAndTemperature {
         f64::from(self.cubestar_mcu_temperature) / 100.0
     }
 
-    /// Sets CubeStar MCU temperature in C, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets CubeStar MCU temperature in C, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_cubestar_mcu_temperature_c(&mut self, value: f64) -> Result<(), Error> {
         self.cubestar_mcu_temperature = CUBESTAR_MCU_TEMPERATURE.raw(value)?;
+        Ok(())
+    }
+
+    /// CubeStar MCU temperature in C, the nearest float of 32 bits.
+    #[must_use]
+    pub fn cubestar_mcu_temperature_c_f32(&self) -> f32 {
+        f32::from(self.cubestar_mcu_temperature) / 100.0
+    }
+
+    /// CubeStar MCU temperature in thousandths of C, exact: -327680 to 327670.
+    #[must_use]
+    pub fn cubestar_mcu_temperature_mc(&self) -> i32 {
+        i32::from(self.cubestar_mcu_temperature) * 10
+    }
+
+    /// Sets CubeStar MCU temperature in thousandths of C, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_cubestar_mcu_temperature_mc(&mut self, value: i32) -> Result<(), Error> {
+        self.cubestar_mcu_temperature = CUBESTAR_MCU_TEMPERATURE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -398,13 +567,29 @@ impl PowerAndTemperature {
         f64::from(self.magnetometer_temperature) / 10.0
     }
 
-    /// Sets Magnetometer Temperature in C, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Magnetometer Temperature in C, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_magnetometer_temperature_c(&mut self, value: f64) -> Result<(), Error> {
         self.magnetometer_temperature = MAGNETOMETER_TEMPERATURE.raw(value)?;
+        Ok(())
+    }
+
+    /// Magnetometer Temperature in C, the nearest float of 32 bits.
+    #[must_use]
+    pub fn magnetometer_temperature_c_f32(&self) -> f32 {
+        f32::from(self.magnetometer_temperature) / 10.0
+    }
+
+    /// Magnetometer Temperature in thousandths of C, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn magnetometer_temperature_mc(&self) -> i32 {
+        i32::from(self.magnetometer_temperature) * 100
+    }
+
+    /// Sets Magnetometer Temperature in thousandths of C, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_magnetometer_temperature_mc(&mut self, value: i32) -> Result<(), Error> {
+        self.magnetometer_temperature = MAGNETOMETER_TEMPERATURE.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -415,157 +600,102 @@ impl PowerAndTemperature {
     }
 
     /// Sets Redundant Magnetometer Temperature in C, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_redundant_mag_temperature_c(&mut self, value: f64) -> Result<(), Error> {
         self.redundant_mag_temperature = REDUNDANT_MAG_TEMPERATURE.raw(value)?;
         Ok(())
     }
+
+    /// Redundant Magnetometer Temperature in C, the nearest float of 32 bits.
+    #[must_use]
+    pub fn redundant_mag_temperature_c_f32(&self) -> f32 {
+        f32::from(self.redundant_mag_temperature) / 10.0
+    }
+
+    /// Redundant Magnetometer Temperature in thousandths of C, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn redundant_mag_temperature_mc(&self) -> i32 {
+        i32::from(self.redundant_mag_temperature) * 100
+    }
+
+    /// Sets Redundant Magnetometer Temperature in thousandths of C, to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit.
+    pub fn set_redundant_mag_temperature_mc(&mut self, value: i32) -> Result<(), Error> {
+        self.redundant_mag_temperature = REDUNDANT_MAG_TEMPERATURE.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const CUBESENSE1_3V3_CURRENT: Scale = Scale {
-    field: "CubeSense1 3V3 Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const CUBESENSE1_3V3_CURRENT: Scale = Scale::new("CubeSense1 3V3 Current", (0, 65_535), (1, 0, 10));
 
-const CUBESENSE1_CAM_SRAM_CURRENT: Scale = Scale {
-    field: "CubeSense1 Cam SRAM Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const CUBESENSE1_CAM_SRAM_CURRENT: Scale =
+    Scale::new("CubeSense1 Cam SRAM Current", (0, 65_535), (1, 0, 10));
 
-const CUBESENSE2_3V3_CURRENT: Scale = Scale {
-    field: "CubeSense2 3V3 Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const CUBESENSE2_3V3_CURRENT: Scale = Scale::new("CubeSense2 3V3 Current", (0, 65_535), (1, 0, 10));
 
-const CUBESENSE2_CAM_SRAM_CURRENT: Scale = Scale {
-    field: "CubeSense2 Cam SRAM Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const CUBESENSE2_CAM_SRAM_CURRENT: Scale =
+    Scale::new("CubeSense2 Cam SRAM Current", (0, 65_535), (1, 0, 10));
 
-const CUBECONTROL_3V3_CURRENT: Scale = Scale {
-    field: "CubeControl 3V3 Current",
-    min: 0,
-    max: 65_535,
-    factor: 125,
-    offset: 0,
-    divisor: 256,
-};
+const CUBECONTROL_3V3_CURRENT: Scale =
+    Scale::new("CubeControl 3V3 Current", (0, 65_535), (125, 0, 256));
 
-const CUBECONTROL_5V_CURRENT: Scale = Scale {
-    field: "CubeControl 5V Current",
-    min: 0,
-    max: 65_535,
-    factor: 125,
-    offset: 0,
-    divisor: 256,
-};
+const CUBECONTROL_5V_CURRENT: Scale =
+    Scale::new("CubeControl 5V Current", (0, 65_535), (125, 0, 256));
 
-const CUBECONTROL_VBAT_CURRENT: Scale = Scale {
-    field: "CubeControl Vbat Current",
-    min: 0,
-    max: 65_535,
-    factor: 125,
-    offset: 0,
-    divisor: 256,
-};
+const CUBECONTROL_VBAT_CURRENT: Scale =
+    Scale::new("CubeControl Vbat Current", (0, 65_535), (125, 0, 256));
 
-const WHEEL1_CURRENT: Scale = Scale {
-    field: "Wheel1Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const WHEEL1_CURRENT: Scale = Scale::new("Wheel1Current", (0, 65_535), (1, 0, 100));
 
-const WHEEL2_CURRENT: Scale = Scale {
-    field: "Wheel2Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const WHEEL2_CURRENT: Scale = Scale::new("Wheel2Current", (0, 65_535), (1, 0, 100));
 
-const WHEEL3_CURRENT: Scale = Scale {
-    field: "Wheel3Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const WHEEL3_CURRENT: Scale = Scale::new("Wheel3Current", (0, 65_535), (1, 0, 100));
 
-const CUBESTAR_CURRENT: Scale = Scale {
-    field: "CubeStarCurrent",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const CUBESTAR_CURRENT: Scale = Scale::new("CubeStarCurrent", (0, 65_535), (1, 0, 100));
 
-const MAGNETORQUER_CURRENT: Scale = Scale {
-    field: "Magnetorquer Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const MAGNETORQUER_CURRENT: Scale = Scale::new("Magnetorquer Current", (0, 65_535), (1, 0, 10));
 
-const CUBESTAR_MCU_TEMPERATURE: Scale = Scale {
-    field: "CubeStar MCU temperature",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const CUBESTAR_MCU_TEMPERATURE: Scale =
+    Scale::new("CubeStar MCU temperature", (-32_768, 32_767), (1, 0, 100));
 
-const MAGNETOMETER_TEMPERATURE: Scale = Scale {
-    field: "Magnetometer Temperature",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const MAGNETOMETER_TEMPERATURE: Scale =
+    Scale::new("Magnetometer Temperature", (-32_768, 32_767), (1, 0, 10));
 
-const REDUNDANT_MAG_TEMPERATURE: Scale = Scale {
-    field: "Redundant Magnetometer Temperature",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const REDUNDANT_MAG_TEMPERATURE: Scale =
+    Scale::new("Redundant Magnetometer Temperature", (-32_768, 32_767), (1, 0, 10));
 
-impl crate::wire::Telemetry for PowerAndTemperature {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 195;
+message!(PowerAndTemperature {
+    cubesense1_3v3_current: ("CubeSense1 3V3 Current", 0, 16)
+        .unit("mA").scale(&CUBESENSE1_3V3_CURRENT),
+    cubesense1_cam_sram_current: ("CubeSense1 Cam SRAM Current", 16, 16)
+        .unit("mA").scale(&CUBESENSE1_CAM_SRAM_CURRENT),
+    cubesense2_3v3_current: ("CubeSense2 3V3 Current", 32, 16)
+        .unit("mA").scale(&CUBESENSE2_3V3_CURRENT),
+    cubesense2_cam_sram_current: ("CubeSense2 Cam SRAM Current", 48, 16)
+        .unit("mA").scale(&CUBESENSE2_CAM_SRAM_CURRENT),
+    cubecontrol_3v3_current: ("CubeControl 3V3 Current", 64, 16)
+        .unit("mA").scale(&CUBECONTROL_3V3_CURRENT),
+    cubecontrol_5v_current: ("CubeControl 5V Current", 80, 16)
+        .unit("mA").scale(&CUBECONTROL_5V_CURRENT),
+    cubecontrol_vbat_current: ("CubeControl Vbat Current", 96, 16)
+        .unit("mA").scale(&CUBECONTROL_VBAT_CURRENT),
+    wheel1_current: ("Wheel1Current", 112, 16).unit("mA").scale(&WHEEL1_CURRENT),
+    wheel2_current: ("Wheel2Current", 128, 16).unit("mA").scale(&WHEEL2_CURRENT),
+    wheel3_current: ("Wheel3Current", 144, 16).unit("mA").scale(&WHEEL3_CURRENT),
+    cubestar_current: ("CubeStarCurrent", 160, 16).unit("mA").scale(&CUBESTAR_CURRENT),
+    magnetorquer_current: ("Magnetorquer Current", 176, 16).unit("mA").scale(&MAGNETORQUER_CURRENT),
+    cubestar_mcu_temperature: ("CubeStar MCU temperature", 192, 16)
+        .unit("C").scale(&CUBESTAR_MCU_TEMPERATURE),
+    mcu_temperature: ("MCU Temperature", 208, 16).unit("C"),
+    magnetometer_temperature: ("Magnetometer Temperature", 224, 16)
+        .unit("C").scale(&MAGNETOMETER_TEMPERATURE),
+    redundant_mag_temperature: ("Redundant Magnetometer Temperature", 240, 16)
+        .unit("C").scale(&REDUNDANT_MAG_TEMPERATURE),
+    x_rate_sensor_temperature: ("X-Rate Sensor Temperature", 256, 16).unit("C"),
+    y_rate_sensor_temperature: ("Y-Rate Sensor Temperature", 272, 16).unit("C"),
+    z_rate_sensor_temperature: ("Z-Rate Sensor Temperature", 288, 16).unit("C"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for PowerAndTemperature {
+    const TELEMETRY_ID: u32 = 195;
 }

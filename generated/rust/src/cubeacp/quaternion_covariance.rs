@@ -2,7 +2,7 @@
 
 //! Quaternion Covariance, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Quaternion Covariance: telemetry 164, 6 bytes. Table 120.
 ///
@@ -84,13 +84,28 @@ impl QuaternionCovariance {
     }
 
     /// Sets Quaternion Covariance - Q1 RMS, as a physical value, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_q1_rms_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q1_rms = Q1_RMS.raw(value)?;
+        Ok(())
+    }
+
+    /// Quaternion Covariance - Q1 RMS, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn q1_rms_physical_f32(&self) -> f32 {
+        f32::from(self.q1_rms) / 1_000.0
+    }
+
+    /// Quaternion Covariance - Q1 RMS in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn q1_rms_milli(&self) -> i32 {
+        i32::from(self.q1_rms)
+    }
+
+    /// Sets Quaternion Covariance - Q1 RMS in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_q1_rms_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.q1_rms = Q1_RMS.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -101,13 +116,28 @@ impl QuaternionCovariance {
     }
 
     /// Sets Quaternion Covariance - Q2 RMS, as a physical value, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_q2_rms_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q2_rms = Q2_RMS.raw(value)?;
+        Ok(())
+    }
+
+    /// Quaternion Covariance - Q2 RMS, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn q2_rms_physical_f32(&self) -> f32 {
+        f32::from(self.q2_rms) / 1_000.0
+    }
+
+    /// Quaternion Covariance - Q2 RMS in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn q2_rms_milli(&self) -> i32 {
+        i32::from(self.q2_rms)
+    }
+
+    /// Sets Quaternion Covariance - Q2 RMS in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_q2_rms_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.q2_rms = Q2_RMS.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -118,50 +148,47 @@ impl QuaternionCovariance {
     }
 
     /// Sets Quaternion Covariance - Q3 RMS, as a physical value, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_q3_rms_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q3_rms = Q3_RMS.raw(value)?;
         Ok(())
     }
+
+    /// Quaternion Covariance - Q3 RMS, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn q3_rms_physical_f32(&self) -> f32 {
+        f32::from(self.q3_rms) / 1_000.0
+    }
+
+    /// Quaternion Covariance - Q3 RMS in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn q3_rms_milli(&self) -> i32 {
+        i32::from(self.q3_rms)
+    }
+
+    /// Sets Quaternion Covariance - Q3 RMS in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_q3_rms_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.q3_rms = Q3_RMS.whole(value.into(), 1, 0)?;
+        Ok(())
+    }
 }
 
-const Q1_RMS: Scale = Scale {
-    field: "Quaternion Covariance - Q1 RMS",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const Q1_RMS: Scale =
+    Scale::new("Quaternion Covariance - Q1 RMS", (-32_768, 32_767), (1, 0, 1_000));
 
-const Q2_RMS: Scale = Scale {
-    field: "Quaternion Covariance - Q2 RMS",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const Q2_RMS: Scale =
+    Scale::new("Quaternion Covariance - Q2 RMS", (-32_768, 32_767), (1, 0, 1_000));
 
-const Q3_RMS: Scale = Scale {
-    field: "Quaternion Covariance - Q3 RMS",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const Q3_RMS: Scale =
+    Scale::new("Quaternion Covariance - Q3 RMS", (-32_768, 32_767), (1, 0, 1_000));
 
-impl crate::wire::Telemetry for QuaternionCovariance {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 164;
+message!(QuaternionCovariance {
+    q1_rms: ("Quaternion Covariance - Q1 RMS", 0, 16).scale(&Q1_RMS),
+    q2_rms: ("Quaternion Covariance - Q2 RMS", 16, 16).scale(&Q2_RMS),
+    q3_rms: ("Quaternion Covariance - Q3 RMS", 32, 16).scale(&Q3_RMS),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for QuaternionCovariance {
+    const TELEMETRY_ID: u32 = 164;
 }

@@ -2,7 +2,7 @@
 
 //! Quaternion Error Vector, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Quaternion Error Vector: telemetry 163, 6 bytes. Table 119.
 ///
@@ -79,12 +79,28 @@ impl QuaternionErrorVector {
     }
 
     /// Sets Quaternion Error - Q1, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_error_q1_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_error_q1 = QUATERNION_ERROR_Q1.raw(value)?;
+        Ok(())
+    }
+
+    /// Quaternion Error - Q1, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn quaternion_error_q1_physical_f32(&self) -> f32 {
+        f32::from(self.quaternion_error_q1) / 10_000.0
+    }
+
+    /// Quaternion Error - Q1 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn quaternion_error_q1_micro(&self) -> i32 {
+        i32::from(self.quaternion_error_q1) * 100
+    }
+
+    /// Sets Quaternion Error - Q1 in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_quaternion_error_q1_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.quaternion_error_q1 = QUATERNION_ERROR_Q1.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -95,12 +111,28 @@ impl QuaternionErrorVector {
     }
 
     /// Sets Quaternion Error - Q2, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_error_q2_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_error_q2 = QUATERNION_ERROR_Q2.raw(value)?;
+        Ok(())
+    }
+
+    /// Quaternion Error - Q2, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn quaternion_error_q2_physical_f32(&self) -> f32 {
+        f32::from(self.quaternion_error_q2) / 10_000.0
+    }
+
+    /// Quaternion Error - Q2 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn quaternion_error_q2_micro(&self) -> i32 {
+        i32::from(self.quaternion_error_q2) * 100
+    }
+
+    /// Sets Quaternion Error - Q2 in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_quaternion_error_q2_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.quaternion_error_q2 = QUATERNION_ERROR_Q2.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -111,49 +143,47 @@ impl QuaternionErrorVector {
     }
 
     /// Sets Quaternion Error - Q3, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_quaternion_error_q3_physical(&mut self, value: f64) -> Result<(), Error> {
         self.quaternion_error_q3 = QUATERNION_ERROR_Q3.raw(value)?;
         Ok(())
     }
+
+    /// Quaternion Error - Q3, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn quaternion_error_q3_physical_f32(&self) -> f32 {
+        f32::from(self.quaternion_error_q3) / 10_000.0
+    }
+
+    /// Quaternion Error - Q3 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn quaternion_error_q3_micro(&self) -> i32 {
+        i32::from(self.quaternion_error_q3) * 100
+    }
+
+    /// Sets Quaternion Error - Q3 in millionths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_quaternion_error_q3_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.quaternion_error_q3 = QUATERNION_ERROR_Q3.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const QUATERNION_ERROR_Q1: Scale = Scale {
-    field: "Quaternion Error - Q1",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const QUATERNION_ERROR_Q1: Scale =
+    Scale::new("Quaternion Error - Q1", (-32_768, 32_767), (1, 0, 10_000));
 
-const QUATERNION_ERROR_Q2: Scale = Scale {
-    field: "Quaternion Error - Q2",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const QUATERNION_ERROR_Q2: Scale =
+    Scale::new("Quaternion Error - Q2", (-32_768, 32_767), (1, 0, 10_000));
 
-const QUATERNION_ERROR_Q3: Scale = Scale {
-    field: "Quaternion Error - Q3",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const QUATERNION_ERROR_Q3: Scale =
+    Scale::new("Quaternion Error - Q3", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for QuaternionErrorVector {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 163;
+message!(QuaternionErrorVector {
+    quaternion_error_q1: ("Quaternion Error - Q1", 0, 16).scale(&QUATERNION_ERROR_Q1),
+    quaternion_error_q2: ("Quaternion Error - Q2", 16, 16).scale(&QUATERNION_ERROR_Q2),
+    quaternion_error_q3: ("Quaternion Error - Q3", 32, 16).scale(&QUATERNION_ERROR_Q3),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for QuaternionErrorVector {
+    const TELEMETRY_ID: u32 = 163;
 }

@@ -2,7 +2,7 @@
 
 //! Rate Sensor Rates, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Rate Sensor Rates: telemetry 155, 6 bytes. Table 111.
 ///
@@ -81,13 +81,29 @@ impl RateSensorRates {
         f64::from(self.x_angular_rate) / 100.0
     }
 
-    /// Sets X Angular Rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets X Angular Rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_x_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.x_angular_rate = X_ANGULAR_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// X Angular Rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_angular_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.x_angular_rate) / 100.0
+    }
+
+    /// X Angular Rate in thousandths of deg/s, exact: -327680 to 327670.
+    #[must_use]
+    pub fn x_angular_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.x_angular_rate) * 10
+    }
+
+    /// Sets X Angular Rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_x_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.x_angular_rate = X_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -97,13 +113,29 @@ impl RateSensorRates {
         f64::from(self.y_angular_rate) / 100.0
     }
 
-    /// Sets Y Angular Rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Y Angular Rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_y_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.y_angular_rate = Y_ANGULAR_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// Y Angular Rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_angular_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.y_angular_rate) / 100.0
+    }
+
+    /// Y Angular Rate in thousandths of deg/s, exact: -327680 to 327670.
+    #[must_use]
+    pub fn y_angular_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.y_angular_rate) * 10
+    }
+
+    /// Sets Y Angular Rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_y_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.y_angular_rate = Y_ANGULAR_RATE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -113,50 +145,45 @@ impl RateSensorRates {
         f64::from(self.z_angular_rate) / 100.0
     }
 
-    /// Sets Z Angular Rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Z Angular Rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_z_angular_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.z_angular_rate = Z_ANGULAR_RATE.raw(value)?;
         Ok(())
     }
+
+    /// Z Angular Rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_angular_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.z_angular_rate) / 100.0
+    }
+
+    /// Z Angular Rate in thousandths of deg/s, exact: -327680 to 327670.
+    #[must_use]
+    pub fn z_angular_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.z_angular_rate) * 10
+    }
+
+    /// Sets Z Angular Rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_z_angular_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.z_angular_rate = Z_ANGULAR_RATE.whole(value.into(), 10, 0)?;
+        Ok(())
+    }
 }
 
-const X_ANGULAR_RATE: Scale = Scale {
-    field: "X Angular Rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const X_ANGULAR_RATE: Scale = Scale::new("X Angular Rate", (-32_768, 32_767), (1, 0, 100));
 
-const Y_ANGULAR_RATE: Scale = Scale {
-    field: "Y Angular Rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const Y_ANGULAR_RATE: Scale = Scale::new("Y Angular Rate", (-32_768, 32_767), (1, 0, 100));
 
-const Z_ANGULAR_RATE: Scale = Scale {
-    field: "Z Angular Rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const Z_ANGULAR_RATE: Scale = Scale::new("Z Angular Rate", (-32_768, 32_767), (1, 0, 100));
 
-impl crate::wire::Telemetry for RateSensorRates {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 155;
+message!(RateSensorRates {
+    x_angular_rate: ("X Angular Rate", 0, 16).unit("deg/s").scale(&X_ANGULAR_RATE),
+    y_angular_rate: ("Y Angular Rate", 16, 16).unit("deg/s").scale(&Y_ANGULAR_RATE),
+    z_angular_rate: ("Z Angular Rate", 32, 16).unit("deg/s").scale(&Z_ANGULAR_RATE),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RateSensorRates {
+    const TELEMETRY_ID: u32 = 155;
 }

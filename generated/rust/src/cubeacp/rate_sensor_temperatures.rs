@@ -2,7 +2,7 @@
 
 //! Rate sensor temperatures, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Rate sensor temperatures: telemetry 175, 6 bytes. Table 133.
 ///
@@ -82,12 +82,12 @@ impl RateSensorTemperatures {
     }
 }
 
-impl crate::wire::Telemetry for RateSensorTemperatures {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 175;
+message!(RateSensorTemperatures {
+    x_rate_sensor_temperature: ("X-Rate Sensor Temperature", 0, 16).unit("C"),
+    y_rate_sensor_temperature: ("Y-Rate Sensor Temperature", 16, 16).unit("C"),
+    z_rate_sensor_temperature: ("Z-Rate Sensor Temperature", 32, 16).unit("C"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RateSensorTemperatures {
+    const TELEMETRY_ID: u32 = 175;
 }

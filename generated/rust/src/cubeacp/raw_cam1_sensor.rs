@@ -3,7 +3,7 @@
 //! Raw Cam1 Sensor, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error};
+use crate::support::{message, put, take, Coded, Error};
 
 /// Raw Cam1 Sensor: telemetry 167, 6 bytes. Table 125.
 ///
@@ -86,12 +86,13 @@ impl RawCam1Sensor {
     }
 }
 
-impl crate::wire::Telemetry for RawCam1Sensor {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 167;
+message!(RawCam1Sensor {
+    cam1_centroid_x: ("Cam1 centroid X", 0, 16),
+    cam1_centroid_y: ("Cam1 centroid Y", 16, 16),
+    cam1_capture_status: ("Cam1 Capture status", 32, 8),
+    cam1_detection_result: ("Cam1 Detection result", 40, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawCam1Sensor {
+    const TELEMETRY_ID: u32 = 167;
 }

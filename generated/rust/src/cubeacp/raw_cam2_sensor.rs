@@ -3,7 +3,7 @@
 //! Raw Cam2 Sensor, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error};
+use crate::support::{message, put, take, Coded, Error};
 
 /// Raw Cam2 Sensor: telemetry 166, 6 bytes. Table 122.
 ///
@@ -86,12 +86,13 @@ impl RawCam2Sensor {
     }
 }
 
-impl crate::wire::Telemetry for RawCam2Sensor {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 166;
+message!(RawCam2Sensor {
+    cam2_centroid_x: ("Cam2 centroid X", 0, 16),
+    cam2_centroid_y: ("Cam2 centroid Y", 16, 16),
+    cam2_capture_status: ("Cam2 Capture status", 32, 8),
+    cam2_detection_result: ("Cam2 Detection result", 40, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawCam2Sensor {
+    const TELEMETRY_ID: u32 = 166;
 }

@@ -2,7 +2,7 @@
 
 //! Raw CSS 1 to 6, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Raw CSS 1 to 6: telemetry 168, 6 bytes. Table 126.
 ///
@@ -105,12 +105,15 @@ impl RawCss1To6 {
     }
 }
 
-impl crate::wire::Telemetry for RawCss1To6 {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 168;
+message!(RawCss1To6 {
+    css1: ("CSS1", 0, 8),
+    css2: ("CSS2", 8, 8),
+    css3: ("CSS3", 16, 8),
+    css4: ("CSS4", 24, 8),
+    css5: ("CSS5", 32, 8),
+    css6: ("CSS6", 40, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawCss1To6 {
+    const TELEMETRY_ID: u32 = 168;
 }

@@ -2,7 +2,7 @@
 
 //! Raw CSS 7 to 10, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Raw CSS 7 to 10: telemetry 169, 6 bytes. Table 127.
 ///
@@ -93,12 +93,13 @@ impl RawCss7To10 {
     }
 }
 
-impl crate::wire::Telemetry for RawCss7To10 {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 169;
+message!(RawCss7To10 {
+    css7: ("CSS7", 0, 8),
+    css8: ("CSS8", 8, 8),
+    css9: ("CSS9", 16, 8),
+    css10: ("CSS10", 24, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawCss7To10 {
+    const TELEMETRY_ID: u32 = 169;
 }

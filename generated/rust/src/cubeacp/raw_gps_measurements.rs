@@ -3,7 +3,7 @@
 //! Raw GPS Measurements, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error, Scale};
+use crate::support::{message, put, take, Coded, Error, Scale};
 
 /// Raw GPS Measurements: telemetry 210, 36 bytes. Table 158.
 ///
@@ -182,13 +182,29 @@ impl RawGpsMeasurements {
         f64::from(self.x_pos_standard_deviation) / 10.0
     }
 
-    /// Sets X-pos Standard Deviation in m, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets X-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_x_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.x_pos_standard_deviation = X_POS_STANDARD_DEVIATION.raw(value)?;
+        Ok(())
+    }
+
+    /// X-pos Standard Deviation in m, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_pos_standard_deviation_m_f32(&self) -> f32 {
+        f32::from(self.x_pos_standard_deviation) / 10.0
+    }
+
+    /// X-pos Standard Deviation in mm, exact: 0 to 25500.
+    #[must_use]
+    pub fn x_pos_standard_deviation_mm(&self) -> i32 {
+        i32::from(self.x_pos_standard_deviation) * 100
+    }
+
+    /// Sets X-pos Standard Deviation in mm, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_x_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
+        self.x_pos_standard_deviation = X_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -198,13 +214,29 @@ impl RawGpsMeasurements {
         f64::from(self.y_pos_standard_deviation) / 10.0
     }
 
-    /// Sets Y-pos Standard Deviation in m, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Y-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_y_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.y_pos_standard_deviation = Y_POS_STANDARD_DEVIATION.raw(value)?;
+        Ok(())
+    }
+
+    /// Y-pos Standard Deviation in m, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_pos_standard_deviation_m_f32(&self) -> f32 {
+        f32::from(self.y_pos_standard_deviation) / 10.0
+    }
+
+    /// Y-pos Standard Deviation in mm, exact: 0 to 25500.
+    #[must_use]
+    pub fn y_pos_standard_deviation_mm(&self) -> i32 {
+        i32::from(self.y_pos_standard_deviation) * 100
+    }
+
+    /// Sets Y-pos Standard Deviation in mm, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_y_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
+        self.y_pos_standard_deviation = Y_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -214,50 +246,68 @@ impl RawGpsMeasurements {
         f64::from(self.z_pos_standard_deviation) / 10.0
     }
 
-    /// Sets Z-pos Standard Deviation in m, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Z-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_z_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.z_pos_standard_deviation = Z_POS_STANDARD_DEVIATION.raw(value)?;
         Ok(())
     }
+
+    /// Z-pos Standard Deviation in m, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_pos_standard_deviation_m_f32(&self) -> f32 {
+        f32::from(self.z_pos_standard_deviation) / 10.0
+    }
+
+    /// Z-pos Standard Deviation in mm, exact: 0 to 25500.
+    #[must_use]
+    pub fn z_pos_standard_deviation_mm(&self) -> i32 {
+        i32::from(self.z_pos_standard_deviation) * 100
+    }
+
+    /// Sets Z-pos Standard Deviation in mm, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_z_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
+        self.z_pos_standard_deviation = Z_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const X_POS_STANDARD_DEVIATION: Scale = Scale {
-    field: "X-pos Standard Deviation",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const X_POS_STANDARD_DEVIATION: Scale =
+    Scale::new("X-pos Standard Deviation", (0, 255), (1, 0, 10));
 
-const Y_POS_STANDARD_DEVIATION: Scale = Scale {
-    field: "Y-pos Standard Deviation",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const Y_POS_STANDARD_DEVIATION: Scale =
+    Scale::new("Y-pos Standard Deviation", (0, 255), (1, 0, 10));
 
-const Z_POS_STANDARD_DEVIATION: Scale = Scale {
-    field: "Z-pos Standard Deviation",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const Z_POS_STANDARD_DEVIATION: Scale =
+    Scale::new("Z-pos Standard Deviation", (0, 255), (1, 0, 10));
 
-impl crate::wire::Telemetry for RawGpsMeasurements {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 210;
+message!(RawGpsMeasurements {
+    gps_solution_status: ("Gps Solution Status", 0, 8),
+    number_of_tracked_gps_satellites: ("Number of tracked GPS satellites", 8, 8),
+    number_of_gps_satellites_used_in_solution: ("Number of GPS satellites used in solution", 16, 8),
+    counter_for_xyz_log_from_gps: ("Counter for XYZ Lof from GPS", 24, 8),
+    counter_for_range_log_from_gps: ("Counter for RANGE log from GPS", 32, 8),
+    response_message_for_gps_log_setup: ("Response Message for GPS log setup", 40, 8),
+    gps_reference_week: ("GPS Reference Week", 48, 16),
+    gps_time_milliseconds: ("GPS Time Milliseconds", 64, 32).unit("ms"),
+    ecef_position_x: ("ECEF Position X", 96, 32).unit("m"),
+    ecef_velocity_x: ("ECEF Velocity X", 128, 16).unit("m/s"),
+    ecef_position_y: ("ECEF Position Y", 144, 32).unit("m"),
+    ecef_velocity_y: ("ECEF Velocity Y", 176, 16).unit("m/s"),
+    ecef_position_z: ("ECEF Position Z", 192, 32).unit("m"),
+    ecef_velocity_z: ("ECEF Velocity Z", 224, 16).unit("m/s"),
+    x_pos_standard_deviation: ("X-pos Standard Deviation", 240, 8)
+        .unit("m").scale(&X_POS_STANDARD_DEVIATION),
+    y_pos_standard_deviation: ("Y-pos Standard Deviation", 248, 8)
+        .unit("m").scale(&Y_POS_STANDARD_DEVIATION),
+    z_pos_standard_deviation: ("Z-pos Standard Deviation", 256, 8)
+        .unit("m").scale(&Z_POS_STANDARD_DEVIATION),
+    x_vel_standard_deviation: ("X-vel Standard Deviation", 264, 8).unit("m/s"),
+    y_vel_standard_deviation: ("Y-vel Standard Deviation", 272, 8).unit("m/s"),
+    z_vel_standard_deviation: ("Z-vel Standard Deviation", 280, 8).unit("m/s"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawGpsMeasurements {
+    const TELEMETRY_ID: u32 = 210;
 }

@@ -3,7 +3,7 @@
 //! Raw GPS Status, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Raw GPS Status: telemetry 176, 6 bytes. Table 134.
 ///
@@ -92,12 +92,15 @@ impl RawGpsStatus {
     }
 }
 
-impl crate::wire::Telemetry for RawGpsStatus {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 176;
+message!(RawGpsStatus {
+    gps_solution_status: ("Gps Solution Status", 0, 8),
+    number_of_tracked_gps_satellites: ("Number of tracked GPS satellites", 8, 8),
+    number_of_gps_satellites_used_in_solution: ("Number of GPS satellites used in solution", 16, 8),
+    counter_for_xyz_log_from_gps: ("Counter for XYZ Lof from GPS", 24, 8),
+    counter_for_range_log_from_gps: ("Counter for RANGE log from GPS", 32, 8),
+    response_message_for_gps_log_setup: ("Response Message for GPS log setup", 40, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawGpsStatus {
+    const TELEMETRY_ID: u32 = 176;
 }

@@ -2,7 +2,7 @@
 
 //! Raw GPS Time, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Raw GPS Time: telemetry 177, 6 bytes. Table 135.
 ///
@@ -67,12 +67,11 @@ impl RawGpsTime {
     }
 }
 
-impl crate::wire::Telemetry for RawGpsTime {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 177;
+message!(RawGpsTime {
+    gps_reference_week: ("GPS Reference Week", 0, 16),
+    gps_time_milliseconds: ("GPS Time Milliseconds", 16, 32).unit("ms"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawGpsTime {
+    const TELEMETRY_ID: u32 = 177;
 }

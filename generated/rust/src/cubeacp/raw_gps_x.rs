@@ -2,7 +2,7 @@
 
 //! Raw GPS X, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Raw GPS X: telemetry 178, 6 bytes. Table 136.
 ///
@@ -75,12 +75,11 @@ impl RawGpsX {
     }
 }
 
-impl crate::wire::Telemetry for RawGpsX {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 178;
+message!(RawGpsX {
+    ecef_position_x: ("ECEF Position X", 0, 32).unit("m"),
+    ecef_velocity_x: ("ECEF Velocity X", 32, 16).unit("m/s"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawGpsX {
+    const TELEMETRY_ID: u32 = 178;
 }

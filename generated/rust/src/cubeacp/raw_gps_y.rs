@@ -2,7 +2,7 @@
 
 //! Raw GPS Y, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Raw GPS Y: telemetry 179, 6 bytes. Table 137.
 ///
@@ -75,12 +75,11 @@ impl RawGpsY {
     }
 }
 
-impl crate::wire::Telemetry for RawGpsY {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 179;
+message!(RawGpsY {
+    ecef_position_y: ("ECEF Position Y", 0, 32).unit("m"),
+    ecef_velocity_y: ("ECEF Velocity Y", 32, 16).unit("m/s"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawGpsY {
+    const TELEMETRY_ID: u32 = 179;
 }

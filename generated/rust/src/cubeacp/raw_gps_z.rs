@@ -2,7 +2,7 @@
 
 //! Raw GPS Z, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Raw GPS Z: telemetry 180, 6 bytes. Table 138.
 ///
@@ -75,12 +75,11 @@ impl RawGpsZ {
     }
 }
 
-impl crate::wire::Telemetry for RawGpsZ {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 180;
+message!(RawGpsZ {
+    ecef_position_z: ("ECEF Position Z", 0, 32).unit("m"),
+    ecef_velocity_z: ("ECEF Velocity Z", 32, 16).unit("m/s"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawGpsZ {
+    const TELEMETRY_ID: u32 = 180;
 }

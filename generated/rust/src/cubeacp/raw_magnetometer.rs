@@ -2,7 +2,7 @@
 
 //! Raw Magnetometer, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Raw Magnetometer: telemetry 170, 6 bytes. Table 128.
 ///
@@ -80,12 +80,12 @@ impl RawMagnetometer {
     }
 }
 
-impl crate::wire::Telemetry for RawMagnetometer {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 170;
+message!(RawMagnetometer {
+    mag_x: ("MagX", 0, 16),
+    mag_y: ("MagY", 16, 16),
+    mag_z: ("MagZ", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawMagnetometer {
+    const TELEMETRY_ID: u32 = 170;
 }

@@ -2,7 +2,7 @@
 
 //! Raw Rate Sensor, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Raw Rate Sensor: telemetry 216, 6 bytes. Table 164.
 ///
@@ -80,12 +80,12 @@ impl RawRateSensor {
     }
 }
 
-impl crate::wire::Telemetry for RawRateSensor {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 216;
+message!(RawRateSensor {
+    rate_x: ("RateX", 0, 16),
+    rate_y: ("RateY", 16, 16),
+    rate_z: ("RateZ", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawRateSensor {
+    const TELEMETRY_ID: u32 = 216;
 }

@@ -3,7 +3,7 @@
 //! Raw Sensor Measurements, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error};
+use crate::support::{message, put, take, Coded, Error};
 
 /// Raw Sensor Measurements: telemetry 194, 34 bytes. Table 153.
 ///
@@ -223,12 +223,33 @@ impl RawSensorMeasurements {
     }
 }
 
-impl crate::wire::Telemetry for RawSensorMeasurements {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 194;
+message!(RawSensorMeasurements {
+    cam2_centroid_x: ("Cam2 centroid X", 0, 16),
+    cam2_centroid_y: ("Cam2 centroid Y", 16, 16),
+    cam2_capture_status: ("Cam2 Capture status", 32, 8),
+    cam2_detection_result: ("Cam2 Detection result", 40, 8),
+    cam1_centroid_x: ("Cam1 centroid X", 48, 16),
+    cam1_centroid_y: ("Cam1 centroid Y", 64, 16),
+    cam1_capture_status: ("Cam1 Capture status", 80, 8),
+    cam1_detection_result: ("Cam1 Detection result", 88, 8),
+    css1: ("CSS1", 96, 8),
+    css2: ("CSS2", 104, 8),
+    css3: ("CSS3", 112, 8),
+    css4: ("CSS4", 120, 8),
+    css5: ("CSS5", 128, 8),
+    css6: ("CSS6", 136, 8),
+    css7: ("CSS7", 144, 8),
+    css8: ("CSS8", 152, 8),
+    css9: ("CSS9", 160, 8),
+    css10: ("CSS10", 168, 8),
+    mag_x: ("MagX", 176, 16),
+    mag_y: ("MagY", 192, 16),
+    mag_z: ("MagZ", 208, 16),
+    rate_x: ("RateX", 224, 16),
+    rate_y: ("RateY", 240, 16),
+    rate_z: ("RateZ", 256, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawSensorMeasurements {
+    const TELEMETRY_ID: u32 = 194;
 }

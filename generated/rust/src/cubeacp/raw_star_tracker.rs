@@ -3,7 +3,7 @@
 //! Raw Star Tracker, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{flags, put, take, Coded, Error, Scale};
+use crate::support::{flags, message, put, take, Coded, Error, Scale};
 
 /// Raw Star Tracker: telemetry 211, 54 bytes. Table 159.
 ///
@@ -300,12 +300,28 @@ impl RawStarTracker {
     }
 
     /// Sets x-Axis rate, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_x_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.x_axis_rate = X_AXIS_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// x-Axis rate, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_axis_rate_physical_f32(&self) -> f32 {
+        f32::from(self.x_axis_rate) / 10_000.0
+    }
+
+    /// x-Axis rate in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn x_axis_rate_micro(&self) -> i32 {
+        i32::from(self.x_axis_rate) * 100
+    }
+
+    /// Sets x-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_x_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.x_axis_rate = X_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -316,12 +332,28 @@ impl RawStarTracker {
     }
 
     /// Sets y-Axis rate, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_y_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.y_axis_rate = Y_AXIS_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// y-Axis rate, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_axis_rate_physical_f32(&self) -> f32 {
+        f32::from(self.y_axis_rate) / 10_000.0
+    }
+
+    /// y-Axis rate in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn y_axis_rate_micro(&self) -> i32 {
+        i32::from(self.y_axis_rate) * 100
+    }
+
+    /// Sets y-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_y_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.y_axis_rate = Y_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -332,12 +364,28 @@ impl RawStarTracker {
     }
 
     /// Sets z-Axis rate, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_z_axis_rate_physical(&mut self, value: f64) -> Result<(), Error> {
         self.z_axis_rate = Z_AXIS_RATE.raw(value)?;
+        Ok(())
+    }
+
+    /// z-Axis rate, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_axis_rate_physical_f32(&self) -> f32 {
+        f32::from(self.z_axis_rate) / 10_000.0
+    }
+
+    /// z-Axis rate in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn z_axis_rate_micro(&self) -> i32 {
+        i32::from(self.z_axis_rate) * 100
+    }
+
+    /// Sets z-Axis rate in millionths, to the nearest raw value, ties to even. [`Error::Range`] if
+    /// it does not fit.
+    pub fn set_z_axis_rate_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.z_axis_rate = Z_AXIS_RATE.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -347,13 +395,29 @@ impl RawStarTracker {
         f64::from(self.q0) / 10_000.0
     }
 
-    /// Sets Q0, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Q0, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_q0_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q0 = Q0.raw(value)?;
+        Ok(())
+    }
+
+    /// Q0, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn q0_physical_f32(&self) -> f32 {
+        f32::from(self.q0) / 10_000.0
+    }
+
+    /// Q0 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn q0_micro(&self) -> i32 {
+        i32::from(self.q0) * 100
+    }
+
+    /// Sets Q0 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_q0_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.q0 = Q0.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -363,13 +427,29 @@ impl RawStarTracker {
         f64::from(self.q1) / 10_000.0
     }
 
-    /// Sets Q1, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Q1, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_q1_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q1 = Q1.raw(value)?;
+        Ok(())
+    }
+
+    /// Q1, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn q1_physical_f32(&self) -> f32 {
+        f32::from(self.q1) / 10_000.0
+    }
+
+    /// Q1 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn q1_micro(&self) -> i32 {
+        i32::from(self.q1) * 100
+    }
+
+    /// Sets Q1 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_q1_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.q1 = Q1.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -379,77 +459,87 @@ impl RawStarTracker {
         f64::from(self.q2) / 10_000.0
     }
 
-    /// Sets Q2, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Q2, as a physical value, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_q2_physical(&mut self, value: f64) -> Result<(), Error> {
         self.q2 = Q2.raw(value)?;
         Ok(())
     }
+
+    /// Q2, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn q2_physical_f32(&self) -> f32 {
+        f32::from(self.q2) / 10_000.0
+    }
+
+    /// Q2 in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn q2_micro(&self) -> i32 {
+        i32::from(self.q2) * 100
+    }
+
+    /// Sets Q2 in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_q2_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.q2 = Q2.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const X_AXIS_RATE: Scale = Scale {
-    field: "x-Axis rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const X_AXIS_RATE: Scale = Scale::new("x-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
 
-const Y_AXIS_RATE: Scale = Scale {
-    field: "y-Axis rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Y_AXIS_RATE: Scale = Scale::new("y-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
 
-const Z_AXIS_RATE: Scale = Scale {
-    field: "z-Axis rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Z_AXIS_RATE: Scale = Scale::new("z-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
 
-const Q0: Scale = Scale {
-    field: "Q0",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Q0: Scale = Scale::new("Q0", (-32_768, 32_767), (1, 0, 10_000));
 
-const Q1: Scale = Scale {
-    field: "Q1",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Q1: Scale = Scale::new("Q1", (-32_768, 32_767), (1, 0, 10_000));
 
-const Q2: Scale = Scale {
-    field: "Q2",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const Q2: Scale = Scale::new("Q2", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for RawStarTracker {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 211;
+message!(RawStarTracker {
+    number_of_stars_detected: ("Number of stars detected", 0, 8).unit("stars"),
+    star_image_noise: ("Star image noise", 8, 8).unit("noise"),
+    invalid_stars: ("Invalid Stars", 16, 8).unit("Invalid stars"),
+    number_of_stars_identified: ("Number of stars identified", 24, 8).unit("stars"),
+    identification_mode: ("Identification mode", 32, 8),
+    image_dark_value: ("Image dark value", 40, 8).unit("8-bit pixel value"),
+    image_capture_success: ("Image Capture Success", 48, 1),
+    detection_success: ("Detection Success", 49, 1),
+    identification_success: ("Identification Success", 50, 1),
+    attitude_success: ("AttitudeSuccess", 51, 1),
+    processing_time_error: ("Processing Time Error", 52, 1),
+    tracking_module_enabled: ("Tracking Module Enabled", 53, 1),
+    prediction_enabled: ("Prediction Enabled", 54, 1),
+    comms_error: ("Comms error", 55, 1),
+    sample_period: ("Sample Period", 56, 16),
+    star_1_confidence: ("Star 1 confidence", 72, 8).unit("%"),
+    star_2_confidence: ("Star 2 confidence", 80, 8).unit("%"),
+    star_3_confidence: ("Star 3 confidence", 88, 8).unit("%"),
+    magnitude_star_1: ("Magnitude Star 1", 96, 16),
+    magnitude_star_2: ("Magnitude Star 2", 112, 16),
+    magnitude_star_3: ("Magnitude Star 3", 128, 16),
+    catalogue_star_1: ("Catalogue Star 1", 144, 16),
+    centroid_x_star_1: ("Centroid X Star 1", 160, 16),
+    centroid_y_star_1: ("Centroid Y Star 1", 176, 16),
+    catalogue_star_2: ("Catalogue Star 2", 192, 16),
+    centroid_x_star_2: ("Centroid X Star 2", 208, 16),
+    centroid_y_star_2: ("Centroid Y Star 2", 224, 16),
+    catalogue_star_3: ("Catalogue Star 3", 240, 16),
+    centroid_x_star_3: ("Centroid X Star 3", 256, 16),
+    centroid_y_star_3: ("Centroid Y Star 3", 272, 16),
+    capture: ("Capture", 288, 16).unit("ms"),
+    detection: ("Detection", 304, 16).unit("ms"),
+    identification: ("Identification", 320, 16).unit("ms"),
+    x_axis_rate: ("x-Axis rate", 336, 16).scale(&X_AXIS_RATE),
+    y_axis_rate: ("y-Axis rate", 352, 16).scale(&Y_AXIS_RATE),
+    z_axis_rate: ("z-Axis rate", 368, 16).scale(&Z_AXIS_RATE),
+    q0: ("Q0", 384, 16).scale(&Q0),
+    q1: ("Q1", 400, 16).scale(&Q1),
+    q2: ("Q2", 416, 16).scale(&Q2),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for RawStarTracker {
+    const TELEMETRY_ID: u32 = 211;
 }

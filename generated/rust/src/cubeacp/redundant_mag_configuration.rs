@@ -2,7 +2,7 @@
 
 //! Redundant Magnetometer Configuration, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Redundant Magnetometer Configuration: configuration, set by telecommand 36, got by telemetry
 /// 205, 30 bytes. Table 191.
@@ -154,13 +154,29 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_alpha = MOUNTING_ALPHA.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Mounting Transform Alpha Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn mounting_alpha_deg_f32(&self) -> f32 {
+        f32::from(self.mounting_alpha) / 100.0
+    }
+
+    /// Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg, exact: -327680
+    /// to 327670.
+    #[must_use]
+    pub fn mounting_alpha_mdeg(&self) -> i32 {
+        i32::from(self.mounting_alpha) * 10
+    }
+
+    /// Sets Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg, to the
+    /// nearest raw value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.mounting_alpha = MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -171,13 +187,29 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_beta = MOUNTING_BETA.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Mounting Transform Beta Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn mounting_beta_deg_f32(&self) -> f32 {
+        f32::from(self.mounting_beta) / 100.0
+    }
+
+    /// Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg, exact: -327680
+    /// to 327670.
+    #[must_use]
+    pub fn mounting_beta_mdeg(&self) -> i32 {
+        i32::from(self.mounting_beta) * 10
+    }
+
+    /// Sets Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg, to the
+    /// nearest raw value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.mounting_beta = MOUNTING_BETA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -188,13 +220,29 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_gamma = MOUNTING_GAMMA.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Mounting Transform Gamma Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn mounting_gamma_deg_f32(&self) -> f32 {
+        f32::from(self.mounting_gamma) / 100.0
+    }
+
+    /// Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg, exact: -327680
+    /// to 327670.
+    #[must_use]
+    pub fn mounting_gamma_mdeg(&self) -> i32 {
+        i32::from(self.mounting_gamma) * 10
+    }
+
+    /// Sets Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg, to the
+    /// nearest raw value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.mounting_gamma = MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -205,13 +253,28 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_channel_1_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.channel_1_offset = CHANNEL_1_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Channel 1 Offset, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn channel_1_offset_physical_f32(&self) -> f32 {
+        f32::from(self.channel_1_offset) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn channel_1_offset_milli(&self) -> i32 {
+        i32::from(self.channel_1_offset)
+    }
+
+    /// Sets Redundant Magnetometer Channel 1 Offset in thousandths, to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit.
+    pub fn set_channel_1_offset_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.channel_1_offset = CHANNEL_1_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -222,13 +285,28 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_channel_2_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.channel_2_offset = CHANNEL_2_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Channel 2 Offset, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn channel_2_offset_physical_f32(&self) -> f32 {
+        f32::from(self.channel_2_offset) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn channel_2_offset_milli(&self) -> i32 {
+        i32::from(self.channel_2_offset)
+    }
+
+    /// Sets Redundant Magnetometer Channel 2 Offset in thousandths, to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit.
+    pub fn set_channel_2_offset_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.channel_2_offset = CHANNEL_2_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -239,13 +317,28 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_channel_3_offset_physical(&mut self, value: f64) -> Result<(), Error> {
         self.channel_3_offset = CHANNEL_3_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Channel 3 Offset, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn channel_3_offset_physical_f32(&self) -> f32 {
+        f32::from(self.channel_3_offset) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn channel_3_offset_milli(&self) -> i32 {
+        i32::from(self.channel_3_offset)
+    }
+
+    /// Sets Redundant Magnetometer Channel 3 Offset in thousandths, to the nearest raw value, ties
+    /// to even. [`Error::Range`] if it does not fit.
+    pub fn set_channel_3_offset_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.channel_3_offset = CHANNEL_3_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -256,13 +349,29 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s11_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s11 = SENSITIVITY_S11.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S11, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn sensitivity_s11_physical_f32(&self) -> f32 {
+        f32::from(self.sensitivity_s11) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn sensitivity_s11_milli(&self) -> i32 {
+        i32::from(self.sensitivity_s11)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S11 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_sensitivity_s11_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.sensitivity_s11 = SENSITIVITY_S11.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -273,13 +382,29 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s22_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s22 = SENSITIVITY_S22.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S22, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn sensitivity_s22_physical_f32(&self) -> f32 {
+        f32::from(self.sensitivity_s22) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn sensitivity_s22_milli(&self) -> i32 {
+        i32::from(self.sensitivity_s22)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S22 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_sensitivity_s22_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.sensitivity_s22 = SENSITIVITY_S22.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -290,13 +415,29 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s33_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s33 = SENSITIVITY_S33.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S33, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn sensitivity_s33_physical_f32(&self) -> f32 {
+        f32::from(self.sensitivity_s33) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn sensitivity_s33_milli(&self) -> i32 {
+        i32::from(self.sensitivity_s33)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S33 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_sensitivity_s33_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.sensitivity_s33 = SENSITIVITY_S33.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -307,13 +448,29 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s12_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s12 = SENSITIVITY_S12.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S12, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn sensitivity_s12_physical_f32(&self) -> f32 {
+        f32::from(self.sensitivity_s12) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn sensitivity_s12_milli(&self) -> i32 {
+        i32::from(self.sensitivity_s12)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S12 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_sensitivity_s12_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.sensitivity_s12 = SENSITIVITY_S12.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -324,13 +481,29 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s13_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s13 = SENSITIVITY_S13.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S13, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn sensitivity_s13_physical_f32(&self) -> f32 {
+        f32::from(self.sensitivity_s13) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn sensitivity_s13_milli(&self) -> i32 {
+        i32::from(self.sensitivity_s13)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S13 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_sensitivity_s13_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.sensitivity_s13 = SENSITIVITY_S13.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -341,13 +514,29 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s21_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s21 = SENSITIVITY_S21.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S21, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn sensitivity_s21_physical_f32(&self) -> f32 {
+        f32::from(self.sensitivity_s21) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn sensitivity_s21_milli(&self) -> i32 {
+        i32::from(self.sensitivity_s21)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S21 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_sensitivity_s21_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.sensitivity_s21 = SENSITIVITY_S21.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -358,13 +547,29 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s23_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s23 = SENSITIVITY_S23.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S23, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn sensitivity_s23_physical_f32(&self) -> f32 {
+        f32::from(self.sensitivity_s23) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn sensitivity_s23_milli(&self) -> i32 {
+        i32::from(self.sensitivity_s23)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S23 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_sensitivity_s23_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.sensitivity_s23 = SENSITIVITY_S23.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -375,13 +580,29 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s31_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s31 = SENSITIVITY_S31.raw(value)?;
+        Ok(())
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S31, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn sensitivity_s31_physical_f32(&self) -> f32 {
+        f32::from(self.sensitivity_s31) / 1_000.0
+    }
+
+    /// Redundant Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn sensitivity_s31_milli(&self) -> i32 {
+        i32::from(self.sensitivity_s31)
+    }
+
+    /// Sets Redundant Magnetometer Sensitivity Matrix S31 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_sensitivity_s31_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.sensitivity_s31 = SENSITIVITY_S31.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -392,168 +613,112 @@ impl RedundantMagConfiguration {
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw
-    /// value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// value, ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_sensitivity_s32_physical(&mut self, value: f64) -> Result<(), Error> {
         self.sensitivity_s32 = SENSITIVITY_S32.raw(value)?;
         Ok(())
     }
-}
 
-const MOUNTING_ALPHA: Scale = Scale {
-    field: "Redundant Magnetometer Mounting Transform Alpha Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+    /// Redundant Magnetometer Sensitivity Matrix S32, as a physical value, the nearest float of 32
+    /// bits.
+    #[must_use]
+    pub fn sensitivity_s32_physical_f32(&self) -> f32 {
+        f32::from(self.sensitivity_s32) / 1_000.0
+    }
 
-const MOUNTING_BETA: Scale = Scale {
-    field: "Redundant Magnetometer Mounting Transform Beta Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+    /// Redundant Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn sensitivity_s32_milli(&self) -> i32 {
+        i32::from(self.sensitivity_s32)
+    }
 
-const MOUNTING_GAMMA: Scale = Scale {
-    field: "Redundant Magnetometer Mounting Transform Gamma Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const CHANNEL_1_OFFSET: Scale = Scale {
-    field: "Redundant Magnetometer Channel 1 Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const CHANNEL_2_OFFSET: Scale = Scale {
-    field: "Redundant Magnetometer Channel 2 Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const CHANNEL_3_OFFSET: Scale = Scale {
-    field: "Redundant Magnetometer Channel 3 Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const SENSITIVITY_S11: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S11",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const SENSITIVITY_S22: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S22",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const SENSITIVITY_S33: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S33",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const SENSITIVITY_S12: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S12",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const SENSITIVITY_S13: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S13",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const SENSITIVITY_S21: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S21",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const SENSITIVITY_S23: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S23",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const SENSITIVITY_S31: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S31",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-const SENSITIVITY_S32: Scale = Scale {
-    field: "Redundant Magnetometer Sensitivity Matrix S32",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-impl crate::wire::Telecommand for RedundantMagConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 36;
-
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
+    /// Sets Redundant Magnetometer Sensitivity Matrix S32 in thousandths, to the nearest raw value,
+    /// ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_sensitivity_s32_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.sensitivity_s32 = SENSITIVITY_S32.whole(value.into(), 1, 0)?;
+        Ok(())
     }
 }
 
-impl crate::wire::Telemetry for RedundantMagConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 205;
+const MOUNTING_ALPHA: Scale =
+    Scale::new("Redundant Magnetometer Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+const MOUNTING_BETA: Scale =
+    Scale::new("Redundant Magnetometer Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+
+const MOUNTING_GAMMA: Scale =
+    Scale::new("Redundant Magnetometer Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+
+const CHANNEL_1_OFFSET: Scale =
+    Scale::new("Redundant Magnetometer Channel 1 Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const CHANNEL_2_OFFSET: Scale =
+    Scale::new("Redundant Magnetometer Channel 2 Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const CHANNEL_3_OFFSET: Scale =
+    Scale::new("Redundant Magnetometer Channel 3 Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const SENSITIVITY_S11: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S11", (-32_768, 32_767), (1, 0, 1_000));
+
+const SENSITIVITY_S22: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S22", (-32_768, 32_767), (1, 0, 1_000));
+
+const SENSITIVITY_S33: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S33", (-32_768, 32_767), (1, 0, 1_000));
+
+const SENSITIVITY_S12: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S12", (-32_768, 32_767), (1, 0, 1_000));
+
+const SENSITIVITY_S13: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S13", (-32_768, 32_767), (1, 0, 1_000));
+
+const SENSITIVITY_S21: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S21", (-32_768, 32_767), (1, 0, 1_000));
+
+const SENSITIVITY_S23: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S23", (-32_768, 32_767), (1, 0, 1_000));
+
+const SENSITIVITY_S31: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S31", (-32_768, 32_767), (1, 0, 1_000));
+
+const SENSITIVITY_S32: Scale =
+    Scale::new("Redundant Magnetometer Sensitivity Matrix S32", (-32_768, 32_767), (1, 0, 1_000));
+
+message!(RedundantMagConfiguration {
+    mounting_alpha: ("Redundant Magnetometer Mounting Transform Alpha Angle", 0, 16)
+        .unit("deg").scale(&MOUNTING_ALPHA),
+    mounting_beta: ("Redundant Magnetometer Mounting Transform Beta Angle", 16, 16)
+        .unit("deg").scale(&MOUNTING_BETA),
+    mounting_gamma: ("Redundant Magnetometer Mounting Transform Gamma Angle", 32, 16)
+        .unit("deg").scale(&MOUNTING_GAMMA),
+    channel_1_offset: ("Redundant Magnetometer Channel 1 Offset", 48, 16).scale(&CHANNEL_1_OFFSET),
+    channel_2_offset: ("Redundant Magnetometer Channel 2 Offset", 64, 16).scale(&CHANNEL_2_OFFSET),
+    channel_3_offset: ("Redundant Magnetometer Channel 3 Offset", 80, 16).scale(&CHANNEL_3_OFFSET),
+    sensitivity_s11: ("Redundant Magnetometer Sensitivity Matrix S11", 96, 16)
+        .scale(&SENSITIVITY_S11),
+    sensitivity_s22: ("Redundant Magnetometer Sensitivity Matrix S22", 112, 16)
+        .scale(&SENSITIVITY_S22),
+    sensitivity_s33: ("Redundant Magnetometer Sensitivity Matrix S33", 128, 16)
+        .scale(&SENSITIVITY_S33),
+    sensitivity_s12: ("Redundant Magnetometer Sensitivity Matrix S12", 144, 16)
+        .scale(&SENSITIVITY_S12),
+    sensitivity_s13: ("Redundant Magnetometer Sensitivity Matrix S13", 160, 16)
+        .scale(&SENSITIVITY_S13),
+    sensitivity_s21: ("Redundant Magnetometer Sensitivity Matrix S21", 176, 16)
+        .scale(&SENSITIVITY_S21),
+    sensitivity_s23: ("Redundant Magnetometer Sensitivity Matrix S23", 192, 16)
+        .scale(&SENSITIVITY_S23),
+    sensitivity_s31: ("Redundant Magnetometer Sensitivity Matrix S31", 208, 16)
+        .scale(&SENSITIVITY_S31),
+    sensitivity_s32: ("Redundant Magnetometer Sensitivity Matrix S32", 224, 16)
+        .scale(&SENSITIVITY_S32),
+});
+
+impl crate::Telecommand for RedundantMagConfiguration {
+    const TELECOMMAND_ID: u32 = 36;
+}
+
+impl crate::Telemetry for RedundantMagConfiguration {
+    const TELEMETRY_ID: u32 = 205;
 }

@@ -2,7 +2,7 @@
 
 //! Satellite Position (ECI), a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Satellite Position (ECI): telemetry 148, 6 bytes. Table 104.
 ///
@@ -72,13 +72,29 @@ impl SatellitePositionEci {
         f64::from(self.x_position) / 4.0
     }
 
-    /// Sets X position in km, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets X position in km, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_x_position_km(&mut self, value: f64) -> Result<(), Error> {
         self.x_position = X_POSITION.raw(value)?;
+        Ok(())
+    }
+
+    /// X position in km, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_position_km_f32(&self) -> f32 {
+        f32::from(self.x_position) / 4.0
+    }
+
+    /// X position in m, exact: -8192000 to 8191750.
+    #[must_use]
+    pub fn x_position_m(&self) -> i32 {
+        i32::from(self.x_position) * 250
+    }
+
+    /// Sets X position in m, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_x_position_m(&mut self, value: i32) -> Result<(), Error> {
+        self.x_position = X_POSITION.whole(value.into(), 250, 0)?;
         Ok(())
     }
 
@@ -88,13 +104,29 @@ impl SatellitePositionEci {
         f64::from(self.y_position) / 4.0
     }
 
-    /// Sets Y position in km, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Y position in km, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_y_position_km(&mut self, value: f64) -> Result<(), Error> {
         self.y_position = Y_POSITION.raw(value)?;
+        Ok(())
+    }
+
+    /// Y position in km, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_position_km_f32(&self) -> f32 {
+        f32::from(self.y_position) / 4.0
+    }
+
+    /// Y position in m, exact: -8192000 to 8191750.
+    #[must_use]
+    pub fn y_position_m(&self) -> i32 {
+        i32::from(self.y_position) * 250
+    }
+
+    /// Sets Y position in m, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_y_position_m(&mut self, value: i32) -> Result<(), Error> {
+        self.y_position = Y_POSITION.whole(value.into(), 250, 0)?;
         Ok(())
     }
 
@@ -104,50 +136,45 @@ impl SatellitePositionEci {
         f64::from(self.z_position) / 4.0
     }
 
-    /// Sets Z position in km, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Z position in km, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_z_position_km(&mut self, value: f64) -> Result<(), Error> {
         self.z_position = Z_POSITION.raw(value)?;
         Ok(())
     }
+
+    /// Z position in km, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_position_km_f32(&self) -> f32 {
+        f32::from(self.z_position) / 4.0
+    }
+
+    /// Z position in m, exact: -8192000 to 8191750.
+    #[must_use]
+    pub fn z_position_m(&self) -> i32 {
+        i32::from(self.z_position) * 250
+    }
+
+    /// Sets Z position in m, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_z_position_m(&mut self, value: i32) -> Result<(), Error> {
+        self.z_position = Z_POSITION.whole(value.into(), 250, 0)?;
+        Ok(())
+    }
 }
 
-const X_POSITION: Scale = Scale {
-    field: "X position",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 4,
-};
+const X_POSITION: Scale = Scale::new("X position", (-32_768, 32_767), (1, 0, 4));
 
-const Y_POSITION: Scale = Scale {
-    field: "Y position",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 4,
-};
+const Y_POSITION: Scale = Scale::new("Y position", (-32_768, 32_767), (1, 0, 4));
 
-const Z_POSITION: Scale = Scale {
-    field: "Z position",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 4,
-};
+const Z_POSITION: Scale = Scale::new("Z position", (-32_768, 32_767), (1, 0, 4));
 
-impl crate::wire::Telemetry for SatellitePositionEci {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 148;
+message!(SatellitePositionEci {
+    x_position: ("X position", 0, 16).unit("km").scale(&X_POSITION),
+    y_position: ("Y position", 16, 16).unit("km").scale(&Y_POSITION),
+    z_position: ("Z position", 32, 16).unit("km").scale(&Z_POSITION),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SatellitePositionEci {
+    const TELEMETRY_ID: u32 = 148;
 }

@@ -2,7 +2,7 @@
 
 //! Satellite Position (LLH), a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Satellite Position (LLH): telemetry 150, 6 bytes. Table 106.
 ///
@@ -82,13 +82,29 @@ impl SatellitePositionLlh {
         f64::from(self.latitude) / 100.0
     }
 
-    /// Sets Latitude in deg, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Latitude in deg, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_latitude_deg(&mut self, value: f64) -> Result<(), Error> {
         self.latitude = LATITUDE.raw(value)?;
+        Ok(())
+    }
+
+    /// Latitude in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn latitude_deg_f32(&self) -> f32 {
+        f32::from(self.latitude) / 100.0
+    }
+
+    /// Latitude in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn latitude_mdeg(&self) -> i32 {
+        i32::from(self.latitude) * 10
+    }
+
+    /// Sets Latitude in thousandths of deg, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_latitude_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.latitude = LATITUDE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -98,13 +114,29 @@ impl SatellitePositionLlh {
         f64::from(self.longitude) / 100.0
     }
 
-    /// Sets Longitude in deg, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Longitude in deg, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_longitude_deg(&mut self, value: f64) -> Result<(), Error> {
         self.longitude = LONGITUDE.raw(value)?;
+        Ok(())
+    }
+
+    /// Longitude in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn longitude_deg_f32(&self) -> f32 {
+        f32::from(self.longitude) / 100.0
+    }
+
+    /// Longitude in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn longitude_mdeg(&self) -> i32 {
+        i32::from(self.longitude) * 10
+    }
+
+    /// Sets Longitude in thousandths of deg, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_longitude_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.longitude = LONGITUDE.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -114,50 +146,45 @@ impl SatellitePositionLlh {
         f64::from(self.altitude) / 100.0
     }
 
-    /// Sets Altitude in km, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Altitude in km, to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit or is not finite.
     pub fn set_altitude_km(&mut self, value: f64) -> Result<(), Error> {
         self.altitude = ALTITUDE.raw(value)?;
         Ok(())
     }
+
+    /// Altitude in km, the nearest float of 32 bits.
+    #[must_use]
+    pub fn altitude_km_f32(&self) -> f32 {
+        f32::from(self.altitude) / 100.0
+    }
+
+    /// Altitude in m, exact: 0 to 655350.
+    #[must_use]
+    pub fn altitude_m(&self) -> i32 {
+        i32::from(self.altitude) * 10
+    }
+
+    /// Sets Altitude in m, to the nearest raw value, ties to even. [`Error::Range`] if it does not
+    /// fit.
+    pub fn set_altitude_m(&mut self, value: i32) -> Result<(), Error> {
+        self.altitude = ALTITUDE.whole(value.into(), 10, 0)?;
+        Ok(())
+    }
 }
 
-const LATITUDE: Scale = Scale {
-    field: "Latitude",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const LATITUDE: Scale = Scale::new("Latitude", (-32_768, 32_767), (1, 0, 100));
 
-const LONGITUDE: Scale = Scale {
-    field: "Longitude",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const LONGITUDE: Scale = Scale::new("Longitude", (-32_768, 32_767), (1, 0, 100));
 
-const ALTITUDE: Scale = Scale {
-    field: "Altitude",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const ALTITUDE: Scale = Scale::new("Altitude", (0, 65_535), (1, 0, 100));
 
-impl crate::wire::Telemetry for SatellitePositionLlh {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 150;
+message!(SatellitePositionLlh {
+    latitude: ("Latitude", 0, 16).unit("deg").scale(&LATITUDE),
+    longitude: ("Longitude", 16, 16).unit("deg").scale(&LONGITUDE),
+    altitude: ("Altitude", 32, 16).unit("km").scale(&ALTITUDE),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SatellitePositionLlh {
+    const TELEMETRY_ID: u32 = 150;
 }

@@ -2,7 +2,7 @@
 
 //! Satellite Velocity (ECI), a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Satellite Velocity (ECI): telemetry 149, 6 bytes. Table 105.
 ///
@@ -72,13 +72,29 @@ impl SatelliteVelocityEci {
         f64::from(self.x_velocity) / 4.0
     }
 
-    /// Sets X Velocity in m/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets X Velocity in m/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_x_velocity_m_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.x_velocity = X_VELOCITY.raw(value)?;
+        Ok(())
+    }
+
+    /// X Velocity in m/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_velocity_m_per_s_f32(&self) -> f32 {
+        f32::from(self.x_velocity) / 4.0
+    }
+
+    /// X Velocity in mm/s, exact: -8192000 to 8191750.
+    #[must_use]
+    pub fn x_velocity_mm_per_s(&self) -> i32 {
+        i32::from(self.x_velocity) * 250
+    }
+
+    /// Sets X Velocity in mm/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_x_velocity_mm_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.x_velocity = X_VELOCITY.whole(value.into(), 250, 0)?;
         Ok(())
     }
 
@@ -88,13 +104,29 @@ impl SatelliteVelocityEci {
         f64::from(self.y_velocity) / 4.0
     }
 
-    /// Sets Y Velocity in m/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Y Velocity in m/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_y_velocity_m_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.y_velocity = Y_VELOCITY.raw(value)?;
+        Ok(())
+    }
+
+    /// Y Velocity in m/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_velocity_m_per_s_f32(&self) -> f32 {
+        f32::from(self.y_velocity) / 4.0
+    }
+
+    /// Y Velocity in mm/s, exact: -8192000 to 8191750.
+    #[must_use]
+    pub fn y_velocity_mm_per_s(&self) -> i32 {
+        i32::from(self.y_velocity) * 250
+    }
+
+    /// Sets Y Velocity in mm/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_y_velocity_mm_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.y_velocity = Y_VELOCITY.whole(value.into(), 250, 0)?;
         Ok(())
     }
 
@@ -104,50 +136,45 @@ impl SatelliteVelocityEci {
         f64::from(self.z_velocity) / 4.0
     }
 
-    /// Sets Z Velocity in m/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Z Velocity in m/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit or is not finite.
     pub fn set_z_velocity_m_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.z_velocity = Z_VELOCITY.raw(value)?;
         Ok(())
     }
+
+    /// Z Velocity in m/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_velocity_m_per_s_f32(&self) -> f32 {
+        f32::from(self.z_velocity) / 4.0
+    }
+
+    /// Z Velocity in mm/s, exact: -8192000 to 8191750.
+    #[must_use]
+    pub fn z_velocity_mm_per_s(&self) -> i32 {
+        i32::from(self.z_velocity) * 250
+    }
+
+    /// Sets Z Velocity in mm/s, to the nearest raw value, ties to even. [`Error::Range`] if it does
+    /// not fit.
+    pub fn set_z_velocity_mm_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.z_velocity = Z_VELOCITY.whole(value.into(), 250, 0)?;
+        Ok(())
+    }
 }
 
-const X_VELOCITY: Scale = Scale {
-    field: "X Velocity",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 4,
-};
+const X_VELOCITY: Scale = Scale::new("X Velocity", (-32_768, 32_767), (1, 0, 4));
 
-const Y_VELOCITY: Scale = Scale {
-    field: "Y Velocity",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 4,
-};
+const Y_VELOCITY: Scale = Scale::new("Y Velocity", (-32_768, 32_767), (1, 0, 4));
 
-const Z_VELOCITY: Scale = Scale {
-    field: "Z Velocity",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 4,
-};
+const Z_VELOCITY: Scale = Scale::new("Z Velocity", (-32_768, 32_767), (1, 0, 4));
 
-impl crate::wire::Telemetry for SatelliteVelocityEci {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 149;
+message!(SatelliteVelocityEci {
+    x_velocity: ("X Velocity", 0, 16).unit("m/s").scale(&X_VELOCITY),
+    y_velocity: ("Y Velocity", 16, 16).unit("m/s").scale(&Y_VELOCITY),
+    z_velocity: ("Z Velocity", 32, 16).unit("m/s").scale(&Z_VELOCITY),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SatelliteVelocityEci {
+    const TELEMETRY_ID: u32 = 149;
 }

@@ -2,7 +2,7 @@
 
 //! Save Configuration, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Save Configuration: telecommand 63, 0 bytes. Table 92.
 ///
@@ -55,12 +55,9 @@ impl SaveConfiguration {
     }
 }
 
-impl crate::wire::Telecommand for SaveConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 63;
+message!(SaveConfiguration {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SaveConfiguration {
+    const TELECOMMAND_ID: u32 = 63;
 }

@@ -3,7 +3,7 @@
 //! Save Image, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Save Image: telecommand 80, 2 bytes. Table 94.
 ///
@@ -67,12 +67,11 @@ impl SaveImage {
     }
 }
 
-impl crate::wire::Telecommand for SaveImage {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 80;
+message!(SaveImage {
+    camera_select: ("Camera Select", 0, 8),
+    image_size: ("Image Size", 8, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SaveImage {
+    const TELECOMMAND_ID: u32 = 80;
 }

@@ -2,7 +2,7 @@
 
 //! Save Orbit Parameters, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Save Orbit Parameters: telecommand 64, 0 bytes. Table 93.
 ///
@@ -55,12 +55,9 @@ impl SaveOrbitParameters {
     }
 }
 
-impl crate::wire::Telecommand for SaveOrbitParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 64;
+message!(SaveOrbitParameters {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SaveOrbitParameters {
+    const TELECOMMAND_ID: u32 = 64;
 }

@@ -3,7 +3,7 @@
 //! SD Log1 Configuration, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{array, put, put_array, take, Coded, Error};
+use crate::support::{array, message, put, put_array, take, Coded, Error};
 
 /// SD Log1 Configuration: configuration, set by telecommand 104, got by telemetry 235, 13 bytes.
 /// Table 210.
@@ -92,22 +92,16 @@ impl SdLog1Configuration {
     }
 }
 
-impl crate::wire::Telecommand for SdLog1Configuration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 104;
+message!(SdLog1Configuration {
+    log_selection: ("Log Selection", 0, 80),
+    log_period: ("Log Period", 80, 16),
+    log_destination: ("Log Destination", 96, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SdLog1Configuration {
+    const TELECOMMAND_ID: u32 = 104;
 }
 
-impl crate::wire::Telemetry for SdLog1Configuration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 235;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SdLog1Configuration {
+    const TELEMETRY_ID: u32 = 235;
 }

@@ -3,7 +3,7 @@
 //! SD Log2 Configuration, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{array, put, put_array, take, Coded, Error};
+use crate::support::{array, message, put, put_array, take, Coded, Error};
 
 /// SD Log2 Configuration: configuration, set by telecommand 105, got by telemetry 236, 13 bytes.
 /// Table 212.
@@ -92,22 +92,16 @@ impl SdLog2Configuration {
     }
 }
 
-impl crate::wire::Telecommand for SdLog2Configuration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 105;
+message!(SdLog2Configuration {
+    log_selection: ("Log Selection", 0, 80),
+    log_period: ("Log Period", 80, 16),
+    log_destination: ("Log Destination", 96, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SdLog2Configuration {
+    const TELECOMMAND_ID: u32 = 105;
 }
 
-impl crate::wire::Telemetry for SdLog2Configuration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 236;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SdLog2Configuration {
+    const TELEMETRY_ID: u32 = 236;
 }

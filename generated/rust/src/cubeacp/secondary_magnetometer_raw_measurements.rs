@@ -2,7 +2,7 @@
 
 //! Secondary Magnetometer Raw Measurements, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Secondary Magnetometer Raw Measurements: telemetry 215, 6 bytes. Table 163.
 ///
@@ -87,12 +87,12 @@ impl SecondaryMagnetometerRawMeasurements {
     }
 }
 
-impl crate::wire::Telemetry for SecondaryMagnetometerRawMeasurements {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 215;
+message!(SecondaryMagnetometerRawMeasurements {
+    mag_x: ("MagX", 0, 16),
+    mag_y: ("MagY", 16, 16),
+    mag_z: ("MagZ", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SecondaryMagnetometerRawMeasurements {
+    const TELEMETRY_ID: u32 = 215;
 }

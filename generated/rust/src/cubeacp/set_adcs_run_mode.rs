@@ -3,7 +3,7 @@
 //! ADCS Run Mode, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// ADCS Run Mode: telecommand 10, 1 byte. Table 74.
 ///
@@ -65,12 +65,10 @@ impl SetAdcsRunMode {
     }
 }
 
-impl crate::wire::Telecommand for SetAdcsRunMode {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 10;
+message!(SetAdcsRunMode {
+    enabled: ("Enabled", 0, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetAdcsRunMode {
+    const TELECOMMAND_ID: u32 = 10;
 }

@@ -3,7 +3,7 @@
 //! Set Attitude Control Mode, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error};
+use crate::support::{message, put, take, Coded, Error};
 
 /// Set Attitude Control Mode: telecommand 13, 3 bytes. Table 77.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -75,12 +75,11 @@ impl SetAttitudeControlMode {
     }
 }
 
-impl crate::wire::Telecommand for SetAttitudeControlMode {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 13;
+message!(SetAttitudeControlMode {
+    control_mode: ("Control Mode", 0, 8),
+    timeout: ("Timeout", 8, 16).unit("s"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetAttitudeControlMode {
+    const TELECOMMAND_ID: u32 = 13;
 }

@@ -3,7 +3,7 @@
 //! Set Attitude Estimation Mode, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Set Attitude Estimation Mode: telecommand 14, 1 byte. Table 79.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -58,12 +58,10 @@ impl SetAttitudeEstimationMode {
     }
 }
 
-impl crate::wire::Telecommand for SetAttitudeEstimationMode {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 14;
+message!(SetAttitudeEstimationMode {
+    attitude_estimation_mode: ("Attitude Estimation Mode", 0, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetAttitudeEstimationMode {
+    const TELECOMMAND_ID: u32 = 14;
 }

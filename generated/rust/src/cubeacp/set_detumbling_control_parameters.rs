@@ -2,7 +2,7 @@
 
 //! Set Detumbling Control Parameters, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Set Detumbling Control Parameters: configuration, set by telecommand 38, got by telemetry 208,
 /// 14 bytes. Table 195.
@@ -105,42 +105,47 @@ impl SetDetumblingControlParameters {
         f64::from(self.spin_rate) / 1_000.0
     }
 
-    /// Sets Reference spin rate in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Reference spin rate in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_spin_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.spin_rate = SPIN_RATE.raw(value)?;
         Ok(())
     }
-}
 
-const SPIN_RATE: Scale = Scale {
-    field: "Reference spin rate",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+    /// Reference spin rate in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn spin_rate_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.spin_rate) / 1_000.0
+    }
 
-impl crate::wire::Telecommand for SetDetumblingControlParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 38;
+    /// Reference spin rate in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn spin_rate_mdeg_per_s(&self) -> i32 {
+        i32::from(self.spin_rate)
+    }
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
+    /// Sets Reference spin rate in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_spin_rate_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.spin_rate = SPIN_RATE.whole(value.into(), 1, 0)?;
+        Ok(())
     }
 }
 
-impl crate::wire::Telemetry for SetDetumblingControlParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 208;
+const SPIN_RATE: Scale = Scale::new("Reference spin rate", (-32_768, 32_767), (1, 0, 1_000));
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+message!(SetDetumblingControlParameters {
+    detumbling_spin_gain: ("Detumbling Spin Gain", 0, 32),
+    detumbling_damping_gain: ("Detumbling Damping Gain", 32, 32),
+    spin_rate: ("Reference spin rate", 64, 16)
+        .unit("deg/s").limits(&[("below", 0.0)]).scale(&SPIN_RATE),
+    fast_bdot_detumbling_gain: ("Fast BDot Detumbling Gain", 80, 32),
+});
+
+impl crate::Telecommand for SetDetumblingControlParameters {
+    const TELECOMMAND_ID: u32 = 38;
+}
+
+impl crate::Telemetry for SetDetumblingControlParameters {
+    const TELEMETRY_ID: u32 = 208;
 }

@@ -3,7 +3,7 @@
 //! Set Magnetorquer Configuration, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Set Magnetorquer Configuration: configuration, set by telecommand 21, got by telemetry 136, 3
 /// bytes. Table 179.
@@ -80,22 +80,16 @@ impl SetMagnetorquerConfiguration {
     }
 }
 
-impl crate::wire::Telecommand for SetMagnetorquerConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 21;
+message!(SetMagnetorquerConfiguration {
+    magnetorquer_1_configuration: ("Magnetorquer 1 Configuration", 0, 8),
+    magnetorquer_2_configuration: ("Magnetorquer 2 Configuration", 8, 8),
+    magnetorquer_3_configuration: ("Magnetorquer 3 Configuration", 16, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetMagnetorquerConfiguration {
+    const TELECOMMAND_ID: u32 = 21;
 }
 
-impl crate::wire::Telemetry for SetMagnetorquerConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 136;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SetMagnetorquerConfiguration {
+    const TELEMETRY_ID: u32 = 136;
 }

@@ -2,7 +2,7 @@
 
 //! Set Magnetorquer Output, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Set Magnetorquer Output: telecommand 16, 6 bytes. Table 81.
 ///
@@ -94,13 +94,28 @@ impl SetMagnetorquerOutput {
     }
 
     /// Sets Commanded X Magnetorquer duty cycle, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_x_duty_cycle_physical(&mut self, value: f64) -> Result<(), Error> {
         self.x_duty_cycle = X_DUTY_CYCLE.raw(value)?;
+        Ok(())
+    }
+
+    /// Commanded X Magnetorquer duty cycle, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_duty_cycle_physical_f32(&self) -> f32 {
+        f32::from(self.x_duty_cycle) / 1_000.0
+    }
+
+    /// Commanded X Magnetorquer duty cycle in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn x_duty_cycle_milli(&self) -> i32 {
+        i32::from(self.x_duty_cycle)
+    }
+
+    /// Sets Commanded X Magnetorquer duty cycle in thousandths, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_x_duty_cycle_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.x_duty_cycle = X_DUTY_CYCLE.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -111,13 +126,28 @@ impl SetMagnetorquerOutput {
     }
 
     /// Sets Commanded Y Magnetorquer duty cycle, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_y_duty_cycle_physical(&mut self, value: f64) -> Result<(), Error> {
         self.y_duty_cycle = Y_DUTY_CYCLE.raw(value)?;
+        Ok(())
+    }
+
+    /// Commanded Y Magnetorquer duty cycle, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_duty_cycle_physical_f32(&self) -> f32 {
+        f32::from(self.y_duty_cycle) / 1_000.0
+    }
+
+    /// Commanded Y Magnetorquer duty cycle in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn y_duty_cycle_milli(&self) -> i32 {
+        i32::from(self.y_duty_cycle)
+    }
+
+    /// Sets Commanded Y Magnetorquer duty cycle in thousandths, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_y_duty_cycle_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.y_duty_cycle = Y_DUTY_CYCLE.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -128,50 +158,47 @@ impl SetMagnetorquerOutput {
     }
 
     /// Sets Commanded Z Magnetorquer duty cycle, as a physical value, to the nearest raw value,
-    /// ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// ties to even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_z_duty_cycle_physical(&mut self, value: f64) -> Result<(), Error> {
         self.z_duty_cycle = Z_DUTY_CYCLE.raw(value)?;
         Ok(())
     }
+
+    /// Commanded Z Magnetorquer duty cycle, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_duty_cycle_physical_f32(&self) -> f32 {
+        f32::from(self.z_duty_cycle) / 1_000.0
+    }
+
+    /// Commanded Z Magnetorquer duty cycle in thousandths, exact: -32768 to 32767.
+    #[must_use]
+    pub fn z_duty_cycle_milli(&self) -> i32 {
+        i32::from(self.z_duty_cycle)
+    }
+
+    /// Sets Commanded Z Magnetorquer duty cycle in thousandths, to the nearest raw value, ties to
+    /// even. [`Error::Range`] if it does not fit.
+    pub fn set_z_duty_cycle_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.z_duty_cycle = Z_DUTY_CYCLE.whole(value.into(), 1, 0)?;
+        Ok(())
+    }
 }
 
-const X_DUTY_CYCLE: Scale = Scale {
-    field: "Commanded X Magnetorquer duty cycle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const X_DUTY_CYCLE: Scale =
+    Scale::new("Commanded X Magnetorquer duty cycle", (-32_768, 32_767), (1, 0, 1_000));
 
-const Y_DUTY_CYCLE: Scale = Scale {
-    field: "Commanded Y Magnetorquer duty cycle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const Y_DUTY_CYCLE: Scale =
+    Scale::new("Commanded Y Magnetorquer duty cycle", (-32_768, 32_767), (1, 0, 1_000));
 
-const Z_DUTY_CYCLE: Scale = Scale {
-    field: "Commanded Z Magnetorquer duty cycle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+const Z_DUTY_CYCLE: Scale =
+    Scale::new("Commanded Z Magnetorquer duty cycle", (-32_768, 32_767), (1, 0, 1_000));
 
-impl crate::wire::Telecommand for SetMagnetorquerOutput {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 16;
+message!(SetMagnetorquerOutput {
+    x_duty_cycle: ("Commanded X Magnetorquer duty cycle", 0, 16).scale(&X_DUTY_CYCLE),
+    y_duty_cycle: ("Commanded Y Magnetorquer duty cycle", 16, 16).scale(&Y_DUTY_CYCLE),
+    z_duty_cycle: ("Commanded Z Magnetorquer duty cycle", 32, 16).scale(&Z_DUTY_CYCLE),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetMagnetorquerOutput {
+    const TELECOMMAND_ID: u32 = 16;
 }

@@ -3,7 +3,7 @@
 //! Set Mode of Magnetometer Operation, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Set Mode of Magnetometer Operation: telecommand 56, 1 byte. Table 89.
 ///
@@ -66,12 +66,10 @@ impl SetModeOfMagnetometerOperation {
     }
 }
 
-impl crate::wire::Telecommand for SetModeOfMagnetometerOperation {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 56;
+message!(SetModeOfMagnetometerOperation {
+    magnetometer_mode: ("Magnetometer Mode", 0, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetModeOfMagnetometerOperation {
+    const TELECOMMAND_ID: u32 = 56;
 }

@@ -3,7 +3,7 @@
 //! Set Rate Gyro Configuration, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error, Scale};
+use crate::support::{message, put, take, Coded, Error, Scale};
 
 /// Set Rate Gyro Configuration: configuration, set by telecommand 23, got by telemetry 138, 10
 /// bytes. Table 182.
@@ -112,13 +112,29 @@ impl SetRateGyroConfiguration {
         f64::from(self.x_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets X-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets X-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_x_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.x_rate_sensor_offset = X_RATE_SENSOR_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// X-Rate Sensor Offset in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_rate_sensor_offset_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.x_rate_sensor_offset) / 1_000.0
+    }
+
+    /// X-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn x_rate_sensor_offset_mdeg_per_s(&self) -> i32 {
+        i32::from(self.x_rate_sensor_offset)
+    }
+
+    /// Sets X-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_x_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.x_rate_sensor_offset = X_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -128,13 +144,29 @@ impl SetRateGyroConfiguration {
         f64::from(self.y_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets Y-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Y-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_y_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.y_rate_sensor_offset = Y_RATE_SENSOR_OFFSET.raw(value)?;
+        Ok(())
+    }
+
+    /// Y-Rate Sensor Offset in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_rate_sensor_offset_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.y_rate_sensor_offset) / 1_000.0
+    }
+
+    /// Y-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn y_rate_sensor_offset_mdeg_per_s(&self) -> i32 {
+        i32::from(self.y_rate_sensor_offset)
+    }
+
+    /// Sets Y-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_y_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.y_rate_sensor_offset = Y_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
         Ok(())
     }
 
@@ -144,60 +176,59 @@ impl SetRateGyroConfiguration {
         f64::from(self.z_rate_sensor_offset) / 1_000.0
     }
 
-    /// Sets Z-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Z-Rate Sensor Offset in deg/s, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_z_rate_sensor_offset_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
         self.z_rate_sensor_offset = Z_RATE_SENSOR_OFFSET.raw(value)?;
         Ok(())
     }
-}
 
-const X_RATE_SENSOR_OFFSET: Scale = Scale {
-    field: "X-Rate Sensor Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+    /// Z-Rate Sensor Offset in deg/s, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_rate_sensor_offset_deg_per_s_f32(&self) -> f32 {
+        f32::from(self.z_rate_sensor_offset) / 1_000.0
+    }
 
-const Y_RATE_SENSOR_OFFSET: Scale = Scale {
-    field: "Y-Rate Sensor Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
+    /// Z-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767.
+    #[must_use]
+    pub fn z_rate_sensor_offset_mdeg_per_s(&self) -> i32 {
+        i32::from(self.z_rate_sensor_offset)
+    }
 
-const Z_RATE_SENSOR_OFFSET: Scale = Scale {
-    field: "Z-Rate Sensor Offset",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 1_000,
-};
-
-impl crate::wire::Telecommand for SetRateGyroConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 23;
-
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
+    /// Sets Z-Rate Sensor Offset in thousandths of deg/s, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_z_rate_sensor_offset_mdeg_per_s(&mut self, value: i32) -> Result<(), Error> {
+        self.z_rate_sensor_offset = Z_RATE_SENSOR_OFFSET.whole(value.into(), 1, 0)?;
+        Ok(())
     }
 }
 
-impl crate::wire::Telemetry for SetRateGyroConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 138;
+const X_RATE_SENSOR_OFFSET: Scale =
+    Scale::new("X-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+const Y_RATE_SENSOR_OFFSET: Scale =
+    Scale::new("Y-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+const Z_RATE_SENSOR_OFFSET: Scale =
+    Scale::new("Z-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
+
+message!(SetRateGyroConfiguration {
+    gyro1_configuration: ("Gyro1 Configuration", 0, 8),
+    gyro2_configuration: ("Gyro2 Configuration", 8, 8),
+    gyro3_configuration: ("Gyro3 Configuration", 16, 8),
+    x_rate_sensor_offset: ("X-Rate Sensor Offset", 24, 16)
+        .unit("deg/s").scale(&X_RATE_SENSOR_OFFSET),
+    y_rate_sensor_offset: ("Y-Rate Sensor Offset", 40, 16)
+        .unit("deg/s").scale(&Y_RATE_SENSOR_OFFSET),
+    z_rate_sensor_offset: ("Z-Rate Sensor Offset", 56, 16)
+        .unit("deg/s").scale(&Z_RATE_SENSOR_OFFSET),
+    rate_sensor_mult: ("RateSensorMult", 72, 8),
+});
+
+impl crate::Telecommand for SetRateGyroConfiguration {
+    const TELECOMMAND_ID: u32 = 23;
+}
+
+impl crate::Telemetry for SetRateGyroConfiguration {
+    const TELEMETRY_ID: u32 = 138;
 }

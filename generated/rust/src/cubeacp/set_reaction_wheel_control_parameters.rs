@@ -3,7 +3,7 @@
 //! Set Reaction Wheel Control Parameters, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error, Scale};
+use crate::support::{message, put, take, Coded, Error, Scale};
 
 /// Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, got by telemetry
 /// 217, 13 bytes. Table 197.
@@ -110,31 +110,20 @@ impl SetReactionWheelControlParameters {
     }
 }
 
-const SUN_POINTING_FACET: Scale = Scale {
-    field: "Sun-pointing Facet",
-    min: 0,
-    max: 127,
-    factor: 1,
-    offset: 0,
-    divisor: 1,
-};
+const SUN_POINTING_FACET: Scale = Scale::new("Sun-pointing Facet", (0, 127), (1, 0, 1));
 
-impl crate::wire::Telecommand for SetReactionWheelControlParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 40;
+message!(SetReactionWheelControlParameters {
+    rwheel_proportional_gain: ("RWheel Proportional Gain", 0, 32),
+    rwheel_derivative_gain: ("RWheel Derivative Gain", 32, 32),
+    y_wheel_bias_momentum: ("Y-Wheel Bias Momentum", 64, 32).unit("Nms"),
+    sun_pointing_facet: ("Sun-pointing Facet", 96, 7),
+    control_transition_on_wheel_error: ("Automatic Control Transition due to Wheel Errors", 103, 1),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetReactionWheelControlParameters {
+    const TELECOMMAND_ID: u32 = 40;
 }
 
-impl crate::wire::Telemetry for SetReactionWheelControlParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 217;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SetReactionWheelControlParameters {
+    const TELEMETRY_ID: u32 = 217;
 }

@@ -2,7 +2,7 @@
 
 //! Set Star Tracker Configuration, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Set Star Tracker Configuration: configuration, set by telecommand 37, got by telemetry 202, 53
 /// bytes. Table 188.
@@ -252,13 +252,28 @@ impl SetStarTrackerConfiguration {
     }
 
     /// Sets StarTracker Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_alpha = MOUNTING_ALPHA.raw(value)?;
+        Ok(())
+    }
+
+    /// StarTracker Mounting Transform Alpha Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn mounting_alpha_deg_f32(&self) -> f32 {
+        f32::from(self.mounting_alpha) / 100.0
+    }
+
+    /// StarTracker Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn mounting_alpha_mdeg(&self) -> i32 {
+        i32::from(self.mounting_alpha) * 10
+    }
+
+    /// Sets StarTracker Mounting Transform Alpha Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_mounting_alpha_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.mounting_alpha = MOUNTING_ALPHA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -269,13 +284,28 @@ impl SetStarTrackerConfiguration {
     }
 
     /// Sets StarTracker Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_beta = MOUNTING_BETA.raw(value)?;
+        Ok(())
+    }
+
+    /// StarTracker Mounting Transform Beta Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn mounting_beta_deg_f32(&self) -> f32 {
+        f32::from(self.mounting_beta) / 100.0
+    }
+
+    /// StarTracker Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn mounting_beta_mdeg(&self) -> i32 {
+        i32::from(self.mounting_beta) * 10
+    }
+
+    /// Sets StarTracker Mounting Transform Beta Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_mounting_beta_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.mounting_beta = MOUNTING_BETA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -286,13 +316,28 @@ impl SetStarTrackerConfiguration {
     }
 
     /// Sets StarTracker Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
         self.mounting_gamma = MOUNTING_GAMMA.raw(value)?;
+        Ok(())
+    }
+
+    /// StarTracker Mounting Transform Gamma Angle in deg, the nearest float of 32 bits.
+    #[must_use]
+    pub fn mounting_gamma_deg_f32(&self) -> f32 {
+        f32::from(self.mounting_gamma) / 100.0
+    }
+
+    /// StarTracker Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670.
+    #[must_use]
+    pub fn mounting_gamma_mdeg(&self) -> i32 {
+        i32::from(self.mounting_gamma) * 10
+    }
+
+    /// Sets StarTracker Mounting Transform Gamma Angle in thousandths of deg, to the nearest raw
+    /// value, ties to even. [`Error::Range`] if it does not fit.
+    pub fn set_mounting_gamma_mdeg(&mut self, value: i32) -> Result<(), Error> {
+        self.mounting_gamma = MOUNTING_GAMMA.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -303,12 +348,28 @@ impl SetStarTrackerConfiguration {
     }
 
     /// Sets Star Tracker Error Margin in %, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_error_margin_percent(&mut self, value: f64) -> Result<(), Error> {
         self.error_margin = ERROR_MARGIN.raw(value)?;
+        Ok(())
+    }
+
+    /// Star Tracker Error Margin in %, the nearest float of 32 bits.
+    #[must_use]
+    pub fn error_margin_percent_f32(&self) -> f32 {
+        f32::from(self.error_margin) / 100.0
+    }
+
+    /// Star Tracker Error Margin in thousandths of %, exact: 0 to 2550.
+    #[must_use]
+    pub fn error_margin_milli_percent(&self) -> i32 {
+        i32::from(self.error_margin) * 10
+    }
+
+    /// Sets Star Tracker Error Margin in thousandths of %, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_error_margin_milli_percent(&mut self, value: i32) -> Result<(), Error> {
+        self.error_margin = ERROR_MARGIN.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -319,12 +380,28 @@ impl SetStarTrackerConfiguration {
     }
 
     /// Sets Star Tracking Margin, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_tracking_margin_physical(&mut self, value: f64) -> Result<(), Error> {
         self.tracking_margin = TRACKING_MARGIN.raw(value)?;
+        Ok(())
+    }
+
+    /// Star Tracking Margin, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn tracking_margin_physical_f32(&self) -> f32 {
+        f32::from(self.tracking_margin) / 100.0
+    }
+
+    /// Star Tracking Margin in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn tracking_margin_milli(&self) -> i32 {
+        i32::from(self.tracking_margin) * 10
+    }
+
+    /// Sets Star Tracking Margin in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_tracking_margin_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.tracking_margin = TRACKING_MARGIN.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -335,12 +412,28 @@ impl SetStarTrackerConfiguration {
     }
 
     /// Sets Star Validation Margin, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// [`Error::Range`] if it does not fit or is not finite.
     pub fn set_validation_margin_physical(&mut self, value: f64) -> Result<(), Error> {
         self.validation_margin = VALIDATION_MARGIN.raw(value)?;
+        Ok(())
+    }
+
+    /// Star Validation Margin, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn validation_margin_physical_f32(&self) -> f32 {
+        f32::from(self.validation_margin) / 100.0
+    }
+
+    /// Star Validation Margin in thousandths, exact: 0 to 2550.
+    #[must_use]
+    pub fn validation_margin_milli(&self) -> i32 {
+        i32::from(self.validation_margin) * 10
+    }
+
+    /// Sets Star Validation Margin in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_validation_margin_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.validation_margin = VALIDATION_MARGIN.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -351,96 +444,87 @@ impl SetStarTrackerConfiguration {
     }
 
     /// Sets Star Tracking Search Width, as a physical value, to the nearest raw value, ties to
-    /// even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// even. [`Error::Range`] if it does not fit or is not finite.
     pub fn set_search_width_physical(&mut self, value: f64) -> Result<(), Error> {
         self.search_width = SEARCH_WIDTH.raw(value)?;
         Ok(())
     }
-}
 
-const MOUNTING_ALPHA: Scale = Scale {
-    field: "StarTracker Mounting Transform Alpha Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+    /// Star Tracking Search Width, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn search_width_physical_f32(&self) -> f32 {
+        f32::from(self.search_width) / 5.0
+    }
 
-const MOUNTING_BETA: Scale = Scale {
-    field: "StarTracker Mounting Transform Beta Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+    /// Star Tracking Search Width in thousandths, exact: 0 to 51000.
+    #[must_use]
+    pub fn search_width_milli(&self) -> i32 {
+        i32::from(self.search_width) * 200
+    }
 
-const MOUNTING_GAMMA: Scale = Scale {
-    field: "StarTracker Mounting Transform Gamma Angle",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const ERROR_MARGIN: Scale = Scale {
-    field: "Star Tracker Error Margin",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const TRACKING_MARGIN: Scale = Scale {
-    field: "Star Tracking Margin",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const VALIDATION_MARGIN: Scale = Scale {
-    field: "Star Validation Margin",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
-
-const SEARCH_WIDTH: Scale = Scale {
-    field: "Star Tracking Search Width",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 5,
-};
-
-impl crate::wire::Telecommand for SetStarTrackerConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 37;
-
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
+    /// Sets Star Tracking Search Width in thousandths, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_search_width_milli(&mut self, value: i32) -> Result<(), Error> {
+        self.search_width = SEARCH_WIDTH.whole(value.into(), 200, 0)?;
+        Ok(())
     }
 }
 
-impl crate::wire::Telemetry for SetStarTrackerConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 202;
+const MOUNTING_ALPHA: Scale =
+    Scale::new("StarTracker Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+const MOUNTING_BETA: Scale =
+    Scale::new("StarTracker Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+
+const MOUNTING_GAMMA: Scale =
+    Scale::new("StarTracker Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+
+const ERROR_MARGIN: Scale = Scale::new("Star Tracker Error Margin", (0, 255), (1, 0, 100));
+
+const TRACKING_MARGIN: Scale = Scale::new("Star Tracking Margin", (0, 255), (1, 0, 100));
+
+const VALIDATION_MARGIN: Scale = Scale::new("Star Validation Margin", (0, 255), (1, 0, 100));
+
+const SEARCH_WIDTH: Scale = Scale::new("Star Tracking Search Width", (0, 255), (1, 0, 5));
+
+message!(SetStarTrackerConfiguration {
+    mounting_alpha: ("StarTracker Mounting Transform Alpha Angle", 0, 16)
+        .unit("deg").scale(&MOUNTING_ALPHA),
+    mounting_beta: ("StarTracker Mounting Transform Beta Angle", 16, 16)
+        .unit("deg").scale(&MOUNTING_BETA),
+    mounting_gamma: ("StarTracker Mounting Transform Gamma Angle", 32, 16)
+        .unit("deg").scale(&MOUNTING_GAMMA),
+    star_tracker_exposure_time: ("StarTracker exposure time", 48, 16),
+    star_tracker_analog_gain: ("StarTracker analog gain", 64, 16),
+    star_tracker_detection_threshold: ("StarTracker detection threshold", 80, 8),
+    star_tracker_star_threshold: ("StarTracker star threshold", 88, 8),
+    maximum_star_matched: ("Maximum Star Matched", 96, 8),
+    detection_timeout_duration: ("Detection Timeout duration", 104, 16),
+    maximum_star_pixel: ("Maximum Star Pixel", 120, 8),
+    minimum_star_pixel: ("Minimum Star Pixel", 128, 8),
+    error_margin: ("Star Tracker Error Margin", 136, 8).unit("%").scale(&ERROR_MARGIN),
+    star_tracker_delay_time: ("Star Tracker Delay Time", 144, 16).unit("ms"),
+    star_tracker_centroid_x: ("Star Tracker Centroid X", 160, 32).unit("pixels"),
+    star_tracker_centroid_y: ("Star Tracker Centroid Y", 192, 32).unit("pixels"),
+    star_tracker_focal_length: ("Star Tracker Focal Length", 224, 32).unit("mm"),
+    k1_radial_distortion_coefficient: ("K1 radial distortion coefficient", 256, 32).unit("gain"),
+    k2_radial_distortion_coefficient: ("K2 radial distortion coefficient", 288, 32).unit("gain"),
+    p1_tangential_distortion_coefficient: ("P1 tangential distortion coefficient", 320, 32)
+        .unit("gain"),
+    p2_tangential_distortion_coefficient: ("P2 tangential distortion coefficient", 352, 32)
+        .unit("gain"),
+    star_tracking_window_width: ("Star tracking window width", 384, 8),
+    tracking_margin: ("Star Tracking Margin", 392, 8).scale(&TRACKING_MARGIN),
+    validation_margin: ("Star Validation Margin", 400, 8).scale(&VALIDATION_MARGIN),
+    star_tracking_module_enable: ("Star Tracking Module Enable", 408, 1),
+    star_tracking_location_prediction_enable: ("Star Tracking Location Prediction Enable", 409, 1),
+    search_width: ("Star Tracking Search Width", 416, 8).scale(&SEARCH_WIDTH),
+});
+
+impl crate::Telecommand for SetStarTrackerConfiguration {
+    const TELECOMMAND_ID: u32 = 37;
+}
+
+impl crate::Telemetry for SetStarTrackerConfiguration {
+    const TELEMETRY_ID: u32 = 202;
 }

@@ -3,7 +3,7 @@
 //! Set Tracking Controller Gain Parameters, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error};
+use crate::support::{message, put, take, Coded, Error};
 
 /// Set Tracking Controller Gain Parameters: configuration, set by telecommand 54, got by telemetry
 /// 221, 13 bytes. Table 198.
@@ -97,22 +97,17 @@ impl SetTrackingControllerGainParameters {
     }
 }
 
-impl crate::wire::Telecommand for SetTrackingControllerGainParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 54;
+message!(SetTrackingControllerGainParameters {
+    tracking_proportional_gain: ("Tracking Proportional Gain", 0, 32),
+    tracking_derivative_gain: ("Tracking Derivative Gain", 32, 32),
+    tracking_integral_gain: ("Tracking Integral Gain", 64, 32),
+    target_tracking_facet: ("Target-tracking Facet", 96, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetTrackingControllerGainParameters {
+    const TELECOMMAND_ID: u32 = 54;
 }
 
-impl crate::wire::Telemetry for SetTrackingControllerGainParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 221;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SetTrackingControllerGainParameters {
+    const TELEMETRY_ID: u32 = 221;
 }

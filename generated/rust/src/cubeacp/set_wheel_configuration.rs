@@ -3,7 +3,7 @@
 //! Set Wheel Configuration, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Set Wheel Configuration: configuration, set by telecommand 22, got by telemetry 137, 4 bytes.
 /// Table 181.
@@ -92,22 +92,17 @@ impl SetWheelConfiguration {
     }
 }
 
-impl crate::wire::Telecommand for SetWheelConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 22;
+message!(SetWheelConfiguration {
+    rw1_configuration: ("RW1 Configuration", 0, 8),
+    rw2_configuration: ("RW2 Configuration", 8, 8),
+    rw3_configuration: ("RW3 Configuration", 16, 8),
+    rw4_configuration: ("RW4 Configuration", 24, 8),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetWheelConfiguration {
+    const TELECOMMAND_ID: u32 = 22;
 }
 
-impl crate::wire::Telemetry for SetWheelConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 137;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SetWheelConfiguration {
+    const TELEMETRY_ID: u32 = 137;
 }

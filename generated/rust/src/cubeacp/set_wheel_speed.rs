@@ -2,7 +2,7 @@
 
 //! Set Wheel Speed, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Set Wheel Speed: telecommand 17, 6 bytes. Table 82.
 ///
@@ -70,12 +70,12 @@ impl SetWheelSpeed {
     }
 }
 
-impl crate::wire::Telecommand for SetWheelSpeed {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 17;
+message!(SetWheelSpeed {
+    commanded_x_speed: ("Commanded X speed", 0, 16).unit("rpm"),
+    commanded_y_speed: ("Commanded Y speed", 16, 16).unit("rpm"),
+    commanded_z_speed: ("Commanded Z speed", 32, 16).unit("rpm"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetWheelSpeed {
+    const TELECOMMAND_ID: u32 = 17;
 }

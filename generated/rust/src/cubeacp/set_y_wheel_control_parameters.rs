@@ -2,7 +2,7 @@
 
 //! Set Y-Wheel Control Parameters, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Set Y-Wheel Control Parameters: configuration, set by telecommand 39, got by telemetry 209, 20
 /// bytes. Table 196.
@@ -112,22 +112,19 @@ impl SetYWheelControlParameters {
     }
 }
 
-impl crate::wire::Telecommand for SetYWheelControlParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 39;
+message!(SetYWheelControlParameters {
+    y_momentum_control_gain: ("Y-Momentum Control Gain", 0, 32),
+    y_momentum_nutation_damping_gain: ("Y-momentum Nutation Damping Gain", 32, 32),
+    y_momentum_proportional_gain: ("Y-momentum Proportional Gain", 64, 32),
+    y_momentum_derivative_gain: ("Y-momentum Derivative Gain", 96, 32),
+    reference_wheel_momentum: ("Reference Wheel Momentum", 128, 32)
+        .unit("Nms").limits(&[("below", 0.0)]),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for SetYWheelControlParameters {
+    const TELECOMMAND_ID: u32 = 39;
 }
 
-impl crate::wire::Telemetry for SetYWheelControlParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 209;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for SetYWheelControlParameters {
+    const TELEMETRY_ID: u32 = 209;
 }

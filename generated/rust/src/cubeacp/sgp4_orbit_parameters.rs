@@ -2,7 +2,7 @@
 
 //! SGP4 Orbit Parameters, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// SGP4 Orbit Parameters: configuration, set by telecommand 45, got by telemetry 207, 64 bytes.
 /// Table 194.
@@ -97,22 +97,22 @@ impl Sgp4OrbitParameters {
     }
 }
 
-impl crate::wire::Telecommand for Sgp4OrbitParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 45;
+message!(Sgp4OrbitParameters {
+    inclination: ("Inclination", 0, 64).unit("deg"),
+    eccentricity: ("Eccentricity", 64, 64),
+    right_ascension_of_the_ascending_node: ("Right-ascension of the Ascending Node", 128, 64)
+        .unit("deg"),
+    argument_of_perigee: ("Argument of Perigee", 192, 64).unit("deg"),
+    b_star_drag_term: ("B-Star drag term", 256, 64),
+    mean_motion: ("Mean Motion", 320, 64).unit("orbits/day"),
+    mean_anomaly: ("Mean Anomaly", 384, 64).unit("deg"),
+    epoch: ("Epoch", 448, 64).unit("year.day"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for Sgp4OrbitParameters {
+    const TELECOMMAND_ID: u32 = 45;
 }
 
-impl crate::wire::Telemetry for Sgp4OrbitParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 207;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Sgp4OrbitParameters {
+    const TELEMETRY_ID: u32 = 207;
 }

@@ -2,7 +2,7 @@
 
 //! Star 1 Raw Data, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Star 1 Raw Data: telemetry 212, 6 bytes. Table 160.
 ///
@@ -79,12 +79,12 @@ impl Star1RawData {
     }
 }
 
-impl crate::wire::Telemetry for Star1RawData {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 212;
+message!(Star1RawData {
+    catalogue_star_1: ("Catalogue Star 1", 0, 16),
+    centroid_x_star_1: ("Centroid X Star 1", 16, 16),
+    centroid_y_star_1: ("Centroid Y Star 1", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Star1RawData {
+    const TELEMETRY_ID: u32 = 212;
 }

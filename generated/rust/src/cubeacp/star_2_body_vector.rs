@@ -2,7 +2,7 @@
 
 //! Star 2 Body Vector, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Star 2 Body Vector: telemetry 182, 6 bytes. Table 140.
 ///
@@ -85,13 +85,29 @@ impl Star2BodyVector {
         f64::from(self.star2_body_x) / 10_000.0
     }
 
-    /// Sets Star2BX, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star2BX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star2_body_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_body_x = STAR2_BODY_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Star2BX, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star2_body_x_physical_f32(&self) -> f32 {
+        f32::from(self.star2_body_x) / 10_000.0
+    }
+
+    /// Star2BX in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star2_body_x_micro(&self) -> i32 {
+        i32::from(self.star2_body_x) * 100
+    }
+
+    /// Sets Star2BX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star2_body_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star2_body_x = STAR2_BODY_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -101,13 +117,29 @@ impl Star2BodyVector {
         f64::from(self.star2_body_y) / 10_000.0
     }
 
-    /// Sets Star2BY, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star2BY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star2_body_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_body_y = STAR2_BODY_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Star2BY, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star2_body_y_physical_f32(&self) -> f32 {
+        f32::from(self.star2_body_y) / 10_000.0
+    }
+
+    /// Star2BY in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star2_body_y_micro(&self) -> i32 {
+        i32::from(self.star2_body_y) * 100
+    }
+
+    /// Sets Star2BY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star2_body_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star2_body_y = STAR2_BODY_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -117,50 +149,45 @@ impl Star2BodyVector {
         f64::from(self.star2_body_z) / 10_000.0
     }
 
-    /// Sets Star2BZ, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star2BZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star2_body_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_body_z = STAR2_BODY_Z.raw(value)?;
         Ok(())
     }
+
+    /// Star2BZ, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star2_body_z_physical_f32(&self) -> f32 {
+        f32::from(self.star2_body_z) / 10_000.0
+    }
+
+    /// Star2BZ in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star2_body_z_micro(&self) -> i32 {
+        i32::from(self.star2_body_z) * 100
+    }
+
+    /// Sets Star2BZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star2_body_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star2_body_z = STAR2_BODY_Z.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const STAR2_BODY_X: Scale = Scale {
-    field: "Star2BX",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR2_BODY_X: Scale = Scale::new("Star2BX", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_BODY_Y: Scale = Scale {
-    field: "Star2BY",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR2_BODY_Y: Scale = Scale::new("Star2BY", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_BODY_Z: Scale = Scale {
-    field: "Star2BZ",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR2_BODY_Z: Scale = Scale::new("Star2BZ", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for Star2BodyVector {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 182;
+message!(Star2BodyVector {
+    star2_body_x: ("Star2BX", 0, 16).scale(&STAR2_BODY_X),
+    star2_body_y: ("Star2BY", 16, 16).scale(&STAR2_BODY_Y),
+    star2_body_z: ("Star2BZ", 32, 16).scale(&STAR2_BODY_Z),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Star2BodyVector {
+    const TELEMETRY_ID: u32 = 182;
 }

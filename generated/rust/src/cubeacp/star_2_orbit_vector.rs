@@ -2,7 +2,7 @@
 
 //! Star 2 Orbit Vector, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Star 2 Orbit Vector: telemetry 185, 6 bytes. Table 143.
 ///
@@ -85,13 +85,29 @@ impl Star2OrbitVector {
         f64::from(self.star2_orbit_x) / 10_000.0
     }
 
-    /// Sets Star2OX, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star2OX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star2_orbit_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_orbit_x = STAR2_ORBIT_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Star2OX, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star2_orbit_x_physical_f32(&self) -> f32 {
+        f32::from(self.star2_orbit_x) / 10_000.0
+    }
+
+    /// Star2OX in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star2_orbit_x_micro(&self) -> i32 {
+        i32::from(self.star2_orbit_x) * 100
+    }
+
+    /// Sets Star2OX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star2_orbit_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star2_orbit_x = STAR2_ORBIT_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -101,13 +117,29 @@ impl Star2OrbitVector {
         f64::from(self.star2_orbit_y) / 10_000.0
     }
 
-    /// Sets Star2OY, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star2OY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star2_orbit_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_orbit_y = STAR2_ORBIT_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Star2OY, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star2_orbit_y_physical_f32(&self) -> f32 {
+        f32::from(self.star2_orbit_y) / 10_000.0
+    }
+
+    /// Star2OY in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star2_orbit_y_micro(&self) -> i32 {
+        i32::from(self.star2_orbit_y) * 100
+    }
+
+    /// Sets Star2OY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star2_orbit_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star2_orbit_y = STAR2_ORBIT_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -117,50 +149,45 @@ impl Star2OrbitVector {
         f64::from(self.star2_orbit_z) / 10_000.0
     }
 
-    /// Sets Star2OZ, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star2OZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star2_orbit_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star2_orbit_z = STAR2_ORBIT_Z.raw(value)?;
         Ok(())
     }
+
+    /// Star2OZ, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star2_orbit_z_physical_f32(&self) -> f32 {
+        f32::from(self.star2_orbit_z) / 10_000.0
+    }
+
+    /// Star2OZ in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star2_orbit_z_micro(&self) -> i32 {
+        i32::from(self.star2_orbit_z) * 100
+    }
+
+    /// Sets Star2OZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star2_orbit_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star2_orbit_z = STAR2_ORBIT_Z.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const STAR2_ORBIT_X: Scale = Scale {
-    field: "Star2OX",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR2_ORBIT_X: Scale = Scale::new("Star2OX", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_ORBIT_Y: Scale = Scale {
-    field: "Star2OY",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR2_ORBIT_Y: Scale = Scale::new("Star2OY", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_ORBIT_Z: Scale = Scale {
-    field: "Star2OZ",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR2_ORBIT_Z: Scale = Scale::new("Star2OZ", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for Star2OrbitVector {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 185;
+message!(Star2OrbitVector {
+    star2_orbit_x: ("Star2OX", 0, 16).scale(&STAR2_ORBIT_X),
+    star2_orbit_y: ("Star2OY", 16, 16).scale(&STAR2_ORBIT_Y),
+    star2_orbit_z: ("Star2OZ", 32, 16).scale(&STAR2_ORBIT_Z),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Star2OrbitVector {
+    const TELEMETRY_ID: u32 = 185;
 }

@@ -2,7 +2,7 @@
 
 //! Star 2 Raw Data, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Star 2 Raw Data: telemetry 213, 6 bytes. Table 161.
 ///
@@ -79,12 +79,12 @@ impl Star2RawData {
     }
 }
 
-impl crate::wire::Telemetry for Star2RawData {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 213;
+message!(Star2RawData {
+    catalogue_star_2: ("Catalogue Star 2", 0, 16),
+    centroid_x_star_2: ("Centroid X Star 2", 16, 16),
+    centroid_y_star_2: ("Centroid Y Star 2", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Star2RawData {
+    const TELEMETRY_ID: u32 = 213;
 }

@@ -2,7 +2,7 @@
 
 //! Star 3 Body Vector, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Star 3 Body Vector: telemetry 183, 6 bytes. Table 141.
 ///
@@ -85,13 +85,29 @@ impl Star3BodyVector {
         f64::from(self.star3_body_x) / 10_000.0
     }
 
-    /// Sets Star3BX, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star3BX, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star3_body_x_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_body_x = STAR3_BODY_X.raw(value)?;
+        Ok(())
+    }
+
+    /// Star3BX, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star3_body_x_physical_f32(&self) -> f32 {
+        f32::from(self.star3_body_x) / 10_000.0
+    }
+
+    /// Star3BX in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star3_body_x_micro(&self) -> i32 {
+        i32::from(self.star3_body_x) * 100
+    }
+
+    /// Sets Star3BX in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star3_body_x_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star3_body_x = STAR3_BODY_X.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -101,13 +117,29 @@ impl Star3BodyVector {
         f64::from(self.star3_body_y) / 10_000.0
     }
 
-    /// Sets Star3BY, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star3BY, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star3_body_y_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_body_y = STAR3_BODY_Y.raw(value)?;
+        Ok(())
+    }
+
+    /// Star3BY, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star3_body_y_physical_f32(&self) -> f32 {
+        f32::from(self.star3_body_y) / 10_000.0
+    }
+
+    /// Star3BY in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star3_body_y_micro(&self) -> i32 {
+        i32::from(self.star3_body_y) * 100
+    }
+
+    /// Sets Star3BY in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star3_body_y_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star3_body_y = STAR3_BODY_Y.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -117,50 +149,45 @@ impl Star3BodyVector {
         f64::from(self.star3_body_z) / 10_000.0
     }
 
-    /// Sets Star3BZ, as a physical value, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Star3BZ, as a physical value, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_star3_body_z_physical(&mut self, value: f64) -> Result<(), Error> {
         self.star3_body_z = STAR3_BODY_Z.raw(value)?;
         Ok(())
     }
+
+    /// Star3BZ, as a physical value, the nearest float of 32 bits.
+    #[must_use]
+    pub fn star3_body_z_physical_f32(&self) -> f32 {
+        f32::from(self.star3_body_z) / 10_000.0
+    }
+
+    /// Star3BZ in millionths, exact: -3276800 to 3276700.
+    #[must_use]
+    pub fn star3_body_z_micro(&self) -> i32 {
+        i32::from(self.star3_body_z) * 100
+    }
+
+    /// Sets Star3BZ in millionths, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_star3_body_z_micro(&mut self, value: i32) -> Result<(), Error> {
+        self.star3_body_z = STAR3_BODY_Z.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const STAR3_BODY_X: Scale = Scale {
-    field: "Star3BX",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR3_BODY_X: Scale = Scale::new("Star3BX", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_BODY_Y: Scale = Scale {
-    field: "Star3BY",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR3_BODY_Y: Scale = Scale::new("Star3BY", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_BODY_Z: Scale = Scale {
-    field: "Star3BZ",
-    min: -32_768,
-    max: 32_767,
-    factor: 1,
-    offset: 0,
-    divisor: 10_000,
-};
+const STAR3_BODY_Z: Scale = Scale::new("Star3BZ", (-32_768, 32_767), (1, 0, 10_000));
 
-impl crate::wire::Telemetry for Star3BodyVector {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 183;
+message!(Star3BodyVector {
+    star3_body_x: ("Star3BX", 0, 16).scale(&STAR3_BODY_X),
+    star3_body_y: ("Star3BY", 16, 16).scale(&STAR3_BODY_Y),
+    star3_body_z: ("Star3BZ", 32, 16).scale(&STAR3_BODY_Z),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Star3BodyVector {
+    const TELEMETRY_ID: u32 = 183;
 }

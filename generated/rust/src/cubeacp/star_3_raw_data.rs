@@ -2,7 +2,7 @@
 
 //! Star 3 Raw Data, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Star 3 Raw Data: telemetry 214, 6 bytes. Table 162.
 ///
@@ -79,12 +79,12 @@ impl Star3RawData {
     }
 }
 
-impl crate::wire::Telemetry for Star3RawData {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 214;
+message!(Star3RawData {
+    catalogue_star_3: ("Catalogue Star 3", 0, 16),
+    centroid_x_star_3: ("Centroid X Star 3", 16, 16),
+    centroid_y_star_3: ("Centroid Y Star 3", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for Star3RawData {
+    const TELEMETRY_ID: u32 = 214;
 }

@@ -2,7 +2,7 @@
 
 //! Star Magnitude, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Star Magnitude: telemetry 187, 6 bytes. Table 145.
 ///
@@ -82,12 +82,12 @@ impl StarMagnitude {
     }
 }
 
-impl crate::wire::Telemetry for StarMagnitude {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 187;
+message!(StarMagnitude {
+    magnitude_star_1: ("Magnitude Star 1", 0, 16),
+    magnitude_star_2: ("Magnitude Star 2", 16, 16),
+    magnitude_star_3: ("Magnitude Star 3", 32, 16),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for StarMagnitude {
+    const TELEMETRY_ID: u32 = 187;
 }

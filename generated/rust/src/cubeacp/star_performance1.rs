@@ -3,7 +3,7 @@
 //! Star Performance1, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Star Performance1: telemetry 188, 6 bytes. Table 146.
 ///
@@ -102,12 +102,15 @@ impl StarPerformance1 {
     }
 }
 
-impl crate::wire::Telemetry for StarPerformance1 {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 188;
+message!(StarPerformance1 {
+    number_of_stars_detected: ("Number of stars detected", 0, 8).unit("stars"),
+    star_image_noise: ("Star image noise", 8, 8).unit("noise"),
+    invalid_stars: ("Invalid Stars", 16, 8).unit("Invalid stars"),
+    number_of_stars_identified: ("Number of stars identified", 24, 8).unit("stars"),
+    identification_mode: ("Identification mode", 32, 8),
+    image_dark_value: ("Image dark value", 40, 8).unit("8-bit pixel value"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for StarPerformance1 {
+    const TELEMETRY_ID: u32 = 188;
 }

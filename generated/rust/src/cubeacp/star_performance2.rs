@@ -2,7 +2,7 @@
 
 //! Star Performance2, a message of node `cubeacp`.
 
-use crate::support::{flags, put, take, Error};
+use crate::support::{flags, message, put, take, Error};
 
 /// Star Performance2: telemetry 231, 6 bytes. Table 174.
 ///
@@ -123,12 +123,21 @@ impl StarPerformance2 {
     }
 }
 
-impl crate::wire::Telemetry for StarPerformance2 {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 231;
+message!(StarPerformance2 {
+    image_capture_success: ("Image Capture Success", 0, 1),
+    detection_success: ("Detection Success", 1, 1),
+    identification_success: ("Identification Success", 2, 1),
+    attitude_success: ("AttitudeSuccess", 3, 1),
+    processing_time_error: ("Processing Time Error", 4, 1),
+    tracking_module_enabled: ("Tracking Module Enabled", 5, 1),
+    prediction_enabled: ("Prediction Enabled", 6, 1),
+    comms_error: ("Comms error", 7, 1),
+    sample_period: ("Sample Period", 8, 16),
+    star_1_confidence: ("Star 1 confidence", 24, 8).unit("%"),
+    star_2_confidence: ("Star 2 confidence", 32, 8).unit("%"),
+    star_3_confidence: ("Star 3 confidence", 40, 8).unit("%"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for StarPerformance2 {
+    const TELEMETRY_ID: u32 = 231;
 }

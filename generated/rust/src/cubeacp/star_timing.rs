@@ -2,7 +2,7 @@
 
 //! Star Timing, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Star Timing: telemetry 189, 6 bytes. Table 148.
 ///
@@ -69,12 +69,12 @@ impl StarTiming {
     }
 }
 
-impl crate::wire::Telemetry for StarTiming {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 189;
+message!(StarTiming {
+    capture: ("Capture", 0, 16).unit("ms"),
+    detection: ("Detection", 16, 16).unit("ms"),
+    identification: ("Identification", 32, 16).unit("ms"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for StarTiming {
+    const TELEMETRY_ID: u32 = 189;
 }

@@ -2,7 +2,7 @@
 
 //! CubeACP State, a message of node `cubeacp`.
 
-use crate::support::{flags, Error};
+use crate::support::{flags, message, Error};
 
 /// CubeACP State: telemetry 135, 1 byte. Table 101.
 ///
@@ -97,12 +97,15 @@ impl State {
     }
 }
 
-impl crate::wire::Telemetry for State {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 135;
+message!(State {
+    adcs_config_load_error: ("ADCS Config Load Error", 0, 1),
+    orbit_parameter_load_error: ("Orbit Parameter Load Error", 1, 1),
+    system_configuration_load_error: ("System Configuration Load Error", 2, 1),
+    sd_card_initialisation_error: ("SD card initialisation error", 3, 1),
+    sd_card_read_error: ("SD card read error", 4, 1),
+    sd_card_write_error: ("SD card write error", 5, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for State {
+    const TELEMETRY_ID: u32 = 135;
 }

@@ -3,7 +3,7 @@
 //! Status of Image Capture and Save Operation, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// Status of Image Capture and Save Operation: telemetry 233, 2 bytes. Table 176.
 ///
@@ -68,12 +68,11 @@ impl StatusOfImageCaptureAndSaveOperation {
     }
 }
 
-impl crate::wire::Telemetry for StatusOfImageCaptureAndSaveOperation {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 233;
+message!(StatusOfImageCaptureAndSaveOperation {
+    percentage_complete: ("Percentage Complete", 0, 8).unit("%"),
+    status: ("Status", 8, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for StatusOfImageCaptureAndSaveOperation {
+    const TELEMETRY_ID: u32 = 233;
 }

@@ -2,7 +2,7 @@
 
 //! Tracking Controller Target Reference, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Tracking Controller Target Reference: configuration, set by telecommand 55, got by telemetry
 /// 200, 12 bytes. Table 187.
@@ -80,22 +80,16 @@ impl TrackingControllerTargetReference {
     }
 }
 
-impl crate::wire::Telecommand for TrackingControllerTargetReference {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 55;
+message!(TrackingControllerTargetReference {
+    geocentric_longitude_of_target: ("Geocentric longitude of target", 0, 32).unit("deg"),
+    geocentric_latitude_of_target: ("Geocentric latitude of target", 32, 32).unit("deg"),
+    geocentric_altitude_of_target: ("Geocentric altitude of target", 64, 32).unit("m"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for TrackingControllerTargetReference {
+    const TELECOMMAND_ID: u32 = 55;
 }
 
-impl crate::wire::Telemetry for TrackingControllerTargetReference {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 200;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for TrackingControllerTargetReference {
+    const TELEMETRY_ID: u32 = 200;
 }

@@ -2,7 +2,7 @@
 
 //! Trigger ADCS Loop, a message of node `cubeacp`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Trigger ADCS Loop: telecommand 18, 0 bytes. Table 83.
 ///
@@ -51,12 +51,9 @@ impl TriggerAdcsLoop {
     }
 }
 
-impl crate::wire::Telecommand for TriggerAdcsLoop {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 18;
+message!(TriggerAdcsLoop {
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for TriggerAdcsLoop {
+    const TELECOMMAND_ID: u32 = 18;
 }

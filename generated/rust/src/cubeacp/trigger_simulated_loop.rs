@@ -3,7 +3,7 @@
 //! Trigger ADCS Loop with Simulated Sensor Data, a message of node `cubeacp`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error, Scale};
+use crate::support::{message, put, take, Coded, Error, Scale};
 
 /// Trigger ADCS Loop with Simulated Sensor Data: telecommand 19, 127 bytes. Table 84.
 ///
@@ -513,13 +513,29 @@ impl TriggerSimulatedLoop {
         f64::from(self.x_pos_standard_deviation) / 10.0
     }
 
-    /// Sets X-pos Standard Deviation in m, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets X-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_x_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.x_pos_standard_deviation = X_POS_STANDARD_DEVIATION.raw(value)?;
+        Ok(())
+    }
+
+    /// X-pos Standard Deviation in m, the nearest float of 32 bits.
+    #[must_use]
+    pub fn x_pos_standard_deviation_m_f32(&self) -> f32 {
+        f32::from(self.x_pos_standard_deviation) / 10.0
+    }
+
+    /// X-pos Standard Deviation in mm, exact: 0 to 25500.
+    #[must_use]
+    pub fn x_pos_standard_deviation_mm(&self) -> i32 {
+        i32::from(self.x_pos_standard_deviation) * 100
+    }
+
+    /// Sets X-pos Standard Deviation in mm, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_x_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
+        self.x_pos_standard_deviation = X_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -529,13 +545,29 @@ impl TriggerSimulatedLoop {
         f64::from(self.y_pos_standard_deviation) / 10.0
     }
 
-    /// Sets Y-pos Standard Deviation in m, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Y-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_y_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.y_pos_standard_deviation = Y_POS_STANDARD_DEVIATION.raw(value)?;
+        Ok(())
+    }
+
+    /// Y-pos Standard Deviation in m, the nearest float of 32 bits.
+    #[must_use]
+    pub fn y_pos_standard_deviation_m_f32(&self) -> f32 {
+        f32::from(self.y_pos_standard_deviation) / 10.0
+    }
+
+    /// Y-pos Standard Deviation in mm, exact: 0 to 25500.
+    #[must_use]
+    pub fn y_pos_standard_deviation_mm(&self) -> i32 {
+        i32::from(self.y_pos_standard_deviation) * 100
+    }
+
+    /// Sets Y-pos Standard Deviation in mm, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_y_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
+        self.y_pos_standard_deviation = Y_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
         Ok(())
     }
 
@@ -545,50 +577,109 @@ impl TriggerSimulatedLoop {
         f64::from(self.z_pos_standard_deviation) / 10.0
     }
 
-    /// Sets Z-pos Standard Deviation in m, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Z-pos Standard Deviation in m, to the nearest raw value, ties to even. [`Error::Range`]
+    /// if it does not fit or is not finite.
     pub fn set_z_pos_standard_deviation_m(&mut self, value: f64) -> Result<(), Error> {
         self.z_pos_standard_deviation = Z_POS_STANDARD_DEVIATION.raw(value)?;
         Ok(())
     }
+
+    /// Z-pos Standard Deviation in m, the nearest float of 32 bits.
+    #[must_use]
+    pub fn z_pos_standard_deviation_m_f32(&self) -> f32 {
+        f32::from(self.z_pos_standard_deviation) / 10.0
+    }
+
+    /// Z-pos Standard Deviation in mm, exact: 0 to 25500.
+    #[must_use]
+    pub fn z_pos_standard_deviation_mm(&self) -> i32 {
+        i32::from(self.z_pos_standard_deviation) * 100
+    }
+
+    /// Sets Z-pos Standard Deviation in mm, to the nearest raw value, ties to even.
+    /// [`Error::Range`] if it does not fit.
+    pub fn set_z_pos_standard_deviation_mm(&mut self, value: i32) -> Result<(), Error> {
+        self.z_pos_standard_deviation = Z_POS_STANDARD_DEVIATION.whole(value.into(), 100, 0)?;
+        Ok(())
+    }
 }
 
-const X_POS_STANDARD_DEVIATION: Scale = Scale {
-    field: "X-pos Standard Deviation",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const X_POS_STANDARD_DEVIATION: Scale =
+    Scale::new("X-pos Standard Deviation", (0, 255), (1, 0, 10));
 
-const Y_POS_STANDARD_DEVIATION: Scale = Scale {
-    field: "Y-pos Standard Deviation",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const Y_POS_STANDARD_DEVIATION: Scale =
+    Scale::new("Y-pos Standard Deviation", (0, 255), (1, 0, 10));
 
-const Z_POS_STANDARD_DEVIATION: Scale = Scale {
-    field: "Z-pos Standard Deviation",
-    min: 0,
-    max: 255,
-    factor: 1,
-    offset: 0,
-    divisor: 10,
-};
+const Z_POS_STANDARD_DEVIATION: Scale =
+    Scale::new("Z-pos Standard Deviation", (0, 255), (1, 0, 10));
 
-impl crate::wire::Telecommand for TriggerSimulatedLoop {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 19;
+message!(TriggerSimulatedLoop {
+    unix_time: ("Unix Time", 0, 32).unit("s"),
+    css_raw_1: ("Css Raw 1", 32, 16),
+    css_raw_2: ("Css Raw 2", 48, 16),
+    css_raw_3: ("Css Raw 3", 64, 16),
+    css_raw_4: ("Css Raw 4", 80, 16),
+    css_raw_5: ("Css Raw 5", 96, 16),
+    css_raw_6: ("Css Raw 6", 112, 16),
+    css_raw_7: ("Css Raw 7", 128, 16),
+    css_raw_8: ("Css Raw 8", 144, 16),
+    css_raw_9: ("Css Raw 9", 160, 16),
+    css_raw_10: ("Css Raw 10", 176, 16),
+    cam1_raw_x: ("Cam1 Raw X", 192, 16),
+    cam1_raw_y: ("Cam1 Raw Y", 208, 16),
+    cam1_busy: ("Cam1 Busy", 224, 8),
+    cam1_result: ("Cam1 Result", 232, 8),
+    cam2_raw_x: ("Cam2 Raw X", 240, 16),
+    cam2_raw_y: ("Cam2 Raw Y", 256, 16),
+    cam2_busy: ("Cam2 Busy", 272, 8),
+    cam2_result: ("Cam2 Result", 280, 8),
+    mag_raw_x: ("Mag Raw X", 288, 16),
+    mag_raw_y: ("Mag Raw Y", 304, 16),
+    mag_raw_z: ("Mag Raw Z", 320, 16),
+    rate_raw_x: ("Rate Raw X", 336, 32),
+    rate_raw_y: ("Rate Raw Y", 368, 32),
+    rate_raw_z: ("Rate Raw Z", 400, 32),
+    wheel_raw_x: ("Wheel Raw X", 432, 16).unit("rpm"),
+    wheel_raw_y: ("Wheel Raw Y", 448, 16).unit("rpm"),
+    wheel_raw_z: ("Wheel Raw Z", 464, 16).unit("rpm"),
+    star1_camera_x: ("Star1CameraX", 480, 16),
+    star1_camera_y: ("Star1CameraY", 496, 16),
+    star1_camera_z: ("Star1CameraZ", 512, 16),
+    star1_inertial_x: ("Star1InertialX", 528, 16),
+    star1_inertial_y: ("Star1InertialY", 544, 16),
+    star1_inertial_z: ("Star1InertialZ", 560, 16),
+    star2_camera_x: ("Star2CameraX", 576, 16),
+    star2_camera_y: ("Star2CameraY", 592, 16),
+    star2_camera_z: ("Star2CameraZ", 608, 16),
+    star2_inertial_x: ("Star2InertialX", 624, 16),
+    star2_inertial_y: ("Star2InertialY", 640, 16),
+    star2_inertial_z: ("Star2InertialZ", 656, 16),
+    star3_camera_x: ("Star3CameraX", 672, 16),
+    star3_camera_y: ("Star3CameraY", 688, 16),
+    star3_camera_z: ("Star3CameraZ", 704, 16),
+    star3_inertial_x: ("Star3InertialX", 720, 16),
+    star3_inertial_y: ("Star3InertialY", 736, 16),
+    star3_inertial_z: ("Star3InertialZ", 752, 16),
+    gps_solution_status: ("Gps Solution Status", 768, 8),
+    gps_reference_week: ("GPS Reference Week", 776, 16),
+    gps_time_milliseconds: ("GPS Time Milliseconds", 792, 32).unit("ms"),
+    ecef_position_x: ("ECEF Position X", 824, 32).unit("m"),
+    ecef_velocity_x: ("ECEF Velocity X", 856, 16).unit("m/s"),
+    ecef_position_y: ("ECEF Position Y", 872, 32).unit("m"),
+    ecef_velocity_y: ("ECEF Velocity Y", 904, 16).unit("m/s"),
+    ecef_position_z: ("ECEF Position Z", 920, 32).unit("m"),
+    ecef_velocity_z: ("ECEF Velocity Z", 952, 16).unit("m/s"),
+    x_pos_standard_deviation: ("X-pos Standard Deviation", 968, 8)
+        .unit("m").scale(&X_POS_STANDARD_DEVIATION),
+    y_pos_standard_deviation: ("Y-pos Standard Deviation", 976, 8)
+        .unit("m").scale(&Y_POS_STANDARD_DEVIATION),
+    z_pos_standard_deviation: ("Z-pos Standard Deviation", 984, 8)
+        .unit("m").scale(&Z_POS_STANDARD_DEVIATION),
+    x_vel_standard_deviation: ("X-vel Standard Deviation", 992, 8).unit("m/s"),
+    y_vel_standard_deviation: ("Y-vel Standard Deviation", 1_000, 8).unit("m/s"),
+    z_vel_standard_deviation: ("Z-vel Standard Deviation", 1_008, 8).unit("m/s"),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for TriggerSimulatedLoop {
+    const TELECOMMAND_ID: u32 = 19;
 }

@@ -2,7 +2,7 @@
 
 //! UART Log Configuration, a message of node `cubeacp`.
 
-use crate::support::{array, put, put_array, take, Error};
+use crate::support::{array, message, put, put_array, take, Error};
 
 /// UART Log Configuration: configuration, set by telecommand 106, got by telemetry 237, 12 bytes.
 /// Table 213.
@@ -80,22 +80,15 @@ impl UartLogConfiguration {
     }
 }
 
-impl crate::wire::Telecommand for UartLogConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 106;
+message!(UartLogConfiguration {
+    log_selection: ("Log Selection", 0, 80),
+    log_period: ("Log Period", 80, 16),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for UartLogConfiguration {
+    const TELECOMMAND_ID: u32 = 106;
 }
 
-impl crate::wire::Telemetry for UartLogConfiguration {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 237;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for UartLogConfiguration {
+    const TELEMETRY_ID: u32 = 237;
 }

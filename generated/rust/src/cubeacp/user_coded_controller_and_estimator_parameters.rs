@@ -2,7 +2,7 @@
 
 //! User-coded Controller and Estimator Parameters, a message of node `cubeacp`.
 
-use crate::support::{array, put_array, Error};
+use crate::support::{array, message, put_array, Error};
 
 /// User-coded Controller and Estimator Parameters: configuration, set by telecommand 29, got by
 /// telemetry 226, 96 bytes. Table 208.
@@ -80,22 +80,15 @@ impl Default for UserCodedControllerAndEstimatorParameters {
     }
 }
 
-impl crate::wire::Telecommand for UserCodedControllerAndEstimatorParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELECOMMAND_ID: u8 = 29;
+message!(UserCodedControllerAndEstimatorParameters {
+    user_coded_controller_settings: ("User Coded Controller Settings", 0, 384),
+    user_coded_estimator_settings: ("User Coded Estimator Settings", 384, 384),
+});
 
-    #[inline]
-    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes()?)
-    }
+impl crate::Telecommand for UserCodedControllerAndEstimatorParameters {
+    const TELECOMMAND_ID: u32 = 29;
 }
 
-impl crate::wire::Telemetry for UserCodedControllerAndEstimatorParameters {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 226;
-
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for UserCodedControllerAndEstimatorParameters {
+    const TELEMETRY_ID: u32 = 226;
 }

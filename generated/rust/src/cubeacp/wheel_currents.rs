@@ -2,7 +2,7 @@
 
 //! Wheel Currents, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error, Scale};
+use crate::support::{message, put, take, Error, Scale};
 
 /// Wheel Currents: telemetry 173, 6 bytes. Table 131.
 ///
@@ -90,13 +90,29 @@ impl WheelCurrents {
         f64::from(self.wheel1_current) / 100.0
     }
 
-    /// Sets Wheel1Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Wheel1Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_wheel1_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.wheel1_current = WHEEL1_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Wheel1Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn wheel1_current_ma_f32(&self) -> f32 {
+        f32::from(self.wheel1_current) / 100.0
+    }
+
+    /// Wheel1Current in uA, exact: 0 to 655350.
+    #[must_use]
+    pub fn wheel1_current_ua(&self) -> i32 {
+        i32::from(self.wheel1_current) * 10
+    }
+
+    /// Sets Wheel1Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_wheel1_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.wheel1_current = WHEEL1_CURRENT.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -106,13 +122,29 @@ impl WheelCurrents {
         f64::from(self.wheel2_current) / 100.0
     }
 
-    /// Sets Wheel2Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Wheel2Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_wheel2_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.wheel2_current = WHEEL2_CURRENT.raw(value)?;
+        Ok(())
+    }
+
+    /// Wheel2Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn wheel2_current_ma_f32(&self) -> f32 {
+        f32::from(self.wheel2_current) / 100.0
+    }
+
+    /// Wheel2Current in uA, exact: 0 to 655350.
+    #[must_use]
+    pub fn wheel2_current_ua(&self) -> i32 {
+        i32::from(self.wheel2_current) * 10
+    }
+
+    /// Sets Wheel2Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_wheel2_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.wheel2_current = WHEEL2_CURRENT.whole(value.into(), 10, 0)?;
         Ok(())
     }
 
@@ -122,50 +154,45 @@ impl WheelCurrents {
         f64::from(self.wheel3_current) / 100.0
     }
 
-    /// Sets Wheel3Current in mA, to the nearest raw value, ties to even.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
+    /// Sets Wheel3Current in mA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit or is not finite.
     pub fn set_wheel3_current_ma(&mut self, value: f64) -> Result<(), Error> {
         self.wheel3_current = WHEEL3_CURRENT.raw(value)?;
         Ok(())
     }
+
+    /// Wheel3Current in mA, the nearest float of 32 bits.
+    #[must_use]
+    pub fn wheel3_current_ma_f32(&self) -> f32 {
+        f32::from(self.wheel3_current) / 100.0
+    }
+
+    /// Wheel3Current in uA, exact: 0 to 655350.
+    #[must_use]
+    pub fn wheel3_current_ua(&self) -> i32 {
+        i32::from(self.wheel3_current) * 10
+    }
+
+    /// Sets Wheel3Current in uA, to the nearest raw value, ties to even. [`Error::Range`] if it
+    /// does not fit.
+    pub fn set_wheel3_current_ua(&mut self, value: i32) -> Result<(), Error> {
+        self.wheel3_current = WHEEL3_CURRENT.whole(value.into(), 10, 0)?;
+        Ok(())
+    }
 }
 
-const WHEEL1_CURRENT: Scale = Scale {
-    field: "Wheel1Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const WHEEL1_CURRENT: Scale = Scale::new("Wheel1Current", (0, 65_535), (1, 0, 100));
 
-const WHEEL2_CURRENT: Scale = Scale {
-    field: "Wheel2Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const WHEEL2_CURRENT: Scale = Scale::new("Wheel2Current", (0, 65_535), (1, 0, 100));
 
-const WHEEL3_CURRENT: Scale = Scale {
-    field: "Wheel3Current",
-    min: 0,
-    max: 65_535,
-    factor: 1,
-    offset: 0,
-    divisor: 100,
-};
+const WHEEL3_CURRENT: Scale = Scale::new("Wheel3Current", (0, 65_535), (1, 0, 100));
 
-impl crate::wire::Telemetry for WheelCurrents {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 173;
+message!(WheelCurrents {
+    wheel1_current: ("Wheel1Current", 0, 16).unit("mA").scale(&WHEEL1_CURRENT),
+    wheel2_current: ("Wheel2Current", 16, 16).unit("mA").scale(&WHEEL2_CURRENT),
+    wheel3_current: ("Wheel3Current", 32, 16).unit("mA").scale(&WHEEL3_CURRENT),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for WheelCurrents {
+    const TELEMETRY_ID: u32 = 173;
 }

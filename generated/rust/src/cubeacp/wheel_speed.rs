@@ -2,7 +2,7 @@
 
 //! Wheel Speed, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Wheel Speed: telemetry 156, 6 bytes. Table 112.
 ///
@@ -69,12 +69,12 @@ impl WheelSpeed {
     }
 }
 
-impl crate::wire::Telemetry for WheelSpeed {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 156;
+message!(WheelSpeed {
+    x_wheel_speed: ("X Wheel Speed", 0, 16).unit("rpm"),
+    y_wheel_speed: ("Y Wheel Speed", 16, 16).unit("rpm"),
+    z_wheel_speed: ("Z Wheel Speed", 32, 16).unit("rpm"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for WheelSpeed {
+    const TELEMETRY_ID: u32 = 156;
 }

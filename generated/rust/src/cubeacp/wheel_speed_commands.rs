@@ -2,7 +2,7 @@
 
 //! Wheel Speed Commands, a message of node `cubeacp`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Wheel Speed Commands: telemetry 158, 6 bytes. Table 114.
 ///
@@ -75,12 +75,12 @@ impl WheelSpeedCommands {
     }
 }
 
-impl crate::wire::Telemetry for WheelSpeedCommands {
-    const NODE: &'static str = "cubeacp";
-    const TELEMETRY_ID: u8 = 158;
+message!(WheelSpeedCommands {
+    commanded_x_wheel_speed: ("Commanded X Wheel Speed", 0, 16).unit("rpm"),
+    commanded_y_wheel_speed: ("Commanded Y Wheel Speed", 16, 16).unit("rpm"),
+    commanded_z_wheel_speed: ("Commanded Z Wheel Speed", 32, 16).unit("rpm"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for WheelSpeedCommands {
+    const TELEMETRY_ID: u32 = 158;
 }

@@ -2,7 +2,7 @@
 
 //! Deployment Status, a message of node `cubemag`.
 
-use crate::support::{flags, put, take, Error};
+use crate::support::{flags, message, put, take, Error};
 
 /// Deployment Status: telemetry 190, 5 bytes. Table 61.
 ///
@@ -116,12 +116,15 @@ impl DeploymentStatus {
     }
 }
 
-impl crate::wire::Telemetry for DeploymentStatus {
-    const NODE: &'static str = "cubemag";
-    const TELEMETRY_ID: u8 = 190;
+message!(DeploymentStatus {
+    burn_current: ("Burn Current", 0, 32).unit("mA"),
+    deployment_pin_state: ("Deployment Pin State", 32, 1),
+    burn_pin_state: ("Burn Pin State", 33, 1),
+    burn_under_current: ("Burn UnderCurrent", 34, 1),
+    burn_over_current: ("Burn OverCurrent", 35, 1),
+    deployment_timeout: ("Deployment Timeout", 36, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for DeploymentStatus {
+    const TELEMETRY_ID: u32 = 190;
 }

@@ -2,7 +2,7 @@
 
 //! Enumerations. Every one keeps values that have no name.
 
-use crate::support::Enumeration;
+use crate::support::enumeration;
 
 /// MagState: an enumeration. Table 58.
 ///
@@ -61,14 +61,6 @@ impl MagState {
     }
 }
 
-impl Enumeration for MagState {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for MagState {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -82,12 +74,7 @@ impl From<u8> for MagState {
     }
 }
 
-impl From<MagState> for u8 {
-    #[inline]
-    fn from(value: MagState) -> Self {
-        value.raw()
-    }
-}
+enumeration!(MagState: u8);
 
 /// MntState: an enumeration. Table 59.
 ///
@@ -156,14 +143,6 @@ impl MntState {
     }
 }
 
-impl Enumeration for MntState {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for MntState {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -179,9 +158,4 @@ impl From<u8> for MntState {
     }
 }
 
-impl From<MntState> for u8 {
-    #[inline]
-    fn from(value: MntState) -> Self {
-        value.raw()
-    }
-}
+enumeration!(MntState: u8);

@@ -112,3 +112,19 @@ impl Telemetry {
         }
     }
 }
+
+/// Its name and the values of its fields: physical ones, with their units.
+impl ::core::fmt::Display for Telemetry {
+    fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+        match self {
+            Self::State(message) => ::core::fmt::Display::fmt(message, out),
+            Self::DeploymentStatus(message) => ::core::fmt::Display::fmt(message, out),
+            Self::RedundantMagnetometerMeasurement(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+            Self::PrimaryMagnetometerMeasurement(message) => {
+                ::core::fmt::Display::fmt(message, out)
+            }
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 //! Primary Magnetometer Measurement, a message of node `cubemag`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Primary Magnetometer Measurement: telemetry 197, 13 bytes. Table 68.
 ///
@@ -95,12 +95,13 @@ impl PrimaryMagnetometerMeasurement {
     }
 }
 
-impl crate::wire::Telemetry for PrimaryMagnetometerMeasurement {
-    const NODE: &'static str = "cubemag";
-    const TELEMETRY_ID: u8 = 197;
+message!(PrimaryMagnetometerMeasurement {
+    x_axis: ("X_axis", 0, 32).unit("nT"),
+    y_axis: ("Y_axis", 32, 32).unit("nT"),
+    z_axis: ("Z_axis", 64, 32).unit("nT"),
+    data_valid: ("Data Valid", 96, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for PrimaryMagnetometerMeasurement {
+    const TELEMETRY_ID: u32 = 197;
 }

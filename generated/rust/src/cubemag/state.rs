@@ -3,7 +3,7 @@
 //! State, a message of node `cubemag`.
 
 use super::enums;
-use crate::support::{Coded, Error};
+use crate::support::{message, Coded, Error};
 
 /// State: telemetry 188, 3 bytes. Table 57.
 ///
@@ -86,12 +86,12 @@ impl State {
     }
 }
 
-impl crate::wire::Telemetry for State {
-    const NODE: &'static str = "cubemag";
-    const TELEMETRY_ID: u8 = 188;
+message!(State {
+    mag_svc_state: ("MagSvc State", 0, 8),
+    primary_mag_state: ("Primary Mag State", 8, 8),
+    red_mag_state: ("Red Mag State", 16, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for State {
+    const TELEMETRY_ID: u32 = 188;
 }

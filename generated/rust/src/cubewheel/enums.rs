@@ -2,7 +2,7 @@
 
 //! Enumerations. Every one keeps values that have no name.
 
-use crate::support::Enumeration;
+use crate::support::enumeration;
 
 /// WheelErrorState: an enumeration. Table 48.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -58,14 +58,6 @@ impl WheelErrorState {
     }
 }
 
-impl Enumeration for WheelErrorState {
-    type Raw = u8;
-
-    fn name(self) -> Option<&'static str> {
-        Self::name(self)
-    }
-}
-
 impl From<u8> for WheelErrorState {
     #[inline]
     fn from(raw: u8) -> Self {
@@ -79,9 +71,4 @@ impl From<u8> for WheelErrorState {
     }
 }
 
-impl From<WheelErrorState> for u8 {
-    #[inline]
-    fn from(value: WheelErrorState) -> Self {
-        value.raw()
-    }
-}
+enumeration!(WheelErrorState: u8);

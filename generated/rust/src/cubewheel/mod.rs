@@ -97,3 +97,14 @@ impl Telemetry {
         }
     }
 }
+
+/// Its name and the values of its fields: physical ones, with their units.
+impl ::core::fmt::Display for Telemetry {
+    fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+        match self {
+            Self::WheelSpeed(message) => ::core::fmt::Display::fmt(message, out),
+            Self::WheelReferenceSpeed(message) => ::core::fmt::Display::fmt(message, out),
+            Self::MotorPower(message) => ::core::fmt::Display::fmt(message, out),
+        }
+    }
+}

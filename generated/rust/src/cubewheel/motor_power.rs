@@ -2,7 +2,7 @@
 
 //! Motor Power, a message of node `cubewheel`.
 
-use crate::support::Error;
+use crate::support::{message, Error};
 
 /// Motor Power: telemetry 197, 1 byte. Table 57.
 ///
@@ -72,12 +72,10 @@ impl MotorPower {
     }
 }
 
-impl crate::wire::Telemetry for MotorPower {
-    const NODE: &'static str = "cubewheel";
-    const TELEMETRY_ID: u8 = 197;
+message!(MotorPower {
+    motor_power_switch: ("Motor Power Switch", 0, 1),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for MotorPower {
+    const TELEMETRY_ID: u32 = 197;
 }

@@ -2,7 +2,7 @@
 
 //! Wheel Reference Speed, a message of node `cubewheel`.
 
-use crate::support::{put, take, Error};
+use crate::support::{message, put, take, Error};
 
 /// Wheel Reference Speed: telemetry 196, 4 bytes. Table 56.
 ///
@@ -81,12 +81,10 @@ impl WheelReferenceSpeed {
     }
 }
 
-impl crate::wire::Telemetry for WheelReferenceSpeed {
-    const NODE: &'static str = "cubewheel";
-    const TELEMETRY_ID: u8 = 196;
+message!(WheelReferenceSpeed {
+    reference_speed: ("Reference Speed", 0, 32).unit("rpm"),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for WheelReferenceSpeed {
+    const TELEMETRY_ID: u32 = 196;
 }

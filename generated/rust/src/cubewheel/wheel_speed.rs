@@ -3,7 +3,7 @@
 //! Wheel Speed, a message of node `cubewheel`.
 
 use super::enums;
-use crate::support::{put, take, Coded, Error};
+use crate::support::{message, put, take, Coded, Error};
 
 /// Wheel Speed: telemetry 188, 5 bytes. Table 47.
 ///
@@ -80,12 +80,11 @@ impl WheelSpeed {
     }
 }
 
-impl crate::wire::Telemetry for WheelSpeed {
-    const NODE: &'static str = "cubewheel";
-    const TELEMETRY_ID: u8 = 188;
+message!(WheelSpeed {
+    wheel_speed: ("Wheel Speed", 0, 32).unit("rpm"),
+    wheel_error_state: ("Wheel Error State", 32, 8),
+});
 
-    #[inline]
-    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
-        Self::from_bytes(bytes)
-    }
+impl crate::Telemetry for WheelSpeed {
+    const TELEMETRY_ID: u32 = 188;
 }

@@ -10,6 +10,8 @@ use core::hash::Hash;
 #[cfg(feature = "serde")]
 pub(crate) mod array;
 mod bytes;
+mod field;
+mod message;
 mod scale;
 mod text;
 mod wide;
@@ -17,6 +19,10 @@ mod wide;
 pub(crate) use self::bytes::{
     array, element_of, flags, put, put_array, put_element, put_words, take, words, write_to,
 };
+pub use self::field::Field;
+pub(crate) use self::field::Row;
+pub(crate) use self::message::{enumeration, message};
+pub use self::message::{Message, Telecommand, Telemetry};
 pub(crate) use self::scale::Scale;
 pub(crate) use self::text::{text, text_array};
 pub(crate) use self::wide::{Big, Wide};
@@ -66,13 +72,18 @@ impl fmt::Display for Error {
     }
 }
 
-#[cfg(feature = "std")]
+#[cfg(feature = "core_error")]
+impl core::error::Error for Error {}
+
+#[cfg(all(feature = "std", not(feature = "core_error")))]
 impl std::error::Error for Error {}
 
 /// An enumeration whose values can be made from every number and back.
-pub trait Enumeration: Copy + fmt::Debug + From<Self::Raw> + Into<Self::Raw> {
+pub trait Enumeration:
+    Copy + fmt::Debug + fmt::Display + From<Self::Raw> + Into<Self::Raw>
+{
     /// The integer that holds its values.
-    type Raw: Copy + Default + Eq + Hash;
+    type Raw: Copy + Default + Eq + Hash + fmt::Display;
 
     /// What the ICD calls the value; None if it has no name.
     fn name(self) -> Option<&'static str>;
@@ -107,6 +118,12 @@ impl<E: Enumeration> Coded<E> {
     pub fn name(self) -> Option<&'static str> {
         self.get().name()
     }
+
+    /// The enumeration's value if it has a name; None for the others.
+    #[must_use]
+    pub fn known(self) -> Option<E> {
+        self.name().map(|_| self.get())
+    }
 }
 
 impl<E: Enumeration> From<E> for Coded<E> {
@@ -123,9 +140,15 @@ impl<E: Enumeration> PartialEq<E> for Coded<E> {
     }
 }
 
+impl<E: Enumeration> fmt::Display for Coded<E> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(&self.get(), out)
+    }
+}
+
 impl<E: Enumeration> fmt::Debug for Coded<E> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.get().fmt(out)
+        fmt::Debug::fmt(&self.get(), out)
     }
 }
 

@@ -79,5 +79,8 @@ impl fmt::Display for Error {
     }
 }
 
-#[cfg(feature = "std")]
+#[cfg(feature = "core_error")]
+impl core::error::Error for Error {}
+
+#[cfg(all(feature = "std", not(feature = "core_error")))]
 impl std::error::Error for Error {}

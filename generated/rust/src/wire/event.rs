@@ -3,7 +3,11 @@
 //! What a client tells.
 
 use super::link::Reason;
-use super::Telemetry;
+use super::message::octet;
+use super::TelemetryOf;
+use core::fmt;
+use core::marker::PhantomData;
+use core::ops::Deref;
 
 /// What came, or what became of the request. Each request ends in exactly one of the first three.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,8 +22,6 @@ pub enum Event<'a> {
         attempts: u16,
         /// The frame.
         data: &'a [u8],
-        /// The nodes whose messages the node has; see [`super::Link::nodes`].
-        nodes: &'static [&'static str],
     },
     /// The node refused the request.
     Refused {
@@ -95,16 +97,42 @@ pub enum Event<'a> {
     },
 }
 
-impl Event<'_> {
-    /// The frame as the message that was requested; None if the event is not that it came, or if it is a
-    /// message of another node.
+/// An event of a client of node `T`; it is used as an [`Event`].
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct NodeEvent<'a, T> {
+    event: Event<'a>,
+    node: PhantomData<fn() -> T>,
+}
+
+impl<'a, T> NodeEvent<'a, T> {
+    pub(super) const fn new(event: Event<'a>) -> Self {
+        let node = PhantomData;
+        Self { event, node }
+    }
+
+    /// The frame as the message that was requested; None if the event is not that it came.
     #[must_use]
-    pub fn message<M: Telemetry>(&self) -> Option<M> {
-        match self {
-            Self::Done {
-                id, data, nodes, ..
-            } if *id == M::TELEMETRY_ID && nodes.contains(&M::NODE) => M::from_frame(data).ok(),
+    pub fn message<M: TelemetryOf<T>>(&self) -> Option<M> {
+        match self.event {
+            Event::Done { id, data, .. } if id == octet(M::TELEMETRY_ID) => {
+                M::from_bytes(data).ok()
+            }
             _ => None,
         }
+    }
+}
+
+impl<'a, T> Deref for NodeEvent<'a, T> {
+    type Target = Event<'a>;
+
+    #[inline]
+    fn deref(&self) -> &Event<'a> {
+        &self.event
+    }
+}
+
+impl<T> fmt::Debug for NodeEvent<'_, T> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.event.fmt(out)
     }
 }

@@ -4,7 +4,8 @@
 //!
 //! Nothing here opens a port, sleeps or looks at a clock: bytes go in, bytes and events come out, the
 //! time is passed in, in milliseconds that may wrap. Nothing allocates or panics. What differs from node
-//! to node is in its [`Link`], the constant `LINK` of the node's module.
+//! to node is in its [`Link`], the `LINK` of the node's module, which also tells a client whose messages
+//! it takes: those of another node do not compile.
 //!
 //! With the feature `std` there is also a `Session`, for programs that may wait: a client over any port
 //! that reads and writes.
@@ -31,10 +32,10 @@ pub mod uart;
 pub use self::client::{Client, Transaction};
 pub use self::crc::{crc16, crc8, Crc, Table};
 pub use self::error::Error;
-pub use self::event::Event;
+pub use self::event::{Event, NodeEvent};
 pub use self::identity::{identify, Identity};
 pub use self::link::{Bus, Link, Reason, Settings};
-pub use self::message::{Telecommand, Telemetry};
+pub use self::message::{Linked, NodeLink, TelecommandOf, TelemetryOf};
 pub use self::request::{Direction, Request, Started};
 #[cfg(feature = "std")]
 pub use self::session::Session;

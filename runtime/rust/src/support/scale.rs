@@ -3,6 +3,7 @@
 use super::Error;
 
 /// What a field's raw value may be, and its physical value: `(raw * factor + offset) / divisor`.
+#[derive(Debug)]
 pub(crate) struct Scale {
     pub(crate) field: &'static str,
     pub(crate) min: i128,
@@ -13,6 +14,22 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
+    /// Of `field`, for raw values from `min` to `max`, with factor, offset and divisor.
+    pub(crate) const fn new(
+        field: &'static str,
+        (min, max): (i128, i128),
+        (factor, offset, divisor): (i128, i128, i128),
+    ) -> Self {
+        Self {
+            field,
+            min,
+            max,
+            factor,
+            offset,
+            divisor,
+        }
+    }
+
     const fn refusal(&self) -> Error {
         Error::Range { field: self.field }
     }
@@ -29,13 +46,33 @@ impl Scale {
 
     /// The double nearest to the physical value, ties to even.
     pub(crate) fn physical<T: Into<i128>>(&self, raw: T) -> f64 {
-        let value = raw.into() * self.factor + self.offset;
-        let size = quotient(value.unsigned_abs(), self.divisor.unsigned_abs());
+        self.rounded(raw.into(), Rounding::ToEven)
+    }
+
+    /// The single nearest to the physical value, ties to even.
+    pub(crate) fn single<T: Into<i128>>(&self, raw: T) -> f32 {
+        narrowed(self.rounded(raw.into(), Rounding::ToOdd))
+    }
+
+    fn rounded(&self, raw: i128, rounding: Rounding) -> f64 {
+        let value = raw * self.factor + self.offset;
+        let size = quotient(value.unsigned_abs(), self.divisor.unsigned_abs(), rounding);
         if value < 0 {
             -size
         } else {
             size
         }
+    }
+
+    /// The raw value nearest to `(value - offset) / factor`, ties to even.
+    pub(crate) fn whole<T: TryFrom<i64> + Copy + Into<i128>>(
+        &self,
+        value: i64,
+        factor: i64,
+        offset: i64,
+    ) -> Result<T, Error> {
+        let raw = nearest_whole(value, factor, offset).and_then(|raw| T::try_from(raw).ok());
+        self.fit(raw.ok_or_else(|| self.refusal())?)
     }
 
     /// The raw value nearest to a physical one, ties to even.
@@ -63,6 +100,37 @@ impl Scale {
         let beyond_half = 2 * (2 * remainder - factor) + rest;
         let up = beyond_half > 0 || (beyond_half == 0 && raw & 1 == 1);
         Some(raw + i128::from(up))
+    }
+}
+
+/// How a quotient becomes a double.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Rounding {
+    /// To the nearest one, ties to even.
+    ToEven,
+    /// To the one below, or to the one with an odd mantissa; then a narrower float rounds as if from the quotient.
+    ToOdd,
+}
+
+/// A double that was rounded to odd, rounded to the nearest single.
+#[allow(clippy::cast_possible_truncation)]
+pub(super) fn narrowed(value: f64) -> f32 {
+    value as f32
+}
+
+fn nearest_whole(value: i64, factor: i64, offset: i64) -> Option<i64> {
+    let (over, size) = (value.checked_sub(offset)?, factor.checked_abs()?);
+    let (whole, rest) = (
+        over.checked_div_euclid(size)?,
+        over.checked_rem_euclid(size)?,
+    );
+    let left = size - rest;
+    let up = rest > left || (rest == left && whole & 1 == 1);
+    let raw = whole + i64::from(up);
+    if factor < 0 {
+        raw.checked_neg()
+    } else {
+        Some(raw)
     }
 }
 
@@ -99,8 +167,8 @@ fn halved(value: i128, places: u32) -> (i128, i128) {
     (value >> places, kind)
 }
 
-/// The double nearest to `value / divisor`, ties to even.
-fn quotient(value: u128, divisor: u128) -> f64 {
+/// The double of `value / divisor`.
+fn quotient(value: u128, divisor: u128, rounding: Rounding) -> f64 {
     if value == 0 {
         return 0.0;
     }
@@ -112,8 +180,14 @@ fn quotient(value: u128, divisor: u128) -> f64 {
     let rest = quotient & ((1 << surplus) - 1);
     let half = (1 << surplus) >> 1;
     let mantissa = quotient >> surplus;
-    let up = rest > half || (rest == half && (inexact || mantissa & 1 == 1));
-    let mantissa = u64::try_from(mantissa).unwrap_or(0) + u64::from(up);
+    let mantissa = u64::try_from(mantissa).unwrap_or(0);
+    let mantissa = match rounding {
+        Rounding::ToEven => {
+            let up = rest > half || (rest == half && (inexact || mantissa & 1 == 1));
+            mantissa + u64::from(up)
+        }
+        Rounding::ToOdd => mantissa | u64::from(rest != 0 || inexact),
+    };
     // The mantissa's leading one adds 1 to the exponent; so does the carry of rounding up.
     f64::from_bits((u64::from(surplus + 1074 - shift) << 52) + mantissa)
 }

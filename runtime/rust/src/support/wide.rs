@@ -2,10 +2,11 @@
 
 use core::cmp::Ordering;
 
+use super::scale::{narrowed, Rounding};
 use super::Error;
 
 /// A whole number in two's complement, the least significant part first.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Big(pub(crate) [u64; 4]);
 
 impl Big {
@@ -127,6 +128,7 @@ fn halves(value: i128) -> [u64; 2] {
 
 /// What a field's raw value may be, and its physical value: `(raw * factor + offset) / divisor`, where factor and divisor
 /// go up to 2^180 and the offset up to 2^240.
+#[derive(Debug)]
 pub(crate) struct Wide {
     pub(crate) field: &'static str,
     pub(crate) min: i128,
@@ -158,7 +160,16 @@ impl Wide {
 
     /// The double nearest to the physical value, ties to even.
     pub(crate) fn physical<T: Into<i128>>(&self, raw: T) -> f64 {
-        let value = self.over(raw.into());
+        self.rounded(raw.into(), Rounding::ToEven)
+    }
+
+    /// The single nearest to the physical value, ties to even.
+    pub(crate) fn single<T: Into<i128>>(&self, raw: T) -> f32 {
+        narrowed(self.rounded(raw.into(), Rounding::ToOdd))
+    }
+
+    fn rounded(&self, raw: i128, rounding: Rounding) -> f64 {
+        let value = self.over(raw);
         if value.is_zero() {
             return 0.0;
         }
@@ -181,10 +192,16 @@ impl Wide {
             }
             rest = rest.doubled(1);
         }
-        let up = digits & 1 == 1 && (digits & 2 != 0 || !rest.is_zero());
+        let last = digits & 1 == 1;
+        let mantissa = match rounding {
+            Rounding::ToEven => {
+                (digits >> 1) + u64::from(last && (digits & 2 != 0 || !rest.is_zero()))
+            }
+            Rounding::ToOdd => (digits >> 1) | u64::from(last || !rest.is_zero()),
+        };
         let exponent = u64::try_from(exponent + 1022).unwrap_or(0);
         // The leading digit adds 1 to the exponent; so does the carry of rounding up.
-        let size = f64::from_bits((digits >> 1) + u64::from(up) + (exponent << 52));
+        let size = f64::from_bits(mantissa + (exponent << 52));
         if value.is_negative() {
             -size
         } else {

@@ -2,7 +2,9 @@
 
 use super::bits::{copy, head, number, part, part_mut, put_number};
 use super::link::{Link, LogFile, LogMask, LogMessage, Span};
-use super::{Error, Telemetry};
+use super::message::octet;
+use super::Error;
+use crate::Telemetry;
 
 /// A bit of a mask that is set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,8 +96,8 @@ impl Frame<'_> {
     /// The frame as a message; None if it is another one.
     #[must_use]
     pub fn message<M: Telemetry>(&self) -> Option<M> {
-        if self.id == Some(M::TELEMETRY_ID) {
-            M::from_frame(self.data).ok()
+        if self.id == Some(octet(M::TELEMETRY_ID)) {
+            M::from_bytes(self.data).ok()
         } else {
             None
         }

@@ -1,8 +1,10 @@
 //! A client over a port that reads and writes, for programs that may wait. Feature `std`.
 
 use super::files::{End, Procedure};
-use super::link::{Link, Reason, Settings};
-use super::{Client, Error, Event, Request, Started, Telecommand, Telemetry};
+use super::link::{Reason, Settings};
+use super::{
+    Client, Error, Event, Linked, NodeEvent, Request, Started, TelecommandOf, TelemetryOf,
+};
 use std::boxed::Box;
 use std::fmt;
 use std::io::{self, ErrorKind, Read, Write};
@@ -58,8 +60,8 @@ impl From<crate::Error> for Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Port(error) => error.fmt(out),
-            Self::Wire(error) => error.fmt(out),
+            Self::Port(_) => out.write_str("the port failed"),
+            Self::Wire(_) => out.write_str("it cannot be asked, or what came is no such message"),
             Self::Refused { id, code, reason } => {
                 write!(out, "request {id} is refused")?;
                 code.map_or(Ok(()), |code| write!(out, ", code {code}"))?;
@@ -73,29 +75,37 @@ impl fmt::Display for Failure {
     }
 }
 
-impl std::error::Error for Failure {}
+impl std::error::Error for Failure {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Port(error) => Some(error),
+            Self::Wire(error) => Some(error),
+            _ => None,
+        }
+    }
+}
 
-type OnEvent = Box<dyn FnMut(&Event<'_>)>;
+type OnEvent<T> = Box<dyn FnMut(&NodeEvent<'_, T>)>;
 
 /// Asks, and waits for the outcome, over a UART or whatever carries its bytes; `N` is the node's
-/// `LONGEST`.
+/// `LONGEST`, `T` its `Node`.
 ///
 /// The port is yours. Its `read` must come back after a while, be it with nothing (`WouldBlock` or
 /// `TimedOut`), for the clock is looked at in between: set a time-out of some milliseconds.
-pub struct Session<P, const N: usize> {
-    client: Client<N>,
+pub struct Session<T, P, const N: usize> {
+    client: Client<T, N>,
     port: P,
     began: Instant,
-    on_event: OnEvent,
+    on_event: OnEvent<T>,
 }
 
-impl<P: Read + Write, const N: usize> Session<P, N> {
+impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     /// A session with the node.
     ///
     /// # Errors
     ///
     /// As [`Client::uart`].
-    pub fn new(link: &'static Link, port: P) -> Result<Self, Error> {
+    pub fn new<L: Linked<Node = T>>(link: &'static L, port: P) -> Result<Self, Error> {
         Ok(Self {
             client: Client::uart(link)?,
             port,
@@ -120,7 +130,7 @@ impl<P: Read + Write, const N: usize> Session<P, N> {
 
     /// The same with someone to tell all that comes, such as logs.
     #[must_use]
-    pub fn with_events(mut self, on_event: impl FnMut(&Event<'_>) + 'static) -> Self {
+    pub fn with_events(mut self, on_event: impl FnMut(&NodeEvent<'_, T>) + 'static) -> Self {
         self.on_event = Box::new(on_event);
         self
     }
@@ -130,9 +140,9 @@ impl<P: Read + Write, const N: usize> Session<P, N> {
     /// # Errors
     ///
     /// [`Failure`]
-    pub fn get<M: Telemetry>(&mut self) -> Result<M, Failure> {
+    pub fn get<M: TelemetryOf<T>>(&mut self) -> Result<M, Failure> {
         self.client.request::<M>(self.now())?;
-        Ok(M::from_frame(&self.outcome()?)?)
+        Ok(M::from_bytes(&self.outcome()?)?)
     }
 
     /// Sends a telecommand or a setting, and waits until it is acknowledged, if it is at all.
@@ -140,7 +150,7 @@ impl<P: Read + Write, const N: usize> Session<P, N> {
     /// # Errors
     ///
     /// [`Failure`]
-    pub fn send<M: Telecommand>(&mut self, message: &M) -> Result<(), Failure> {
+    pub fn send<M: TelecommandOf<T>>(&mut self, message: &M) -> Result<(), Failure> {
         match self.client.send(self.now(), message)? {
             Started::Done => self.flushed(),
             Started::Waiting => self.outcome().map(|_| ()),
@@ -212,7 +222,7 @@ impl<P: Read + Write, const N: usize> Session<P, N> {
     }
 
     /// A request that failed with its port must not be in the way of the next one.
-    fn cancelled<T>(&mut self, result: Result<T, Failure>) -> Result<T, Failure> {
+    fn cancelled<R>(&mut self, result: Result<R, Failure>) -> Result<R, Failure> {
         if result.is_err() {
             self.client.cancel();
         }

@@ -7,12 +7,14 @@ mod machine;
 use self::machine::Machine;
 use super::bits::head;
 use super::can::{self, Joiner, Packet};
-use super::event::Event;
+use super::event::{Event, NodeEvent};
 use super::files::Procedure;
 use super::link::{Bus, Link, Settings};
+use super::message::{octet, Linked};
 use super::request::{Request, Started};
 use super::uart::{self, Decoder, Encoder};
-use super::{Error, Telecommand, Telemetry};
+use super::{Error, TelecommandOf, TelemetryOf};
+use core::marker::PhantomData;
 
 /// An I2C transaction: a write, then a read of so many bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,23 +52,26 @@ enum Port<const N: usize> {
     Can(Joiner<N, 1>),
 }
 
-/// A client of a node on a bus; `N` is the node's `LONGEST`.
+/// A client of node `T` on a bus; `N` is the node's `LONGEST`. It is made for the `LINK` of the node,
+/// `T` is the type `Node` of the same module: `Client::<Node, LONGEST>::uart(&LINK)`.
 ///
 /// Bytes, packets or transactions that came are handed over, output is taken, and [`Client::tick`] is
 /// called at the [`Client::deadline`].
 #[derive(Clone, Debug)]
-pub struct Client<const N: usize> {
+pub struct Client<T, const N: usize> {
     port: Port<N>,
     machine: Machine<N>,
+    node: PhantomData<fn() -> T>,
 }
 
-impl<const N: usize> Client<N> {
+impl<T, const N: usize> Client<T, N> {
     /// A client on the UART.
     ///
     /// # Errors
     ///
     /// [`Error::Unsupported`] if the ICD does not describe it, [`Error::Length`] if `N` is too small.
-    pub fn uart(link: &'static Link) -> Result<Self, Error> {
+    pub fn uart<L: Linked<Node = T>>(link: &'static L) -> Result<Self, Error> {
+        let link = link.link();
         Self::new(
             link,
             Bus::Uart,
@@ -80,7 +85,8 @@ impl<const N: usize> Client<N> {
     /// # Errors
     ///
     /// [`Error::Unsupported`] if the ICD does not describe it, [`Error::Length`] if `N` is too small.
-    pub fn i2c(link: &'static Link) -> Result<Self, Error> {
+    pub fn i2c<L: Linked<Node = T>>(link: &'static L) -> Result<Self, Error> {
+        let link = link.link();
         link.i2c_address.ok_or(Error::Unsupported)?;
         link.polled.as_ref().ok_or(Error::Unsupported)?;
         Self::new(link, Bus::I2c, Port::I2c, 0)
@@ -91,7 +97,8 @@ impl<const N: usize> Client<N> {
     /// # Errors
     ///
     /// [`Error::Unsupported`] if the ICD does not describe it, [`Error::Length`] if `N` is too small.
-    pub fn can(link: &'static Link, address: u8) -> Result<Self, Error> {
+    pub fn can<L: Linked<Node = T>>(link: &'static L, address: u8) -> Result<Self, Error> {
+        let link = link.link();
         let address = address.into();
         Self::new(
             link,
@@ -107,7 +114,12 @@ impl<const N: usize> Client<N> {
             return Err(Error::Length { expected, actual });
         }
         let machine = Machine::new(link, bus, address);
-        Ok(Self { port, machine })
+        let node = PhantomData;
+        Ok(Self {
+            port,
+            machine,
+            node,
+        })
     }
 
     /// The same with checksums, where the ICD has them for the bus.
@@ -133,29 +145,25 @@ impl<const N: usize> Client<N> {
         (self.machine.state != State::Idle).then_some(self.machine.until)
     }
 
-    /// Requests telemetry, or configuration.
+    /// Requests telemetry, or configuration, of the node.
     ///
     /// # Errors
     ///
-    /// As [`Client::start`]; [`Error::UnknownId`] if it is a message of another node, whatever its id.
-    pub fn request<M: Telemetry>(&mut self, now: u32) -> Result<(), Error> {
-        self.must_have(M::NODE, M::TELEMETRY_ID)?;
-        self.start(now, &Request::telemetry(M::TELEMETRY_ID))?;
+    /// As [`Client::start`].
+    pub fn request<M: TelemetryOf<T>>(&mut self, now: u32) -> Result<(), Error> {
+        self.start(now, &Request::telemetry(octet(M::TELEMETRY_ID)))?;
         Ok(())
     }
 
-    /// Sends a telecommand, or configuration.
+    /// Sends a telecommand, or configuration, of the node.
     ///
     /// # Errors
     ///
-    /// As [`Client::start`]; [`Error::UnknownId`] if it is a message of another node, whatever its id;
-    /// [`Error::Range`] if a value does not fit.
-    pub fn send<M: Telecommand>(&mut self, now: u32, message: &M) -> Result<Started, Error> {
-        self.must_have(M::NODE, M::TELECOMMAND_ID)?;
-        let mut buffer = [0; N];
-        let size = message.write_frame(&mut buffer)?;
-        let data = head(&buffer, size);
-        self.start(now, &Request::telecommand(M::TELECOMMAND_ID, data))
+    /// As [`Client::start`]; [`Error::Range`] if a value does not fit.
+    pub fn send<M: TelecommandOf<T>>(&mut self, now: u32, message: &M) -> Result<Started, Error> {
+        let data = message.to_bytes()?;
+        let id = octet(M::TELECOMMAND_ID);
+        self.start(now, &Request::telecommand(id, data.as_ref()))
     }
 
     /// Begins a request.
@@ -188,13 +196,7 @@ impl<const N: usize> Client<N> {
         };
         let (id, attempts, data) = (request.id, 1, &[]);
         if self.start(now, &request)? == Started::Done {
-            let nodes = self.machine.link.nodes;
-            let done = Event::Done {
-                id,
-                attempts,
-                data,
-                nodes,
-            };
+            let done = Event::Done { id, attempts, data };
             procedure.event(now, &done);
         }
         Ok(true)
@@ -259,12 +261,13 @@ impl<const N: usize> Client<N> {
     }
 
     /// Lets time pass.
-    pub fn tick(&mut self, now: u32, mut on_event: impl FnMut(Event<'_>)) {
-        self.pass(now, &mut on_event);
+    pub fn tick(&mut self, now: u32, mut on_event: impl FnMut(NodeEvent<'_, T>)) {
+        self.pass(now, &mut |event| on_event(NodeEvent::new(event)));
     }
 
     /// UART: takes the next bytes of the stream.
-    pub fn received(&mut self, now: u32, bytes: &[u8], mut on_event: impl FnMut(Event<'_>)) {
+    pub fn received(&mut self, now: u32, bytes: &[u8], mut on_event: impl FnMut(NodeEvent<'_, T>)) {
+        let mut on_event = |event: Event<'_>| on_event(NodeEvent::new(event));
         self.pass(now, &mut on_event);
         let machine = &mut self.machine;
         if let Port::Uart(decoder) = &mut self.port {
@@ -279,7 +282,13 @@ impl<const N: usize> Client<N> {
     }
 
     /// CAN: takes a packet.
-    pub fn packet(&mut self, now: u32, packet: &Packet, mut on_event: impl FnMut(Event<'_>)) {
+    pub fn packet(
+        &mut self,
+        now: u32,
+        packet: &Packet,
+        mut on_event: impl FnMut(NodeEvent<'_, T>),
+    ) {
+        let mut on_event = |event: Event<'_>| on_event(NodeEvent::new(event));
         self.pass(now, &mut on_event);
         let machine = &mut self.machine;
         if let Port::Can(joiner) = &mut self.port {
@@ -296,21 +305,14 @@ impl<const N: usize> Client<N> {
         &mut self,
         now: u32,
         bytes: Option<&[u8]>,
-        mut on_event: impl FnMut(Event<'_>),
+        mut on_event: impl FnMut(NodeEvent<'_, T>),
     ) {
+        let mut on_event = |event: Event<'_>| on_event(NodeEvent::new(event));
         let awaited = self.machine.owed == 1 && self.machine.awaits_transfer();
         self.machine.owed = self.machine.owed.saturating_sub(1);
         self.pass(now, &mut on_event); // may end that request
         let awaited = awaited && self.machine.awaits_transfer();
         self.machine.transferred(now, bytes, awaited, &mut on_event);
-    }
-
-    fn must_have(&self, node: &str, id: u8) -> Result<(), Error> {
-        if self.machine.link.has_messages_of(node) {
-            Ok(())
-        } else {
-            Err(Error::UnknownId { id })
-        }
     }
 
     fn pass(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {

@@ -23,8 +23,6 @@ pub(crate) use self::steps::get;
 pub struct Link {
     /// The node, as the ICD calls it.
     pub node: &'static str,
-    /// Whose messages it has: its own, then those of the nodes that it includes.
-    pub nodes: &'static [&'static str],
     /// What the node answers when asked for its type.
     pub node_type: Option<u32>,
     /// Version of the interface that this code was generated from.
@@ -82,12 +80,6 @@ pub struct Link {
 }
 
 impl Link {
-    /// Whether the node has the messages of that one, which is so of itself and of those that it includes.
-    #[must_use]
-    pub fn has_messages_of(&self, node: &str) -> bool {
-        self.nodes.contains(&node)
-    }
-
     /// The telecommand of that id.
     #[must_use]
     pub fn telecommand(&self, id: u8) -> Option<&'static Form> {

@@ -2,7 +2,7 @@
 
 //! The link of node `bootloader`.
 
-use crate::wire::link;
+use crate::wire::{link, NodeLink};
 
 /// Bytes that buffers need for the longest message of either direction, with its id and checksum.
 pub const LONGEST: usize = 28;
@@ -18,12 +18,8 @@ pub const LONGEST: usize = 28;
 ///
 /// Assumed (`message Run Selected Program`, `acknowledge`): As for Reset.
 #[rustfmt::skip]
-pub static LINK: link::Link = link::Link {
+pub static LINK: NodeLink<crate::bootloader::Node> = NodeLink::new(link::Link {
     node: "bootloader",
-    nodes: &[
-        "bootloader",
-        "common",
-    ],
     node_type: Some(110),
     interface_version: Some(3),
     longest: 23,
@@ -505,4 +501,4 @@ pub static LINK: link::Link = link::Link {
         payload: None,
     }),
     boot_ms: Some(5_000),
-};
+});

@@ -2,7 +2,7 @@
 
 //! The link of node `common`.
 
-use crate::wire::link;
+use crate::wire::{link, NodeLink};
 
 /// Bytes that buffers need for the longest message of either direction, with its id and checksum.
 pub const LONGEST: usize = 28;
@@ -28,11 +28,8 @@ pub const LONGEST: usize = 28;
 /// Assumed (`message Reset`, `acknowledge`): Whether the acknowledge comes before the restart is
 /// not said. None is waited for, and one that comes is accepted.
 #[rustfmt::skip]
-pub static LINK: link::Link = link::Link {
+pub static LINK: NodeLink<crate::common::Node> = NodeLink::new(link::Link {
     node: "common",
-    nodes: &[
-        "common",
-    ],
     node_type: None,
     interface_version: None,
     longest: 23,
@@ -382,4 +379,4 @@ pub static LINK: link::Link = link::Link {
         payload: None,
     }),
     boot_ms: Some(5_000),
-};
+});

@@ -2,7 +2,7 @@
 
 //! The link of node `cubeacp`.
 
-use crate::wire::link;
+use crate::wire::{link, NodeLink};
 
 /// Bytes that buffers need for the longest message of either direction, with its id and checksum.
 pub const LONGEST: usize = 506;
@@ -37,12 +37,8 @@ pub const LONGEST: usize = 506;
 /// Assumed (`message Reset`, `acknowledge`): Whether the acknowledge comes before the restart is
 /// not said. None is waited for, and one that comes is accepted.
 #[rustfmt::skip]
-pub static LINK: link::Link = link::Link {
+pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
     node: "cubeacp",
-    nodes: &[
-        "cubeacp",
-        "common",
-    ],
     node_type: Some(10),
     interface_version: Some(7),
     longest: 506,
@@ -638,4 +634,4 @@ pub static LINK: link::Link = link::Link {
         payload: None,
     }),
     boot_ms: Some(5_000),
-};
+});

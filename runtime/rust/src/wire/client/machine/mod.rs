@@ -177,13 +177,7 @@ impl<const N: usize> Machine<N> {
 
     fn done(&mut self, now: u32, data: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
         let (id, attempts) = self.end(now, false);
-        let nodes = self.link.nodes;
-        on_event(Event::Done {
-            id,
-            attempts,
-            data,
-            nodes,
-        });
+        on_event(Event::Done { id, attempts, data });
     }
 
     fn timeout(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {

@@ -91,6 +91,7 @@ where
 }
 
 /// Where a raw value is.
+#[allow(dead_code)] // not every ICD has views
 pub enum Place<M: 'static> {
     Member(fn(&mut M) -> &mut dyn Value),
     View(fn(&M) -> Box<dyn Value>),

@@ -6,7 +6,9 @@ use crate::wire::{bus, explained, packet, shown_packet};
 use icd::wire::files::{
     Download, End, Erase, Format, List, Procedure, ProgramCopy, ProgramInformation, Upload,
 };
-use icd::wire::{Bus, Client, Direction, Error, Event, Link, Reason, Request, Settings, Started};
+use icd::wire::{
+    Bus, Client, Direction, Error, Event, Link, NodeEvent, Reason, Request, Settings, Started,
+};
 use std::fmt::Write;
 
 pub fn client(link: &'static Link, words: &mut Words) -> Answer {
@@ -19,7 +21,7 @@ pub fn client(link: &'static Link, words: &mut Words) -> Answer {
         poll_timeout_ms: words.maybe().unwrap_or(usual.poll_timeout_ms),
     };
     let client = match bus {
-        Bus::Uart => Client::<LONGEST>::uart(link)?,
+        Bus::Uart => Client::<(), LONGEST>::uart(link)?,
         Bus::I2c => Client::i2c(link)?,
         Bus::Can => Client::can(link, address)?,
     };
@@ -42,12 +44,12 @@ pub fn client(link: &'static Link, words: &mut Words) -> Answer {
 }
 
 fn happen(
-    client: &mut Client<LONGEST>,
+    client: &mut Client<(), LONGEST>,
     words: &mut Words,
     answer: &mut String,
 ) -> Result<(), Refusal> {
     let (now, action) = (words.number(), words.word());
-    let on_event = |event: Event<'_>| *answer += &shown(&event);
+    let on_event = |event: NodeEvent<'_, ()>| *answer += &shown(&event);
     match action {
         "telecommand" => {
             let (id, repeat, data) = (words.number(), words.flag(), words.octets());
@@ -79,7 +81,7 @@ fn begun(started: Result<Started, Error>, id: u8) -> String {
     }
 }
 
-fn output(client: &mut Client<LONGEST>, bus: Bus, answer: &mut String) {
+fn output(client: &mut Client<(), LONGEST>, bus: Bus, answer: &mut String) {
     match bus {
         Bus::Uart => {
             while let Some(piece) = client.output() {
@@ -244,16 +246,11 @@ fn drive(procedure: &mut dyn Procedure, words: &mut Words) -> String {
 }
 
 fn outcome(procedure: &mut dyn Procedure, now: u32, words: &mut Words) {
-    let (id, attempts, nodes) = (0, 1, &[]);
+    let (id, attempts) = (0, 1);
     match words.word() {
         "done" => {
             let data = &words.octets();
-            let done = Event::Done {
-                id,
-                attempts,
-                data,
-                nodes,
-            };
+            let done = Event::Done { id, attempts, data };
             procedure.event(now, &done);
         }
         "packet" => {

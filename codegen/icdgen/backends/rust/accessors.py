@@ -1,0 +1,120 @@
+"""Accessors of physical values: in double and in single precision, and in whole parts of the unit; and the data behind them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from icdgen.backends.lines import STEP
+from icdgen.backends.rust.names import field_name
+from icdgen.backends.rust.physical import physical, raw_value, single
+from icdgen.backends.rust.text import WIDTH, assigned, double, integer, string
+from icdgen.describe import FieldDescription
+from icdgen.describe.comments import physical_comment, physical_name, words
+from icdgen.describe.wholes import Whole, part_of_unit, whole, whole_bits
+
+
+class Accessor(NamedTuple):
+    """A getter, and a setter where ``raw`` is not empty."""
+
+    name: str
+    type: str
+    about: str
+    value: str  # over the raw value
+    what: str = ""  # the setter does
+    refused: str = ""  # what it refuses
+    raw: str = ""  # of ``value``, a Result
+
+
+def accessors(field: FieldDescription) -> list[Accessor]:
+    """Those of a field with a scale."""
+    assert field.steps is not None
+    name, scale = field.physical_name, field.declared.upper()
+    sets = f"Sets {'an element of ' if field.count else ''}{{}}, to the nearest raw value, ties to even"
+    end = ", or if there is no such element." if field.count else "."
+    found = [
+        Accessor(
+            name,
+            "f64",
+            physical_comment(field.model, field.steps),
+            physical(field),
+            sets.format(physical_name(field.model)),
+            f"if it does not fit or is not finite{end}",
+            f"{scale}.raw(value)",
+        ),
+        Accessor(
+            single_name(field), "f32", f"{physical_name(field.model)}, the nearest float of 32 bits.", single(field)
+        ),
+    ]
+    known = whole_of(field)
+    if known is None:
+        return found
+    exact, bits = known
+    what = f"{words(field.model.name)} in {words(part_of_unit(field.model, exact.per)[1])}"
+    value = "value" if bits == 64 else "value.into()"
+    found.append(
+        Accessor(
+            whole_name(field, exact),
+            f"i{bits}",
+            f"{what}, exact: {exact.low} to {exact.high}.",
+            _whole_value(field, exact, bits),
+            sets.format(what),
+            f"if it does not fit{end}",
+            f"{scale}.whole({value}, {integer(exact.factor)}, {integer(exact.offset)})",
+        )
+    )
+    return found
+
+
+def single_name(field: FieldDescription) -> str:
+    """``estimated_roll_angle_deg_f32``"""
+    return f"{field.physical_name}_f32"
+
+
+def whole_of(field: FieldDescription) -> tuple[Whole, int] | None:
+    """The whole parts of the unit, and the bits of the integer that holds them."""
+    exact = whole(field.steps) if field.steps is not None and not field.steps.is_wide else None
+    bits = None if exact is None else whole_bits(exact, field.storage)
+    return None if exact is None or bits is None else (exact, bits)
+
+
+def whole_name(field: FieldDescription, exact: Whole) -> str:
+    """``estimated_roll_angle_mdeg``"""
+    return f"{field.declared}_{part_of_unit(field.model, exact.per)[0]}"
+
+
+def _whole_value(field: FieldDescription, exact: Whole, bits: int) -> str:
+    raw = raw_value(field)
+    value = raw if field.storage == (bits, True) else f"i{bits}::from({raw})"
+    value = value if exact.factor == 1 else f"{value} * {integer(exact.factor)}"
+    return value if not exact.offset else f"{value} {'+' if exact.offset > 0 else '-'} {integer(abs(exact.offset))}"
+
+
+def scale_of(field: FieldDescription) -> str:
+    """The constant of a field with a scale, or with values that do not fit it."""
+    terms = field.steps.terms if field.steps else (1, 0, 1)
+    one = field.model
+    numbers = [f"({', '.join(map(integer, row))})" for row in ((one.raw_min, one.raw_max), terms)]
+    return assigned(
+        f"const {field.name.upper()}: Scale =", f"Scale::new({string(one.name)}, {', '.join(numbers)})", ";", ""
+    )
+
+
+def field_row(field: FieldDescription) -> str:
+    """The field as data: place, and what else is known of it."""
+    one = field.model
+    chain = [f"({string(one.name)}, {integer(one.at)}, {integer(one.bits)})"]
+    if field.count:
+        chain.append(f".array({field.count})")
+    if one.unit is not None:
+        chain.append(f".unit({string(one.unit.symbol)})")
+    if field.bounds:
+        limits = [
+            f'("{bound.key}", {double(bound.value.numerator / bound.value.denominator)})' for bound in field.bounds
+        ]
+        chain.append(f".limits(&[{', '.join(limits)}])")
+    if field.steps is not None:
+        chain.append(f".{'wide_scale' if field.steps.is_wide else 'scale'}(&{field.name.upper()})")
+    line = "".join(chain)
+    if len(chain) == 1 or len(f"{STEP}{field_name(field)}: {line},") <= WIDTH:
+        return line
+    return f"{chain[0]}\n{STEP * 2}{''.join(chain[1:])}"

@@ -1,0 +1,170 @@
+//! Fields as data: place, unit, scale and limits.
+
+use super::{Error, Message, Scale, Wide};
+use core::fmt::{Formatter, Result as Shown};
+
+/// What the ICD says of a field.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Field {
+    /// What the ICD calls it.
+    pub name: &'static str,
+    /// Its first bit in the frame.
+    pub at: usize,
+    /// How many bits it has; of an array, each element.
+    pub bits: usize,
+    /// How many elements an array has; 1 if it is none.
+    pub count: usize,
+    /// The unit of the physical value; empty without one.
+    pub unit: &'static str,
+    /// Limits of the physical value (of the raw value where there is no scale): `min`, `above`, `max`, `below`.
+    pub limits: &'static [(&'static str, f64)],
+    scale: Option<Formula>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Formula {
+    Usual(&'static Scale),
+    Wide(&'static Wide),
+}
+
+impl Field {
+    pub(crate) const fn new(name: &'static str, at: usize, bits: usize) -> Self {
+        Self {
+            name,
+            at,
+            bits,
+            count: 1,
+            unit: "",
+            limits: &[],
+            scale: None,
+        }
+    }
+
+    pub(crate) const fn array(mut self, count: usize) -> Self {
+        self.count = count;
+        self
+    }
+
+    pub(crate) const fn unit(mut self, unit: &'static str) -> Self {
+        self.unit = unit;
+        self
+    }
+
+    pub(crate) const fn limits(mut self, limits: &'static [(&'static str, f64)]) -> Self {
+        self.limits = limits;
+        self
+    }
+
+    pub(crate) const fn scale(mut self, scale: &'static Scale) -> Self {
+        self.scale = Some(Formula::Usual(scale));
+        self
+    }
+
+    pub(crate) const fn wide_scale(mut self, scale: &'static Wide) -> Self {
+        self.scale = Some(Formula::Wide(scale));
+        self
+    }
+
+    /// The double nearest to the physical value of a raw one; None without a scale.
+    #[must_use]
+    pub fn physical(&self, raw: i64) -> Option<f64> {
+        self.converted(raw.into())
+    }
+
+    fn converted(&self, raw: i128) -> Option<f64> {
+        Some(match self.scale? {
+            Formula::Usual(scale) => scale.physical(raw),
+            Formula::Wide(scale) => scale.physical(raw),
+        })
+    }
+
+    /// The raw value nearest to a physical one, ties to even; None without a scale.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Range`] if it does not fit or is not finite.
+    #[must_use]
+    pub fn raw(&self, physical: f64) -> Option<Result<i128, Error>> {
+        Some(match self.scale? {
+            Formula::Usual(scale) => scale.raw(physical),
+            Formula::Wide(scale) => scale.raw(physical),
+        })
+    }
+}
+
+/// The fields of a message that are yet to be shown.
+pub(crate) struct Row {
+    rest: core::slice::Iter<'static, Field>,
+    mark: &'static str,
+}
+
+impl Row {
+    pub(crate) fn begin<M: Message>(out: &mut Formatter<'_>) -> Result<Self, core::fmt::Error> {
+        out.write_str(M::NAME)?;
+        let (rest, mark) = (M::FIELDS.iter(), ": ");
+        Ok(Self { rest, mark })
+    }
+
+    pub(crate) fn show(&mut self, out: &mut Formatter<'_>, value: &impl Value) -> Shown {
+        let mark = core::mem::replace(&mut self.mark, ", ");
+        match self.rest.next() {
+            Some(field) => {
+                write!(out, "{mark}{} ", field.name)?;
+                value.show(out, field)?;
+                match field.unit {
+                    "" => Ok(()),
+                    unit => write!(out, " {unit}"),
+                }
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// What a member of a message may be.
+pub(crate) trait Value {
+    fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown;
+}
+
+macro_rules! numbers {
+    ($($type:ident)*) => {$(
+        impl Value for $type {
+            fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
+                match field.converted((*self).into()) {
+                    Some(value) => write!(out, "{value}"),
+                    None => write!(out, "{self}"),
+                }
+            }
+        }
+    )*};
+}
+numbers!(u8 u16 u32 u64 i8 i16 i32 i64);
+
+macro_rules! others {
+    ($($type:ident)*) => {$(
+        impl Value for $type {
+            fn show(&self, out: &mut Formatter<'_>, _: &Field) -> Shown {
+                write!(out, "{self}")
+            }
+        }
+    )*};
+}
+others!(bool f32 f64);
+
+impl<E: super::Enumeration> Value for super::Coded<E> {
+    fn show(&self, out: &mut Formatter<'_>, _: &Field) -> Shown {
+        write!(out, "{self}")
+    }
+}
+
+impl<T: Value, const N: usize> Value for [T; N] {
+    fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
+        let mut mark = "[";
+        for one in self {
+            out.write_str(core::mem::replace(&mut mark, ", "))?;
+            one.show(out, field)?;
+        }
+        out.write_str("]")
+    }
+}

@@ -1,0 +1,120 @@
+//! What all messages have in common, for code that is generic over them.
+
+use super::{Error, Field};
+use core::fmt::{Debug, Display};
+
+/// A message of an ICD.
+pub trait Message: Copy + Debug + Display + Sized {
+    /// What the ICD calls it.
+    const NAME: &'static str;
+    /// Length in bytes, without the id.
+    const LENGTH: usize;
+    /// Its fields, in the order of the ICD.
+    const FIELDS: &'static [Field];
+    /// As many bytes as it has.
+    type Bytes: AsRef<[u8]> + Copy;
+
+    /// Decodes exactly [`Self::LENGTH`] bytes.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Length`] if there are more or fewer.
+    fn from_bytes(bytes: &[u8]) -> Result<Self, Error>;
+
+    /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
+    fn to_bytes(&self) -> Result<Self::Bytes, Error>;
+}
+
+/// A message that can be requested: telemetry, and configuration that is read back.
+pub trait Telemetry: Message {
+    /// The id that requests it.
+    const TELEMETRY_ID: u32;
+}
+
+/// A message that can be sent: a telecommand, and configuration that is set.
+pub trait Telecommand: Message {
+    /// The id that sends it.
+    const TELECOMMAND_ID: u32;
+}
+
+/// What each message has beside its own: a row for each field, with the member that holds it.
+macro_rules! message {
+    ($type:ident {
+        $($member:ident: ($($place:tt)*) $(.$what:ident($($how:tt)*))*,)*
+    }) => {
+        impl $crate::Message for $type {
+            const NAME: &'static str = <$type>::NAME;
+            const LENGTH: usize = <$type>::LENGTH;
+            #[allow(clippy::large_stack_arrays)] // a constant is on no stack
+            const FIELDS: &'static [$crate::Field] = &[$(
+                $crate::Field::new($($place)*)$(.$what($($how)*))*
+            ),*];
+            type Bytes = [u8; <$type>::LENGTH];
+
+            #[inline]
+            fn from_bytes(bytes: &[u8]) -> ::core::result::Result<Self, $crate::Error> {
+                <$type>::from_bytes(bytes)
+            }
+
+            #[inline]
+            fn to_bytes(&self) -> ::core::result::Result<Self::Bytes, $crate::Error> {
+                <$type>::to_bytes(self)
+            }
+        }
+
+        impl ::core::convert::TryFrom<&[u8]> for $type {
+            type Error = $crate::Error;
+
+            #[inline]
+            fn try_from(bytes: &[u8]) -> ::core::result::Result<Self, $crate::Error> {
+                <$type>::from_bytes(bytes)
+            }
+        }
+
+        /// Its name and the values of its fields: physical ones, with their units.
+        impl ::core::fmt::Display for $type {
+            fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+                #[allow(unused_mut, unused_variables)]
+                let mut row = $crate::support::Row::begin::<Self>(out)?;
+                $(row.show(out, &self.$member)?;)*
+                Ok(())
+            }
+        }
+    };
+}
+pub(crate) use message;
+
+/// What each enumeration has beside its values.
+macro_rules! enumeration {
+    ($type:ident: $raw:ident) => {
+        impl $crate::Enumeration for $type {
+            type Raw = $raw;
+
+            fn name(self) -> ::core::option::Option<&'static str> {
+                Self::name(self)
+            }
+        }
+
+        impl ::core::convert::From<$type> for $raw {
+            #[inline]
+            fn from(value: $type) -> Self {
+                value.raw()
+            }
+        }
+
+        /// What the ICD calls the value; its number if it has no name.
+        impl ::core::fmt::Display for $type {
+            fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+                match Self::name(*self) {
+                    ::core::option::Option::Some(name) => out.write_str(name),
+                    ::core::option::Option::None => write!(out, "{}", self.raw()),
+                }
+            }
+        }
+    };
+}
+pub(crate) use enumeration;

@@ -1,0 +1,66 @@
+"""Sphinx makes pages of a generated package without a warning, and finds what stands beside each attribute."""
+
+from __future__ import annotations
+
+import doctest
+import html
+import re
+import subprocess
+import sys
+
+import pytest
+
+CONFIGURATION = """
+import sys
+
+sys.path.insert(0, {folder!r})
+project = {package!r}
+extensions = ["sphinx.ext.autodoc"]
+autodoc_default_options = {{"members": True, "undoc-members": True, "show-inheritance": True}}
+suppress_warnings = ["ref.python"]  # attributes may be called like built-in types: `type`, `bytes`
+"""
+SHIPPED = (
+    "_enumeration", "_errors", "_fields", "_base", "_codec", "_columns", "cubeacp", "cubewheel", "wire.async_session",
+    "wire.can", "wire.client", "wire.events", "wire.files", "wire.link", "wire.logs", "wire.procedures", "wire.programs",
+    "wire.session", "wire.times", "wire.transfer", "wire.uart", "cubeacp._types.estimated_attitude_angles",
+    "cubeacp._types.current_adcs_state", "cubeacp._types.con_mode_select", "cubeacp._types.adcs_configuration",
+    "cubewheel._types.wheel_speed",
+)  # fmt: skip
+
+
+def pages(package, modules, folder) -> str:
+    """The text of the page of these modules; fails at a warning."""
+    source, out = folder / "source", folder / "out"
+    source.mkdir()
+    names = [package.name, *(f"{package.name}.{module}" for module in modules)]
+    sections = [f"{name}\n{'=' * len(name)}\n\n.. automodule:: {name}\n" for name in names]
+    (source / "index.rst").write_text("Messages\n########\n\n" + "\n".join(sections), encoding="utf-8")
+    told = CONFIGURATION.format(folder=str(package.folder), package=package.name)
+    (source / "conf.py").write_text(told, encoding="utf-8")
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", str(source), str(out)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return html.unescape(re.sub(r"<[^>]+>", "", (out / "index.html").read_text(encoding="utf-8")))
+
+
+def test_sphinx_makes_pages_of_the_shipped_package(shipped, tmp_path):
+    text = pages(shipped, SHIPPED, tmp_path)
+    assert "Estimated Roll Angle in deg: -327.68 to 327.67." in text
+    assert "estimated_roll_angle_deg: float" in text
+    assert "Requests telemetry, or reads a setting." in text
+
+
+def test_examples_in_docstrings_are_true(shipped):
+    found = [doctest.testmod(shipped.module(name)) for name in ("_scales", "_codec")]
+    assert [one.failed for one in found] == [0, 0] and all(one.attempted for one in found)
+
+
+@pytest.mark.parametrize("name", ["odd", "ordered"])
+def test_sphinx_takes_the_words_of_any_icd_as_words(name, request, tmp_path):
+    package = request.getfixturevalue(name)
+    modules = [
+        f"{node.name}._types.{path.stem}"
+        for node in package.icd.nodes
+        for path in sorted((package.folder / package.name / node.name / "_types").glob("[!_]*.py"))
+    ]
+    assert pages(package, modules[:15], tmp_path)
