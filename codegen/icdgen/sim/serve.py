@@ -57,7 +57,7 @@ class Server:
             self.wake.clear()
             wait = IDLE if not times else min(IDLE, max(0.0, (min(times) - self.now) / 1000 + 0.0005))
             try:
-                async with asyncio.timeout(wait):  # `wait_for` loses an interrupt that comes with the wake before Python 3.12
+                async with asyncio.timeout(wait):  # `wait_for` can lose an interrupt that comes with data
                     await self.wake.wait()
             except TimeoutError:
                 continue
