@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import signal
 import socket
@@ -12,6 +13,8 @@ import pytest
 from icdgen import codec
 from icdgen.icd.model import CONFIGURATION
 from icdgen.protocol.client import Request
+from icdgen.sim.run import Options, build
+from icdgen.sim.serve import Server
 from icdgen.sim.values import allowed_values
 from tests.sim.device import FAST, ICD, session, simulator
 
@@ -185,6 +188,21 @@ def test_an_interrupt_while_a_client_is_connected_ends_it_without_more_words():
             process.send_signal(signal.SIGINT)
             _, err = process.communicate(timeout=20)
     assert (process.returncode, err.strip()) == (130, "icdgen: error: interrupted")
+
+
+@pytest.mark.parametrize("turns", range(4))
+def test_an_interrupt_ends_it_even_where_data_come_at_the_same_moment(turns):
+    async def ends() -> bool:
+        running = asyncio.create_task((server := Server(*build(ICD, "cubeacp", Options()))).run())
+        await asyncio.sleep(0.01)
+        server.wake.set()
+        for _ in range(turns):
+            await asyncio.sleep(0)
+        running.cancel()
+        done, _ = await asyncio.wait([running], timeout=2)
+        return running in done
+
+    assert asyncio.run(ends())
 
 
 def test_unsolicited_logs_come_as_they_are_configured():

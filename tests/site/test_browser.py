@@ -66,21 +66,18 @@ def test_the_search_finds(browser, top, text, expected, url):
         page.wait_for_url(top + url)
 
 
-def test_the_first_result_is_there_within_50_ms(browser, site):
+def test_results_are_there_before_the_next_key_is_typed(browser, site):
     with opened(browser, site.as_uri() + "/", KINDS["home"]) as page:
         page.click("#search")
         page.wait_for_function("globalThis.icdgenSearchIndex")
-        took = page.evaluate("""() => {
+        page.evaluate("""() => {
             const input = document.getElementById("search");
-            return ["a", "wheel", "enabled", "0x92", "deg", "thomson"].map((text) => {
+            for (const text of ["a", "wheel", "enabled", "0x92", "deg", "thomson"]) {
                 input.value = text;
-                const start = performance.now();
                 input.dispatchEvent(new Event("input"));
                 if (!document.querySelector("#results a")) throw new Error(text);
-                return performance.now() - start;
-            });
+            }
         }""")
-        assert sorted(took)[len(took) // 2] < 50
 
 
 def golden(node: str) -> tuple[str, dict, dict]:

@@ -15,16 +15,17 @@ HEAD = "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order
 
 @pytest.fixture
 def check(tmp_path, monkeypatch):
-    """Writes a file, loads it, and gives ``(code, message)`` of each finding; all of it within two seconds."""
+    """Writes a file, loads it, and gives ``(code, message)`` of each finding; all of it within two seconds of
+    processor time, as a bound of what hostile files may cost."""
     monkeypatch.chdir(tmp_path)
 
     def run(text: str, longest: int = 20_000) -> list[tuple[str, str]]:
         path = tmp_path / "demo.yaml"
         path.write_text(text, encoding="utf-8")
-        started = time.perf_counter()
+        started = time.process_time()
         loaded = load([path.relative_to(tmp_path)])
         printed = reports.get("text")(loaded.findings, loaded.texts)
-        assert time.perf_counter() - started < 2
+        assert time.process_time() - started < 2
         assert len(printed) < longest
         return [(f.code, f.message) for f in loaded.findings]
 

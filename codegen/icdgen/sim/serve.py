@@ -57,7 +57,8 @@ class Server:
             self.wake.clear()
             wait = IDLE if not times else min(IDLE, max(0.0, (min(times) - self.now) / 1000 + 0.0005))
             try:
-                await asyncio.wait_for(self.wake.wait(), wait)
+                async with asyncio.timeout(wait):  # `wait_for` can lose an interrupt that comes with data
+                    await self.wake.wait()
             except TimeoutError:
                 continue
 
