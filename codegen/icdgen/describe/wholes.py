@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.describe.steps import Steps
@@ -37,6 +38,7 @@ class Whole(NamedTuple):
     most: int
 
 
+@lru_cache(maxsize=4096)
 def whole(steps: Steps) -> Whole | None:
     """In thousandths where every raw value gives a whole number of them, else in millionths, else None."""
     for per in (1000, 1_000_000):
