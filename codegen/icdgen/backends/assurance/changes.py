@@ -44,15 +44,18 @@ class Change(NamedTuple):
 
 
 def of_field(field: Field, message: Message, node: Node) -> Iterator[tuple[Change, Field]]:
-    """The changes of a field, and what it would be; none that no field of such a type or no frame of such a length can have."""
-    size = 8 * message.length
+    """The changes of a member, and what it would be; none that no field of such a type or no frame of such a length can have."""
+    size, count = 8 * message.length, field.count or 1
     source = field.source
     for step in (-8, 8) if field.is_bytes else (-8, -1, 1, 8):
-        if 0 <= field.at + step <= size - field.bits:
+        if 0 <= field.at + step <= size - field.width:
             yield _step("offset", source, "at", field.at, step), replace(field, at=field.at + step)
     for step in _WIDER.get(field.type, ()):
-        if 0 < field.bits + step <= size - field.at:
+        if 0 < (field.bits + step) * count <= size - field.at:
             yield _step("width", source, "bits", field.bits, step), replace(field, bits=field.bits + step)
+    for step in (-1, 1) if field.count else ():
+        if 0 < field.count + step <= (size - field.at) // field.bits:
+            yield _step("count", source, "count", field.count, step), replace(field, count=field.count + step)
     for kind in OTHER_TYPES[field.type] if _is_plain(field) else ():
         if _can_be(field, kind):
             scale = field.scale if kind in ("uint", "int") else None
@@ -166,7 +169,7 @@ def _can_be(field: Field, kind: str) -> bool:
     if kind == "float":
         return field.bits in (32, 64) and not any(key in field.source for key in _OF_SCALED)
     if kind == "bytes":
-        return field.bits % 8 == field.at % 8 == 0 and not any(key in field.source for key in _OF_SCALED)
+        return not field.count and field.bits % 8 == field.at % 8 == 0 and not any(key in field.source for key in _OF_SCALED)
     return field.bits <= 64
 
 

@@ -38,6 +38,13 @@ class MessageWatch:
         rows = zip(self.lines.rows, self.vectors.rows, self._of_others[index], strict=True)
         return found + [number for number, row, others in rows if _notices(row, old, now, node, alone, others)]
 
+    def member(self, place: int, old: Field, now: Field) -> list[int]:
+        """Lines that notice that a member is another; it begins with the field at ``place``, and an array has more of them."""
+        if (old.at, old.bits, old.count) != (now.at, now.bits, now.count) and old.count:
+            fields = self.message.fields
+            return self.places((*fields[:place], *now.elements, *fields[place + old.count :]), self.node)
+        return [line for index, one in enumerate(now.elements, place) for line in self.field(index, one)]
+
     def places(self, fields: Iterable[Field], node: Node) -> list[int]:
         """Lines that notice that fields lie elsewhere, or that those of another node do."""
         changed = replace(self.message, fields=tuple(fields))

@@ -29,7 +29,7 @@ class Traced:
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """Something that a line of the ICD describes. ``row`` counts the fields or members of its message or enumeration from 1."""
+    """Something that a line of the ICD describes. ``row`` counts the members of its message or enumeration from 1."""
 
     kind: str  # "node" | "message" | "field" | "enumeration" | "member"
     node: Node
@@ -98,10 +98,14 @@ class Trace:
         for message in node.messages:
             yield Element("message", node, None, message, None, tuple(self._of_message(message, node)))
             watch = self._watches[node.name, message.name]
-            for index, field in enumerate(message.fields):
-                found = changes.of_field(field, message, node)
-                own = tuple(Traced(change, _noticed(node, watch.field(index, now))) for change, now in found)
-                yield Element("field", node, message, field, index + 1, own)
+            place = 0
+            for row, member in enumerate(message.members, 1):
+                own = tuple(
+                    Traced(change, _noticed(node, watch.member(place, member, now)))
+                    for change, now in changes.of_field(member, message, node)
+                )
+                yield Element("field", node, message, member, row, own)
+                place += len(member.elements)
 
     def _of_node(self, node: Node) -> Iterator[Traced]:
         for change, now in changes.of_node(node):
