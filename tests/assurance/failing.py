@@ -54,7 +54,7 @@ class Vectors:
         yield at, [constants._replace(answer={**constants.answer, **dict.fromkeys(of_fields, ...)})]
         for field in message["fields"]:
             at = self._after(node, at, field)
-            own = [*cases.unfit(field), *(cases.settings(field) if field in (*cases.scaled, *cases.texts) else ())]
+            own = [*cases.unfit(field), *(cases.settings(field) if "set" in field else ())]
             yield at, [_only(constants, field["name"]), *own]
         at = self._after(node, at, {"refused_lengths": message["refused_lengths"]}, "")
         yield at, list(cases.refused_lengths())

@@ -202,7 +202,7 @@ def _views(draw, fields: list[dict], used: int, names: Names, enums: list[dict],
         field = {**draw(_field(enums)), **draw(_own_orders())}
         if field["type"] in ("bytes", "text"):
             continue
-        if field["type"] in ("uint", "int") and draw(st.booleans()):
+        if field["type"] in ("uint", "int") and "special" not in field and draw(st.booleans()):
             field["bits"] = min(field["bits"], place["bits"])
         for key in ("const", "count", *(("byte_order", "bit_order") if field["type"] == "bool" else ())):
             field.pop(key, None)

@@ -32,7 +32,7 @@ def test_a_star_brings_all_that_a_node_has(shipped):
     told = run(shipped, f"{code}print(EstimatedAttitudeAngles.ID, TELEMETRY[146] is EstimatedAttitudeAngles, NAME)")
     assert told == "146 True cubeacp"
     missing = "print([n for n in dir(cubeacp) if n[0] != '_' and n not in globals()])"
-    assert run(shipped, f"{code}{missing}") == "['LINK', 'TYPE_CHECKING', 'annotations']"
+    assert run(shipped, f"{code}{missing}") == "['TYPE_CHECKING', 'annotations']"
 
 
 def test_the_wire_layer_is_loaded_when_it_is_used(shipped):
@@ -92,7 +92,7 @@ def test_every_name_is_listed_and_there(package):
         module = package.module(node.name)
         for name in module._HOMES:
             assert name in dir(module)
-            assert getattr(module, name).__name__ == name
+            assert name == "LINK" or getattr(module, name).__name__ == name
 
 
 def test_a_name_that_is_not_there_is_an_attribute_error(shipped):

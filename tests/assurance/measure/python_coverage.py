@@ -30,7 +30,8 @@ _SAYS = (
     "What the golden vectors execute of the generated package, line by line. What is made of the ICDs are declarations: "
     "classes with fields, tables of facts, and functions without a branch, which is checked; so every line is every way. "
     "What type checkers alone read is not counted.",
-    "Besides the testee of the conformance run a few lines ask each node for the message of every id. What encodes and "
+    "Besides the testee of the conformance run a few lines ask each node for its link, for the message of every id and for "
+    "one that it does not have. What encodes and "
     "decodes is compiled by the runtime from the declarations when it is first used. The runtime is the same for every ICD "
     "and has tests of its own, which are not counted here.",
 )
@@ -38,12 +39,22 @@ _TYPES_ONLY = "TYPE_CHECKING"  # False whenever the program runs
 _ASKED = "asked_by_id"
 _BY_ID = """\
 from importlib import import_module
+from importlib.util import find_spec
 
 for node, direction, id, length in {asked}:
     module = import_module("{package}." + node)
     assert set(module._HOMES) <= set(dir(module))
     message = getattr(module, "decode_" + direction)(id, bytes(length))
     assert id in message.IDS and message.LENGTH == length
+for node in {nodes}:
+    module = import_module("{package}." + node)
+    if find_spec("{package}." + node + "._link"):
+        assert import_module("{package}." + node + "._link").LINK.node == node
+    for direction in ("telecommand", "telemetry"):
+        try:
+            getattr(module, "decode_" + direction)(-1, b"")
+        except import_module("{package}").UnknownIdError:
+            pass
 """
 _BRANCHES = (ast.If, ast.IfExp, ast.For, ast.While, ast.BoolOp, ast.Try, ast.Match)
 
@@ -92,7 +103,9 @@ def by_id(icd: Icd, built: Path) -> list[messages.Result]:
         for one, name in direction.messages
     ]
     package = next(top.glob("*/_base.py")).parent.name
-    (top / f"{_ASKED}.py").write_text(_BY_ID.format(asked=asked, package=package), "utf-8")
+    (top / f"{_ASKED}.py").write_text(
+        _BY_ID.format(asked=asked, nodes=[node.name for node in icd.nodes], package=package), "utf-8"
+    )
     command = [sys.executable, traced.__file__, str(built / "out" / "lines.json"), str(top), _ASKED]
     execute("env", f"PYTHONPATH={top}", "PYTHONDONTWRITEBYTECODE=1", *command)
     return []

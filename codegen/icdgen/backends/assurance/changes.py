@@ -169,7 +169,11 @@ def _can_be(field: Field, kind: str) -> bool:
     if kind == "float":
         return field.bits in (32, 64) and not any(key in field.source for key in _OF_SCALED)
     if kind == "bytes":
-        return not field.count and field.bits % 8 == field.at % 8 == 0 and not any(key in field.source for key in _OF_SCALED)
+        return (
+            not field.count
+            and field.bits % 8 == field.at % 8 == 0
+            and not any(key in field.source for key in _OF_SCALED)
+        )
     return field.bits <= 64
 
 

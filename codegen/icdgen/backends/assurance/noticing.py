@@ -40,7 +40,7 @@ class MessageWatch:
 
     def member(self, place: int, old: Field, now: Field) -> list[int]:
         """Lines that notice that a member is another; it begins with the field at ``place``, and an array has more of them."""
-        if (old.at, old.bits, old.count) != (now.at, now.bits, now.count) and old.count:
+        if old.count and _place(old) != _place(now):
             fields = self.message.fields
             return self.places((*fields[:place], *now.elements, *fields[place + old.count :]), self.node)
         return [line for index, one in enumerate(now.elements, place) for line in self.field(index, one)]
@@ -98,12 +98,21 @@ def _notices(row: Row, old: Field, now: Field, node: Node, alone: Message, other
     if answer is None:
         return True
     raw, read, frame = row.raw[old.name], answer[0][now.name], answer[1]
+    if (
+        now.view and codec.decode(node, alone, row.encoded)[now.name] != raw
+    ):  # it is read from what the others are encoded to, too
+        return True
     if _shown(now, read) != _shown(old, raw) or _name(now, read) != _name(old, raw):
         return True
     if now.type == "text" or now.type != old.type or now.scale is not old.scale or now.bits != old.bits:
         if _physical(now, read) != _physical(old, raw) or _set_back(now, read) != _set_back(old, raw):
             return True
     return _number(frame) | others != _number(row.encoded)
+
+
+def _place(field: Field) -> tuple[object, ...]:
+    """What says where its bits are."""
+    return (field.at, field.bits, field.count, field.byte_order, field.bit_order)
 
 
 def _answer(node: Node, message: Message, frame: bytes) -> tuple[Raw, bytes] | None:
@@ -145,13 +154,15 @@ def _name(field: Field, raw: Any) -> object:
 
 def _physical(field: Field, raw: Any) -> object:
     if field.type == "text":
-        return known_text(raw)
+        return (known_text(raw),)
     return None if field.scale is None else bits_of(_double(field.scale, raw))
 
 
 def _set_back(field: Field, raw: Any) -> object:
     """What setting the physical value of the raw value gives."""
-    return None if field.scale is None else _attempt(codec.raw_from_physical, field, _double(field.scale, raw))
+    if field.scale is None or field.view:
+        return None
+    return _attempt(codec.raw_from_physical, field, _double(field.scale, raw))
 
 
 def _double(scale: Scale, raw: int) -> float:

@@ -99,13 +99,11 @@ class Trace:
             yield Element("message", node, None, message, None, tuple(self._of_message(message, node)))
             watch = self._watches[node.name, message.name]
             place = 0
-            for row, member in enumerate(message.members, 1):
-                own = tuple(
-                    Traced(change, _noticed(node, watch.member(place, member, now)))
-                    for change, now in changes.of_field(member, message, node)
-                )
-                yield Element("field", node, message, member, row, own)
-                place += len(member.elements)
+            for row, field in enumerate(message.members, 1):
+                found = changes.of_field(field, message, node)
+                own = tuple(Traced(change, _noticed(node, watch.member(place, field, now))) for change, now in found)
+                yield Element("field", node, message, field, row, own)
+                place += len(field.elements)
 
     def _of_node(self, node: Node) -> Iterator[Traced]:
         for change, now in changes.of_node(node):

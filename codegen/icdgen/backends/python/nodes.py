@@ -18,10 +18,10 @@ def values(node: NodeDescription, description: Description) -> dict[str, object]
     for owner in map(description.node, (*description.icd.included(node.model), node.model)):
         both: tuple[MessageDescription | EnumDescription, ...] = (*owner.messages, *owner.enums)
         declared += ((names.home(one, node.name, ".."), names.class_name(one)) for one in both)
-    linked = [("._link", "LINK")] if node.is_linked else []
+    declared += [("._link", "LINK")] if node.is_linked else []
     return {
         "doc": docstring(0, _documentation(node.model)),
-        "imports": sorted(f"from {home} import {name} as {name}" for home, name in declared + linked),
+        "imports": sorted(f"from {home} import {name} as {name}" for home, name in declared),
         "homes": [(name, home) for home, name in sorted(declared)],
         "telecommands": sorted((one.model.telecommand_id or 0, names.class_name(one)) for one in node.telecommands),
         "enums": [(one.model.name, names.class_name(one)) for one in node.enums],
