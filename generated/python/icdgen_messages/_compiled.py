@@ -8,6 +8,7 @@ one byte are looked up in a table of 256 rows, fields that cross bytes are put t
 from __future__ import annotations
 
 import struct
+from itertools import groupby
 
 from . import _codec, _floats, _lazy
 from ._layout import byte_order, pieces
@@ -299,11 +300,15 @@ class Codec:
         self._store(info, value)
 
     def _format(self) -> str:
-        reached, codes = 0, ">" if self.order == "big" else "<"
+        reached = 0
+        codes: list[str] = []
         for item in self._items:
-            codes += f"{item.byte - reached}x{item.code}"
+            codes += ["x"] * (item.byte - reached) + [item.code]
             reached = item.byte + item.size
-        return f"{codes}{self.message.LENGTH - reached}x"
+        codes += ["x"] * (self.message.LENGTH - reached)
+        runs = ((code, len([*same])) for code, same in groupby(codes))
+        order = ">" if self.order == "big" else "<"
+        return order + "".join(f"{n}{c}" if len(c) == 1 else c * n for c, n in runs)
 
 
 def _is_run(info: _lazy.FieldInfo) -> bool:

@@ -131,6 +131,7 @@ _HOMES: dict[str, str] = {
     "TelecommandAcknowledge": "..common._types.telecommand_acknowledge",
     "UnixTimeSaveToFlash": "..common._types.unix_time_save_to_flash",
     "UploadBlockComplete": "..common._types.upload_block_complete",
+    "LINK": "._link",
     "BootSetProgramsList": "._types.boot_set_programs_list",
     "ClearErrorFlags": "._types.clear_error_flags",
     "CopyToInternalFlash": "._types.copy_to_internal_flash",
@@ -231,8 +232,7 @@ def decode_telemetry(id: int, data: _lazy.Buffer) -> _lazy.Message:
 if not TYPE_CHECKING:
 
     def __getattr__(name):
-        homes = {"LINK": "._link"} if name == "LINK" else _HOMES
-        return _lazy.attribute(globals(), homes, name)
+        return _lazy.attribute(globals(), _HOMES, name)
 
     def __dir__():
-        return sorted({*globals(), *_HOMES, "LINK"})
+        return sorted({*globals(), *_HOMES})

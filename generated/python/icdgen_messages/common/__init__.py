@@ -70,6 +70,7 @@ DIGEST = "7bb2ab51d9f372bfd0ec3843143b02a9c37228ea5481ba982ca3b623ab0407e4"
 """SHA-256 of the ICD that this was generated from."""
 
 _HOMES: dict[str, str] = {
+    "LINK": "._link",
     "AdvanceFileListReadPointer": "._types.advance_file_list_read_pointer",
     "AdvanceLogPointer": "._types.advance_log_pointer",
     "BlockChecksum": "._types.block_checksum",
@@ -205,8 +206,7 @@ def decode_telemetry(id: int, data: _lazy.Buffer) -> _lazy.Message:
 if not TYPE_CHECKING:
 
     def __getattr__(name):
-        homes = {"LINK": "._link"} if name == "LINK" else _HOMES
-        return _lazy.attribute(globals(), homes, name)
+        return _lazy.attribute(globals(), _HOMES, name)
 
     def __dir__():
-        return sorted({*globals(), *_HOMES, "LINK"})
+        return sorted({*globals(), *_HOMES})
