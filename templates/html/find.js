@@ -12,7 +12,7 @@ const icdgenFind = (() => {
   const WITHIN = 0.4;
   const CLOSE = 0.6;
   // Words that generated code puts around names; they say nothing about which one is meant.
-  const AROUND = new Set("h t id ids set get const init encode decode from to bytes length len raw physical value is min max try new struct enum class icd messages default unchecked telemetry telecommand limits misfit".split(" "));
+  const AROUND = new Set("h t id ids set get const init encode decode from to bytes length len raw physical value is min max try new struct enum class icd messages default unchecked telemetry telecommand limits misfit client send request receive".split(" "));
 
   const squashed = (text) => text.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "");
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -18,12 +19,22 @@ FAST = Settings(reply_timeout=150, retries=4, poll_interval=5, poll_timeout=2000
 ICD = icd_of()
 
 
+def _interruptible() -> None:
+    """A shell starts what runs in the background without an interrupt, and children inherit that."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @contextmanager
 def simulator(*options: str) -> Iterator[tuple[str, subprocess.Popen]]:
     """Where it listens, and the process."""
     command = [sys.executable, "-m", "icdgen", "sim", *options]
     process = subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        command,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=_interruptible,
     )
     try:
         place = process.stdout.readline().strip()

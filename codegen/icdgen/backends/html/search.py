@@ -77,7 +77,8 @@ def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[
     if message.kind == CONFIGURATION:
         phrases += [f"telecommand {message.set_id}", f"telemetry {message.get_id}"]
     phrases += _table(message.table)
-    about = f"{node.name} {message.group} {message.summary}"
+    speakers = " ".join(one.name for one in relations.speakers[node.name])
+    about = f"{speakers} {message.group} {message.summary}"
     context = f"{message.kind} {ids} · {node.title}"
     yield Entry("message", message.name, context, own, about, tuple(phrases), links.message(message))
     for field in message.fields:
