@@ -57,20 +57,23 @@ def _whole(per: int, factor: int, offset: int, steps: Steps) -> Whole:
     return Whole(per, factor, offset, low[0], high[0], least, most)
 
 
+@lru_cache(maxsize=4096)
 def whole_bits(found: Whole, storage: Storage) -> int | None:
     """32 or 64: bits of the integer that holds them, whatever the raw value's own holds; None where no such integer does."""
-    bits = 32 if _computable(found, storage, 32) else 64
+    bits = 32 if computable(storage, found.factor, found.offset, 32) else 64
     ends = Storage(bits, True)
     differences = max(found.least, ends.min) - found.offset, min(found.most, ends.max) - found.offset
-    return bits if _computable(found, storage, bits) and _within(64, *differences) else None
+    return bits if computable(storage, found.factor, found.offset, bits) and within(64, *differences) else None
 
 
-def _computable(found: Whole, storage: Storage, bits: int) -> bool:
-    products = storage.min * found.factor, storage.max * found.factor
-    return _within(bits, *products, *(product + found.offset for product in products), found.factor, found.offset)
+def computable(storage: Storage, factor: int, offset: int, bits: int) -> bool:
+    """Whether raw * factor + offset stays within a signed integer whatever the storage holds, so that nothing overflows."""
+    products = storage.min * factor, storage.max * factor
+    return within(bits, *products, *(product + offset for product in products), factor, offset)
 
 
-def _within(bits: int, *values: int) -> bool:
+def within(bits: int, *values: int) -> bool:
+    """Whether a signed integer holds them and their negatives."""
     most = (1 << bits - 1) - 1
     return all(-most <= value <= most for value in values)
 

@@ -46,16 +46,6 @@ def _scaled(steps: Steps, storage: Storage) -> Scaled:
     return Scaled(_double_getter(steps, storage), _double_setter(steps, storage), _whole(steps, storage))
 
 
-def _within(most: int, *values: int) -> bool:
-    return all(-most <= value <= most for value in values)
-
-
-def _computable(storage: Storage, factor: int, offset: int, most: int) -> bool:
-    """Whether raw * factor + offset stays within bounds whatever the storage holds, so that nothing overflows."""
-    products = storage.min * factor, storage.max * factor
-    return _within(most, *products, *(product + offset for product in products), factor, offset)
-
-
 def int64(value: int) -> str:
     """A literal of 64 bits."""
     return "INT64_MIN" if value == -INT64 - 1 else f"INT64_C({value})" if abs(value) > INT32 else str(value)
@@ -71,7 +61,7 @@ def _double_getter(steps: Steps, storage: Storage) -> str:
     factor, offset, divisor = steps.terms
     if steps.is_wide:
         return f"icdgen_wide_physical_{'i' if storage.signed else 'u'}64({RAW}, &scale)"
-    if steps.exact_in_doubles and _computable(storage, factor, offset, INT64):
+    if steps.exact_in_doubles and wholes.computable(storage, factor, offset, 64):
         return f"icdgen_quotient({_whole_getter(factor, offset, 64, storage)}, {int64(divisor)})"
     kind = f"{'i' if storage.signed else 'u'}64"
     if offset > INT64:  # has no literal, but its negative has
@@ -118,12 +108,12 @@ def _whole(steps: Steps, storage: Storage) -> Whole | None:
     if found is None:
         return None
     factor, offset = found.factor, found.offset
-    bits, most_of_type = (32, INT32) if _computable(storage, factor, offset, INT32) else (64, INT64)
-    least, most = max(found.least, -most_of_type - 1), min(found.most, most_of_type)
-    differences = least - offset, most - offset
-    if not (_computable(storage, factor, offset, most_of_type) and _within(INT64, *differences)):
+    bits = wholes.whole_bits(found, storage)
+    if bits is None:
         return None
-    wide = 32 if bits == 32 and _within(INT32, *differences) else 64
+    most_of_type = INT32 if bits == 32 else INT64
+    least, most = max(found.least, -most_of_type - 1), min(found.most, most_of_type)
+    wide = 32 if bits == 32 and wholes.within(32, least - offset, most - offset) else 64
     return Whole(
         per=found.per,
         type=f"int{bits}_t",
