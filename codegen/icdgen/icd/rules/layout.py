@@ -20,7 +20,8 @@ WIDTHS = {
     "float": (frozenset({32, 64}), "32 or 64 bits"),
 }
 Overlap = tuple[Fault, tuple[int, int]]  # and the two fields as they were read
-_OVERLAPPING = "correct `at` or `bits`; if it reads the same bits in another way: `view: true`"
+_OVERLAPPING = "correct `at` or `bits`"
+_VIEW = f"{_OVERLAPPING}; if it reads the same bits in another way: `view: true`"
 _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 
@@ -99,7 +100,12 @@ def _overlap(first: Field, second: Field, bits: str = "") -> Overlap:
     start, end = max(first.at, second.at), min(first.at + first.bits, second.at + second.bits)
     bits = bits or (f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}")
     other = f"{quote(first.name)} ({line_of(first.source.place, place)})"
-    fault = Fault(second.source, place, f"{quote(second.name)} overlaps {other} in {bits}", _OVERLAPPING)
+    fault = Fault(
+        second.source,
+        place,
+        f"{quote(second.name)} overlaps {other} in {bits}",
+        _VIEW if second.element is None else _OVERLAPPING,
+    )
     return fault, (id(first.source), id(second.source))
 
 
