@@ -8,12 +8,13 @@ from typing import NamedTuple
 from icdgen import layout, naming
 from icdgen.describe import steps
 from icdgen.describe.bounds import Bound, bounds
-from icdgen.describe.comments import Comment, field_comment, message_comment
+from icdgen.describe.comments import Comment, field_comment, message_comment, words
 from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.errata import tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding, storage_of
+from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
 
@@ -84,6 +85,14 @@ class FieldDescription(Named[Field]):
     def is_text(self) -> bool:
         """Whether its bytes are characters: its physical value is a text, which every language gives and takes."""
         return self.model.type == "text"
+
+    def whole_name(self, per: int) -> str:
+        """``estimated_roll_angle_mdeg``: its physical value in whole parts of the unit."""
+        return f"{self.declared}_{part_of_unit(self.model, per)[0]}"
+
+    def whole_title(self, per: int) -> str:
+        """``Estimated Roll Angle in thousandths of deg``"""
+        return f"{words(self.model.name)} in {words(part_of_unit(self.model, per)[1])}"
 
     @property
     def size(self) -> int:

@@ -209,9 +209,7 @@ def position(node: Node, one: Field) -> Position:
     """The bits that the field lies on, comparable between nodes of different byte and bit order."""
     if one.is_bytes:
         return (byte_range(one),)
-    return (
-        tuple(piece for element in one.elements for piece in pieces(element, node)) if one.count else pieces(one, node)
-    )
+    return tuple(piece for element in one.elements for piece in pieces(element, node))
 
 
 def kind(one: Field) -> str:

@@ -10,8 +10,7 @@ from icdgen.backends.c.statement import call
 from icdgen.backends.c.text import described
 from icdgen.backends.c.types import type_of
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.comments import physical_comment, physical_name, words
-from icdgen.describe.wholes import part_of_unit
+from icdgen.describe.comments import physical_comment, physical_name
 
 ELEMENT = "element"
 """What accessors call the index of an array's element."""
@@ -88,17 +87,12 @@ def whole_accessors(message: MessageDescription) -> list[Accessor]:
     return [_whole(field, whole) for field, whole in wholes if whole is not None]
 
 
-def whole_name(field: FieldDescription, whole: physical.Whole) -> str:
-    """``estimated_roll_angle_mdeg``"""
-    return f"{field.declared}_{part_of_unit(field.model, whole.per)[0]}"
-
-
 def _whole(field: FieldDescription, whole: physical.Whole) -> Accessor:
-    what = f"{words(field.model.name)} in {words(part_of_unit(field.model, whole.per)[1])}"
+    what = field.whole_title(whole.per)
     tests = [f"value < {whole.least}"] if whole.least is not None else []
     tests += [f"value > {whole.most}"] if whole.most is not None else []
     return Accessor(
-        end=whole_name(field, whole),
+        end=field.whole_name(whole.per),
         type=whole.type,
         about=f"{what}, exact: {whole.low} to {whole.high}.",
         what=what,

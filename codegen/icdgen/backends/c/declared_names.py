@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names, physical
-from icdgen.backends.c.accessors import whole_name
 from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription
 
 FILE = "C names at file scope"
@@ -90,4 +89,4 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
 def _physical_names(field: FieldDescription) -> tuple[str, ...]:
     """What its accessors are called by: the physical value as a text or a double, and in whole parts of its unit."""
     whole = None if field.is_text else physical.scaled(field).whole
-    return (field.physical_name,) if whole is None else (field.physical_name, whole_name(field, whole))
+    return (field.physical_name,) if whole is None else (field.physical_name, field.whole_name(whole.per))

@@ -7,7 +7,6 @@ from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from icdgen.backends.c import names, physical
-from icdgen.backends.c.accessors import whole_name
 from icdgen.backends.c.text import literal, plain
 from icdgen.backends.c.types import type_of
 from icdgen.backends.lines import in_rows
@@ -212,7 +211,7 @@ def _whole(field: FieldDescription) -> Accessors | None:
         exact = field.steps.physical(raw) * whole.per
         assert exact.denominator == 1
         lines.append(f"{{{_unsigned(raw)}, {physical.int64(int(exact))}}},")
-    return _accessors(field, whole_name(field, whole), whole.type, lines)
+    return _accessors(field, field.whole_name(whole.per), whole.type, lines)
 
 
 def _unsigned(value: int) -> str:

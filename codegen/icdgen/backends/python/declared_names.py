@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.backends import Identifier
 from icdgen.backends.python import names
-from icdgen.backends.python.fields import whole, whole_name
+from icdgen.backends.python.fields import whole
 from icdgen.describe import Description, FieldDescription, MessageDescription
 from icdgen.naming import DEVICES
 
@@ -39,7 +39,7 @@ def _of_field(field: FieldDescription) -> Iterator[str]:
         yield field.physical_name
     found = whole(field)
     if found is not None:
-        yield whole_name(field, found)
+        yield field.whole_name(found.per)
 
 
 def _message(message: MessageDescription, scope: str) -> Iterator[Identifier]:

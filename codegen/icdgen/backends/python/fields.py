@@ -8,7 +8,6 @@ from icdgen.backends.lines import STEP, exploded
 from icdgen.backends.python.names import class_name
 from icdgen.backends.python.text import literal
 from icdgen.describe import FieldDescription, wholes
-from icdgen.describe.comments import words
 from icdgen.describe.wholes import Whole
 
 _WIDTH = 120  # columns of a declaration
@@ -97,21 +96,15 @@ def whole(field: FieldDescription) -> Whole | None:
     return None if field.steps is None else wholes.whole(field.steps)
 
 
-def whole_name(field: FieldDescription, found: Whole) -> str:
-    """``estimated_roll_angle_mdeg``"""
-    return f"{field.declared}_{wholes.part_of_unit(field.model, found.per)[0]}"
-
-
 def exact(field: FieldDescription, found: Whole) -> str:
     """``estimated_roll_angle_mdeg: int = _base.whole(...)``"""
     note = "tuple[int, ...]" if field.count else "int"
-    return _statement(whole_name(field, found), note, "whole", [str(found.factor), str(found.offset)])
+    return _statement(field.whole_name(found.per), note, "whole", [str(found.factor), str(found.offset)])
 
 
 def whole_comment(field: FieldDescription, found: Whole) -> str:
     """What it is, and its range."""
-    unit = words(wholes.part_of_unit(field.model, found.per)[1])
-    return f"{words(field.model.name)} in {unit}, exact: {found.low} to {found.high}."
+    return f"{field.whole_title(found.per)}, exact: {found.low} to {found.high}."
 
 
 def _statement(name: str, note: str, call: str, items: list[str]) -> str:

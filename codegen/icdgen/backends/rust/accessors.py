@@ -9,8 +9,8 @@ from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.physical import physical, raw_value, single
 from icdgen.backends.rust.text import WIDTH, assigned, double, integer, string
 from icdgen.describe import FieldDescription
-from icdgen.describe.comments import physical_comment, physical_name, words
-from icdgen.describe.wholes import Whole, part_of_unit, whole, whole_bits
+from icdgen.describe.comments import physical_comment, physical_name
+from icdgen.describe.wholes import Whole, whole, whole_bits
 
 
 class Accessor(NamedTuple):
@@ -49,11 +49,11 @@ def accessors(field: FieldDescription) -> list[Accessor]:
     if known is None:
         return found
     exact, bits = known
-    what = f"{words(field.model.name)} in {words(part_of_unit(field.model, exact.per)[1])}"
+    what = field.whole_title(exact.per)
     value = "value" if bits == 64 else "value.into()"
     found.append(
         Accessor(
-            whole_name(field, exact),
+            field.whole_name(exact.per),
             f"i{bits}",
             f"{what}, exact: {exact.low} to {exact.high}.",
             _whole_value(field, exact, bits),
@@ -75,11 +75,6 @@ def whole_of(field: FieldDescription) -> tuple[Whole, int] | None:
     exact = whole(field.steps) if field.steps is not None and not field.steps.is_wide else None
     bits = None if exact is None else whole_bits(exact, field.storage)
     return None if exact is None or bits is None else (exact, bits)
-
-
-def whole_name(field: FieldDescription, exact: Whole) -> str:
-    """``estimated_roll_angle_mdeg``"""
-    return f"{field.declared}_{part_of_unit(field.model, exact.per)[0]}"
 
 
 def _whole_value(field: FieldDescription, exact: Whole, bits: int) -> str:

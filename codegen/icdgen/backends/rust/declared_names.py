@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.backends import Identifier
 from icdgen.backends.rust import names
-from icdgen.backends.rust.accessors import single_name, whole_name, whole_of
+from icdgen.backends.rust.accessors import single_name, whole_of
 from icdgen.describe import Description, MessageDescription, NodeDescription
 from icdgen.naming import DEVICES
 
@@ -74,7 +74,7 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
             yield field.identifier(methods, single_name(field))
         known = whole_of(field)
         if known is not None:
-            name = whole_name(field, known[0])
+            name = field.whole_name(known[0].per)
             yield field.identifier(methods, name)
             if not is_view:
                 yield field.identifier(methods, f"set_{name}")
