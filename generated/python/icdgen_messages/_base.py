@@ -5,7 +5,7 @@ from __future__ import annotations
 
 # Itself: what annotations name is loaded when they are evaluated.
 from . import _lazy
-from ._fields import FieldInfo, View, field, scaled, text, whole
+from ._fields import FieldInfo, Form, field, scaled, text, whole
 
 __all__ = [
     "FieldInfo",
@@ -55,7 +55,7 @@ class MessageType(type):
                 if isinstance(declared, FieldInfo):
                     declared.attribute = key
                     infos.append(namespace.pop(key))
-                elif isinstance(declared, View):
+                elif isinstance(declared, Form):
                     namespace[key] = declared.property_of(infos[-1], key)
                     del notes[key]
             names = tuple(info.attribute for info in infos)

@@ -135,7 +135,7 @@ class FieldInfo:
         return f"FieldInfo({', '.join(values)})"
 
 
-class View:
+class Form:
     """Another attribute of the field that is declared before it: its value in another form."""
 
     __slots__ = ("kind", "terms")
@@ -155,12 +155,12 @@ class View:
         return _number_property(info, self)
 
 
-def _number_property(info: FieldInfo, view: View) -> property:
+def _number_property(info: FieldInfo, form: Form) -> property:
     if info.elements:
-        return _array_property(info, view)
-    attribute, terms = info.attribute, view.terms
+        return _array_property(info, form)
+    attribute, terms = info.attribute, form.terms
     p, c, q = terms
-    is_whole = view.kind == "whole"
+    is_whole = form.kind == "whole"
 
     def get_whole(self: Any) -> int:
         value: int = getattr(self, attribute) * p + c
@@ -176,10 +176,10 @@ def _number_property(info: FieldInfo, view: View) -> property:
     return property(get_whole if is_whole else get_physical, set_nearest)
 
 
-def _array_property(info: FieldInfo, view: View) -> property:
-    attribute, terms = info.attribute, view.terms
+def _array_property(info: FieldInfo, form: Form) -> property:
+    attribute, terms = info.attribute, form.terms
     p, c, q = terms
-    is_whole = view.kind == "whole"
+    is_whole = form.kind == "whole"
 
     def get_whole(self: Any) -> tuple[int, ...]:
         return tuple(raw * p + c for raw in getattr(self, attribute))
@@ -234,12 +234,12 @@ def scaled(p: int, c: int, q: int, *, default: _lazy.Any) -> _lazy.Any:
 
     Setting it takes the nearest raw value, of two the even one. Raises `RangeError`.
     """
-    return View("scaled", (p, c, q))
+    return Form("scaled", (p, c, q))
 
 
 def whole(p: int, c: int, *, init: _lazy.Literal[False] = False) -> _lazy.Any:
     """The exact ``raw * p + c`` of the field above, in parts of its unit, set likewise."""
-    return View("whole", (p, c, 1))
+    return Form("whole", (p, c, 1))
 
 
 def text(*, default: str) -> _lazy.Any:
@@ -247,4 +247,4 @@ def text(*, default: str) -> _lazy.Any:
 
     A byte that is not ASCII reads as U+FFFD. Setting it raises `RangeError`.
     """
-    return View("text")
+    return Form("text")

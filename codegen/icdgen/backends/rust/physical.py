@@ -17,8 +17,18 @@ def has_constant(field: FieldDescription) -> bool:
     """Whether code needs the constant of its scale: to set it, to see whether it fits, or to compute its physical value."""
     if not field.model.view:
         return field.steps is not None or field.is_narrow
-    start = f"{field.declared.upper()}."
-    return field.steps is not None and (physical(field).startswith(start) or single(field).startswith(start))
+    return field.steps is not None and not (_in_doubles(field) and _in_singles(field))
+
+
+def _in_doubles(field: FieldDescription) -> bool:
+    """Whether every step of the physical value is exact in doubles."""
+    assert field.steps is not None
+    return field.storage.bits <= 32 and not field.steps.is_wide and field.steps.exact_in_doubles
+
+
+def _in_singles(field: FieldDescription) -> bool:
+    assert field.steps is not None
+    return field.storage.bits <= 16 and not field.steps.is_wide and field.steps.exact_up_to(EXACT_SINGLE)
 
 
 def raw_value(field: FieldDescription) -> str:
@@ -32,7 +42,7 @@ def physical(field: FieldDescription) -> str:
     In doubles where every step is exact in them, else through 128-bit integers of the support module.
     """
     assert field.steps is not None
-    if field.storage.bits > 32 or field.steps.is_wide or not field.steps.exact_in_doubles:
+    if not _in_doubles(field):
         return f"{field.declared.upper()}.physical({raw_value(field)})"
     return _quotient(field.steps, f"f64::from({raw_value(field)})")
 
@@ -40,7 +50,7 @@ def physical(field: FieldDescription) -> str:
 def single(field: FieldDescription) -> str:
     """The same in single precision."""
     assert field.steps is not None
-    if field.storage.bits > 16 or field.steps.is_wide or not field.steps.exact_up_to(EXACT_SINGLE):
+    if not _in_singles(field):
         return f"{field.declared.upper()}.single({raw_value(field)})"
     return _quotient(field.steps, f"f32::from({raw_value(field)})")
 
