@@ -20,7 +20,6 @@ import pytest
 
 from icdgen import codec
 from icdgen.backends.c import physical
-from icdgen.backends.c.accessors import whole_name
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.types import type_of
 from icdgen.describe import FieldDescription, describe
@@ -81,8 +80,8 @@ def row(field: FieldDescription) -> dict[str, object]:
         "get_whole": None,
     }
     if whole:
-        found["get_whole"] = f"{name}_{whole_name(field, whole)}"
-        found["set_whole"] = f"{name}_set_{whole_name(field, whole)}"
+        found["get_whole"] = f"{name}_{field.whole_name(whole.per)}"
+        found["set_whole"] = f"{name}_set_{field.whole_name(whole.per)}"
         found["whole"] = whole.type
     return found
 

@@ -10,7 +10,6 @@ import jinja2
 
 from icdgen import codec
 from icdgen.backends.c import physical
-from icdgen.backends.c.accessors import whole_name
 from icdgen.backends.c.names import stem
 from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.links import links_of
@@ -34,7 +33,7 @@ def source(icd: Icd) -> str:
 
 def _message(message: MessageDescription) -> dict[str, Any]:
     wholes = {
-        field.model.name: (whole_name(field, whole), whole)
+        field.model.name: (field.whole_name(whole.per), whole)
         for field in message.fields
         if field.steps is not None and (whole := physical.scaled(field).whole)
     }
