@@ -52,6 +52,12 @@ class FieldDescription(Named[Field]):
         """How many elements an array has that stands as one; else 0."""
         return self.model.count
 
+    @property
+    def is_open(self) -> bool:
+        """Whether it is the open end of its message, or an element of that."""
+        tail, element = self.message.model.tail, self.model.element
+        return tail is not None and tail.name == (element.array if element else self.model.name)
+
     @cached_property
     def elements(self) -> tuple[FieldDescription, ...]:
         """The elements of an array that stands as one; else none."""
@@ -128,7 +134,8 @@ class FieldDescription(Named[Field]):
 
     @cached_property
     def comment(self) -> Comment:
-        return field_comment(self.model, told_elsewhere(self.model, self.message.tellers) if self.model.errata else {})
+        told = told_elsewhere(self.model, self.message.tellers) if self.model.errata else {}
+        return field_comment(self.model, told, self.message.model.tail)
 
 
 class Id(NamedTuple):
@@ -137,6 +144,16 @@ class Id(NamedTuple):
     name: str
     value: int
     comment: str
+
+
+class TailDescription(NamedTuple):
+    """The open end of a message: see `icdgen.icd.model.Tail`."""
+
+    part: FieldDescription  # the array as one, or the bytes or text
+    counter: FieldDescription  # how many elements there are; implied, or a field of the frame
+    least: int  # bytes of a frame without any element
+    step: int  # bytes of an element
+    most: int  # elements
 
 
 class MessageDescription(Named[Message]):
@@ -177,6 +194,20 @@ class MessageDescription(Named[Message]):
 
     def _owners(self, fields: tuple[FieldDescription, ...]) -> tuple[FieldDescription, ...]:
         return tuple(field for field in fields if not field.model.view) if self.views else fields
+
+    @cached_property
+    def tail(self) -> TailDescription | None:
+        """Its open end, where frames differ in length."""
+        tail = self.model.tail
+        if tail is None:
+            return None
+        part, counter = (next(one for one in self.members if one.model.name == name) for name in (tail.name, tail.counter))
+        return TailDescription(part, counter, self.model.least, tail.step, tail.most)
+
+    @property
+    def sent(self) -> tuple[FieldDescription, ...]:
+        """Members that have bits in the frame: without the count that only the length of the frame tells."""
+        return self.members if self.tail is None else tuple(one for one in self.members if not one.model.implied)
 
     @cached_property
     def ids(self) -> tuple[Id, ...]:

@@ -139,6 +139,7 @@ class Field:
     view: bool = False  # it reads bits that other fields have, and has none: see `Message.owners`
     element: Element | None = None
     count: int = 0  # of an array that stands as one: its elements, of which this is the first but for its name
+    implied: bool = False  # it has no bits: the length of a frame tells its value; see `Tail`
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
@@ -189,6 +190,19 @@ class Field:
         return (1 << (self.bits - self.signed)) - 1
 
 
+@dataclass(frozen=True, slots=True)
+class Tail:
+    """The end of a message whose frames differ in length: an array, bytes or text, of which there is not always all.
+
+    A frame is the beginning of the longest one. Elements that are not in it are 0 in what it is decoded to.
+    """
+
+    name: str  # of the array, or of the field of bytes or text
+    counter: str  # the field that says how many elements there are: one of the frame, or an implied one
+    step: int  # bytes of an element
+    most: int  # elements
+
+
 def _declared(field: Field) -> Field:
     """The array of which a field is the first element; or else the field."""
     one = field.element
@@ -209,7 +223,7 @@ class Message:
 
     name: str
     kind: str  # TELECOMMAND | TELEMETRY | CONFIGURATION
-    length: int  # bytes, without the id
+    length: int  # bytes of a frame, without the id; where frames differ, of the longest
     fields: tuple[Field, ...]
     id: int | None = None
     set_id: int | None = None
@@ -225,9 +239,25 @@ class Message:
     assumptions: tuple[tuple[str, str], ...] = ()  # key and reason of what is assumed
     contains: tuple[Part, ...] = ()
     reserved: int = 0  # bytes at the end that are said to be reserved
+    tail: Tail | None = None  # where frames differ in length
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
+
+    @property
+    def least(self) -> int:
+        """Bytes of the shortest frame."""
+        return self.length - (self.tail.most * self.tail.step if self.tail else 0)
+
+    @property
+    def lengths(self) -> range:
+        """The lengths that frames have."""
+        return range(self.least, self.length + 1, self.tail.step if self.tail else 1)
+
+    @property
+    def counter(self) -> Field | None:
+        """Where frames differ in length: the field that says how many elements the end has."""
+        return next((one for one in self.fields if self.tail and one.name == self.tail.counter), None)
 
     @property
     def owners(self) -> tuple[Field, ...]:

@@ -63,8 +63,8 @@ def make(icd: Icd, node: Node) -> NodeVectors:
 
 def message_vectors(node: Node, message: Message) -> MessageVectors:
     """The vectors of one message that ``node`` declares."""
-    frames = dict.fromkeys(frame for _, frame in patterns.frames(message))
-    whys = {frame: why for why, frame in reversed(list(patterns.frames(message)))}
+    frames = dict.fromkeys(frame for _, frame in patterns.frames(message, node))
+    whys = {frame: why for why, frame in reversed(list(patterns.frames(message, node)))}
     rows = [frame_row(node, message, whys[frame], frame) for frame in frames]
     for number, raw in enumerate(patterns.raw_columns(message)):
         frame = codec.encode(node, message, raw)
@@ -76,10 +76,17 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
         message=message,
         default=codec.decode(node, message, codec.encode(node, message, message.fresh)),
         rows=tuple(rows),
-        lengths=tuple(sorted({0, max(message.length - 1, 0), message.length + 1} - {message.length})),
-        unfit={field.name: unfit for field in message.owners if (unfit := patterns.unfit(field))},
+        lengths=_refused(message),
+        unfit={field.name: unfit for field in message.owners if (unfit := patterns.unfit(message, field))},
         settings={field.name: settings(field) for field in settable},
     )
+
+
+def _refused(message: Message) -> tuple[int, ...]:
+    """Lengths that no frame has: none at all, and one byte less or more than one that frames have."""
+    ends = {end + step for end in (message.least, message.least + 1, message.length) for step in (-1, 1)}
+    ends = {message.length - 1, message.length + 1} if message.tail is None else ends
+    return tuple(sorted({0, *(max(end, 0) for end in ends)} - set(message.lengths)))
 
 
 def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
