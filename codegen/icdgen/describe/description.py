@@ -155,6 +155,11 @@ class TailDescription(NamedTuple):
     step: int  # bytes of an element
     most: int  # elements
 
+    @property
+    def is_bound(self) -> bool:
+        """Whether the integer that holds the count holds larger ones than there can be."""
+        return self.counter.storage.max > self.most
+
 
 class MessageDescription(Named[Message]):
     """A message that ``node`` declares."""
@@ -209,6 +214,11 @@ class MessageDescription(Named[Message]):
         """Members that have bits in the frame: without the count that only the length of the frame tells."""
         return self.members if self.tail is None else tuple(one for one in self.members if not one.model.implied)
 
+    @property
+    def sent_fields(self) -> tuple[FieldDescription, ...]:
+        """Fields that have bits in the frame, each element of an array."""
+        return self.fields if self.tail is None else tuple(one for one in self.fields if not one.model.implied)
+
     @cached_property
     def ids(self) -> tuple[Id, ...]:
         """The id, or the set id and the get id."""
@@ -233,7 +243,7 @@ class MessageDescription(Named[Message]):
     @property
     def is_narrow(self) -> bool:
         """Whether a field of it may be given a raw value that does not fit."""
-        return any(field.is_narrow for field in self.fields)
+        return any(field.is_narrow for field in self.fields) or (self.tail is not None and self.tail.is_bound)
 
     @property
     def has_floats(self) -> bool:
