@@ -45,7 +45,7 @@ class RustBackend:
         wired = any(node.is_linked for node in description.nodes)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         yield PurePosixPath("src/lib.rs"), render(
-            "lib.rs.j2", nodes=icd.nodes, summary=nodes.summary, wired=wired, **common
+            "lib.rs.j2", has_tails=_has_tails(icd), nodes=icd.nodes, summary=nodes.summary, wired=wired, **common
         )
         yield from _runtime("src/support", render)
         for node in description.nodes:
@@ -67,6 +67,10 @@ class RustBackend:
         return declared_names(describe(icd))
 
 
+def _has_tails(icd: Icd) -> bool:
+    return any(message.tail is not None for node in icd.nodes for message in node.messages)
+
+
 def _functions() -> dict[str, object]:
     """What templates spell names and text with."""
     from icdgen.backends.rust import text
@@ -75,7 +79,7 @@ def _functions() -> dict[str, object]:
     from icdgen.describe.comments import sentence, text_comment, words
 
     found = (
-        accessors, big_parts, field_row, names.catch_all, names.field_name, names.message_path, names.raw_type,
+        accessors, big_parts, field_row, names.catch_all, names.field_name, names.message_path, names.open_type, names.raw_type,
         names.type_name, scale_of, sentence, text.arm, text.assigned, text.described, text.doc, text.integer,
         text.prose, text.signature, text.string, text_comment, words,
     )  # fmt: skip
