@@ -87,6 +87,8 @@ def _message(vectors: MessageVectors) -> str:
     parts = [_json(head)[1:-1]]
     parts.append(_array("fields", [_field(vectors, field) for field in message.fields]))
     parts.append(f'"refused_lengths": {_json(list(vectors.lengths))}')
+    if vectors.miscounted:
+        parts.append(f'"refused_frames": {_json([frame.hex() for frame in vectors.miscounted])}')
     parts.append(_array("vectors", [_row(message.fields, row) for row in vectors.rows]))
     return "{" + ",\n".join(parts) + "}"
 
