@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.rust import harness
-from tests.rust.tools import Toolchain
+from tests.rust.tools import STD, Toolchain
 
 DECLARED = re.compile(r"^pub (?:struct|enum|trait) (\w+)", re.MULTILINE)
 EXAMPLE = re.compile(r"^ *//[/!] ```$", re.MULTILINE)
@@ -22,7 +22,7 @@ def examples(crate: Path) -> int:
 
 def compiled(crate: Path, folder: Path) -> Path:
     """The library, which must not abort, for examples do not."""
-    return Toolchain("default").library(crate, folder, "0", "-C", "panic=unwind")
+    return Toolchain("default").library(crate, folder, "0", "-C", "panic=unwind", *STD)
 
 
 def test_each_of_them_runs(subject, tmp_path):

@@ -67,12 +67,12 @@ class Toolchain:
         run(*command, *options, "-o", out, file)
 
     def tested(self, file: Path, library: Path, edition: str = MERGING) -> str:
-        """Runs the examples in the crate's documentation; what rustdoc says. Fails if one of them does.
+        """Runs the examples in the documentation of the crate, which is compiled with `STD`; what rustdoc says. Fails if one of them does.
 
         ``edition`` is the examples', not the crate's: as of 2024 rustdoc compiles all of them in one go.
         """
         command = (*self.start, "rustdoc", "--test", "--edition", edition, "--crate-name", "icd")
-        return run(*command, "--extern", f"icd={library}", file)
+        return run(*command, *STD, "--extern", f"icd={library}", file)
 
     def library(self, file: Path, out: Path, level: str, *more: str) -> Path:
         """Compiles the crate, optimised to that level; its file."""
