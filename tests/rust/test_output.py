@@ -11,7 +11,6 @@ from icdgen import __version__, backends
 from tests.conftest import DEMO
 from tests.rust import harness, odd
 
-
 EXAMPLE = re.compile(r"(?ms)^(//[/!] ```)$.*?^\1$")  # code in a comment
 
 

@@ -67,7 +67,7 @@ class Toolchain:
         run(*command, *options, "-o", out, file)
 
     def tested(self, file: Path, library: Path, edition: str = MERGING) -> str:
-        """Runs the examples in the documentation of the crate, which is compiled with `STD`; what rustdoc says. Fails if one of them does.
+        """Runs the examples in the documentation of a crate that was compiled with `STD`; what rustdoc says. Fails if one does.
 
         ``edition`` is the examples', not the crate's: as of 2024 rustdoc compiles all of them in one go.
         """
