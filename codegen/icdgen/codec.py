@@ -55,7 +55,7 @@ def count_of(message: Message, raw: Mapping[str, int | bytes]) -> int:
     tail = message.tail
     if tail is None:
         return 0
-    count = _number(raw[tail.counter])
+    count = _number(raw.get(tail.counter, 0))
     if count > tail.most:
         raise CodecError(f"{tail.counter!r} takes 0 to {tail.most}, not {count}")
     return count
@@ -72,7 +72,7 @@ def counted(node: Node, message: Message, frame: bytes, count: int) -> bytes:
 
 def is_there(message: Message, field: Field, count: int) -> bool:
     """Whether a frame holds a field, if its open end has ``count`` elements; bytes and text that are cut off are there."""
-    return field.element is None or message.tail is None or field.at < 8 * (message.least + count * message.tail.step)
+    return not field.path or message.tail is None or field.at < 8 * (message.least + count * message.tail.step)
 
 
 def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
@@ -87,9 +87,14 @@ def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> byte
     for field in message.owners:
         if field.name not in raw:
             raise CodecError(f"no value for {field.name!r}")
+    return frame_with(node, message, raw)
+
+
+def frame_with(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
+    """The frame in which these fields have these values and all other bits are 0. Raises `CodecError` for an unfit value."""
     bits, count = 0, count_of(message, raw)
     for field in message.owners:
-        if is_there(message, field, count):
+        if field.name in raw and is_there(message, field, count):
             bits |= _written(node, field, raw[field.name])
     frame = bits.to_bytes(message.length, "little")
     return frame if message.tail is None else frame[: message.least + count * message.tail.step]
