@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.describe.bounds import Bound, bounds
-from icdgen.describe.numbers import array_text, bit_range, byte_count, byte_range, exact_text, value_text
+from icdgen.describe.numbers import array_text, bit_range, byte_count, byte_range, exact_text, length_text, value_text
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.model import CONFIGURATION, Enum, Erratum, Field, Member, Message, Tail
 
@@ -66,13 +66,8 @@ def message_comment(message: Message, log_bit: int | None = None) -> Comment:
     facts += (f"Repeats {words(part.message)} from {_from(part.at)}." for part in message.contains)
     if message.reserved:
         facts.append(f"The last {'byte is' if message.reserved == 1 else f'{message.reserved} bytes are'} reserved.")
-    head = f"{words(message.name)}: {kind} {ids}, {_length(message)}.{_table(message.table)}"
+    head = f"{words(message.name)}: {kind} {ids}, {length_text(message)}.{_table(message.table)}"
     return _comment(head, (sentence(message.summary), " ".join(facts)), message.errata, {})
-
-
-def _length(message: Message) -> str:
-    """``6 bytes``, ``4 to 28 bytes``"""
-    return byte_count(message.length) if message.tail is None else f"{message.least} to {byte_count(message.length)}"
 
 
 def _from(at: int) -> str:
