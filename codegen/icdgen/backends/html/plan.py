@@ -20,7 +20,9 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
     }
     if message.tail is not None:
         tail = message.tail
-        plan["tail"] = {"counter": tail.counter, "least": message.least, "step": tail.step, "most": tail.most}
+        plan["tail"] = {
+            "part": tail.name, "counter": tail.counter, "least": message.least, "step": tail.step, "most": tail.most,
+        }  # fmt: skip
     return plan
 
 
