@@ -29,7 +29,7 @@ _ORDERLY = {"bytes": "bytes", "text": "characters"}
 def past_the_end(ctx: Context) -> Iterator[Fault]:
     for field, message, _ in ctx.fields:
         end, room = field.at + field.width, message.length * 8
-        if end > room and not field.implied:
+        if end > room:
             source = field.source
             key = "at" if field.at >= room else "count" if field.count else "bits"
             place = source.at(key)
