@@ -13,6 +13,7 @@ from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.errata import tellers, told_elsewhere
 from icdgen.describe.named import Named
+from icdgen.describe.parts import PartDescription, parts_of
 from icdgen.describe.storage import Storage, holding, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.identifiers import Identifier
@@ -177,6 +178,11 @@ class MessageDescription(Named[Message]):
 
     def _owners(self, fields: tuple[FieldDescription, ...]) -> tuple[FieldDescription, ...]:
         return tuple(field for field in fields if not field.model.view) if self.views else fields
+
+    @cached_property
+    def parts(self) -> tuple[PartDescription, ...]:
+        """The messages that it repeats."""
+        return parts_of(self, self._description.node(self.node).spoken) if self.model.contains else ()
 
     @cached_property
     def ids(self) -> tuple[Id, ...]:

@@ -7,9 +7,13 @@ from icdgen.describe import EnumDescription, MessageDescription
 
 
 def values(message: MessageDescription) -> dict[str, object]:
-    """What is imported for it: its enumerations."""
+    """What is imported for it: its enumerations. And the messages that it repeats, in the order of the frame."""
     enums = {field.enum for field in message.all_fields if field.enum is not None}
-    return {"imports": sorted(_import(enum, message) for enum in enums)}
+    parts = [(begin, part.message) for part in message.parts for begin in part.begins]
+    return {
+        "imports": sorted(_import(enum, message) for enum in enums),
+        "parts": sorted(parts, key=lambda one: one[0]),
+    }
 
 
 def _import(enum: EnumDescription, message: MessageDescription) -> str:
