@@ -13,7 +13,6 @@ from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.errata import tellers, told_elsewhere
 from icdgen.describe.named import Named
-from icdgen.describe.parts import PartDescription, parts_of
 from icdgen.describe.storage import Storage, holding, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.identifiers import Identifier
@@ -180,9 +179,12 @@ class MessageDescription(Named[Message]):
         return tuple(field for field in fields if not field.model.view) if self.views else fields
 
     @cached_property
-    def parts(self) -> tuple[PartDescription, ...]:
-        """The messages that it repeats."""
-        return parts_of(self, self._description.node(self.node).spoken) if self.model.contains else ()
+    def contained(self) -> tuple[tuple[MessageDescription, int], ...]:
+        """The messages that it repeats, each with the bit at which it begins, in the order of the ICD."""
+        if not self.model.contains:
+            return ()
+        known = {one.model.name: one for one in self._description.node(self.node).spoken}
+        return tuple((known[one.message], one.at) for one in self.model.contains if one.message in known)
 
     @cached_property
     def ids(self) -> tuple[Id, ...]:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-if TYPE_CHECKING:
-    from icdgen.describe.description import FieldDescription, MessageDescription
+from icdgen.describe.description import FieldDescription, MessageDescription
 
 
 class Copied(NamedTuple):
@@ -43,10 +42,10 @@ class PartDescription(NamedTuple):
                 yield Copied(member, tuple(fields[begin + one.model.at] for one in member.elements or (member,)))
 
 
-def parts_of(composite: MessageDescription, spoken: tuple[MessageDescription, ...]) -> tuple[PartDescription, ...]:
-    """Each message that it repeats once, of those that its node speaks; but for those that hold nothing."""
-    begins: dict[str, list[int]] = {}
-    for part in composite.model.contains:
-        begins.setdefault(part.message, []).append(part.at)
-    known = {one.model.name: one for one in spoken if one.fields}
-    return tuple(PartDescription(known[name], tuple(bits)) for name, bits in begins.items() if name in known)
+def parts_of(composite: MessageDescription) -> tuple[PartDescription, ...]:
+    """Each message that it repeats, but for those that hold nothing."""
+    begins: dict[MessageDescription, list[int]] = {}
+    for part, begin in composite.contained:
+        if part.fields:
+            begins.setdefault(part, []).append(begin)
+    return tuple(PartDescription(part, tuple(bits)) for part, bits in begins.items())

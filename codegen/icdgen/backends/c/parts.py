@@ -9,7 +9,7 @@ from icdgen.backends.c.names import stem
 from icdgen.backends.c.text import comment
 from icdgen.describe import MessageDescription
 from icdgen.describe.comments import part_comment
-from icdgen.describe.parts import Copied
+from icdgen.describe.parts import Copied, parts_of
 
 
 class Part(NamedTuple):
@@ -24,10 +24,12 @@ class Part(NamedTuple):
 def parts(message: MessageDescription) -> list[Part]:
     """Those of a composite message."""
     found = []
-    for one in message.parts:
+    for one in parts_of(message):
         said = [part_comment(one.message.model, one.begins)]
         if len(one.begins) > 1:
-            said.append(f"ICD_ERROR_RANGE, and `part` as it was, if there is no such part: they are 0 to {len(one.begins) - 1}.")
+            said.append(
+                f"ICD_ERROR_RANGE, and `part` as it was, if there is no such part: they are 0 to {len(one.begins) - 1}."
+            )
         copies = tuple(
             tuple(line for copied in one.copies(message, begin) for line in _statements(copied)) for begin in one.begins
         )
@@ -42,7 +44,7 @@ def part_name(part: MessageDescription) -> str:
 
 def headers(message: MessageDescription) -> list[str]:
     """The headers of the parts."""
-    found = (part.message for part in message.parts)
+    found = (part.message for part in parts_of(message))
     return [f"{one.name}.h" if one.node is message.node else f"../{one.node.name}/{one.name}.h" for one in found]
 
 

@@ -9,7 +9,7 @@ from icdgen.backends.rust.names import field_name, type_name
 from icdgen.backends.rust.text import WIDTH
 from icdgen.describe import MessageDescription
 from icdgen.describe.comments import part_comment
-from icdgen.describe.parts import Copied
+from icdgen.describe.parts import Copied, parts_of
 
 
 class Part(NamedTuple):
@@ -25,7 +25,7 @@ class Part(NamedTuple):
 def parts(message: MessageDescription) -> list[Part]:
     """Those of a composite message."""
     found = []
-    for one in message.parts:
+    for one in parts_of(message):
         path = _path(one.message, message)
         count = len(one.begins)
         kind = f"[{path}; {count}]" if count > 1 else path

@@ -118,7 +118,7 @@ message!(ActuatorCommands {
 });
 
 /// Magnetorquer Command, as it is repeated from byte 0.
-impl From<&ActuatorCommands> for super::MagnetorquerCommand {
+impl ::core::convert::From<&ActuatorCommands> for super::MagnetorquerCommand {
     fn from(message: &ActuatorCommands) -> Self {
         super::MagnetorquerCommand {
             x_magnetorquer_command: message.x_magnetorquer_command,
@@ -129,7 +129,7 @@ impl From<&ActuatorCommands> for super::MagnetorquerCommand {
 }
 
 /// Wheel Speed Commands, as it is repeated from byte 6.
-impl From<&ActuatorCommands> for super::WheelSpeedCommands {
+impl ::core::convert::From<&ActuatorCommands> for super::WheelSpeedCommands {
     fn from(message: &ActuatorCommands) -> Self {
         super::WheelSpeedCommands {
             commanded_x_wheel_speed: message.commanded_x_wheel_speed,

@@ -4269,7 +4269,7 @@ message!(AdcsConfiguration {
 });
 
 /// Set Magnetorquer Configuration, as it is repeated from byte 0.
-impl From<&AdcsConfiguration> for super::SetMagnetorquerConfiguration {
+impl ::core::convert::From<&AdcsConfiguration> for super::SetMagnetorquerConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetMagnetorquerConfiguration {
             magnetorquer_1_configuration: message.magnetorquer_1_configuration,
@@ -4280,7 +4280,7 @@ impl From<&AdcsConfiguration> for super::SetMagnetorquerConfiguration {
 }
 
 /// Set Wheel Configuration, as it is repeated from byte 3.
-impl From<&AdcsConfiguration> for super::SetWheelConfiguration {
+impl ::core::convert::From<&AdcsConfiguration> for super::SetWheelConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetWheelConfiguration {
             rw1_configuration: message.rw1_configuration,
@@ -4292,7 +4292,7 @@ impl From<&AdcsConfiguration> for super::SetWheelConfiguration {
 }
 
 /// Set Rate Gyro Configuration, as it is repeated from byte 7.
-impl From<&AdcsConfiguration> for super::SetRateGyroConfiguration {
+impl ::core::convert::From<&AdcsConfiguration> for super::SetRateGyroConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetRateGyroConfiguration {
             gyro1_configuration: message.gyro1_configuration,
@@ -4307,7 +4307,7 @@ impl From<&AdcsConfiguration> for super::SetRateGyroConfiguration {
 }
 
 /// CSS Configuration, as it is repeated from byte 17.
-impl From<&AdcsConfiguration> for super::CssConfiguration {
+impl ::core::convert::From<&AdcsConfiguration> for super::CssConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::CssConfiguration {
             css1_configuration: message.css1_configuration,
@@ -4336,7 +4336,7 @@ impl From<&AdcsConfiguration> for super::CssConfiguration {
 }
 
 /// CubeSense Configuration, as it is repeated from byte 38.
-impl From<&AdcsConfiguration> for super::CubesenseConfiguration {
+impl ::core::convert::From<&AdcsConfiguration> for super::CubesenseConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::CubesenseConfiguration {
             cam1_mounting_alpha: message.cam1_mounting_alpha,
@@ -4404,7 +4404,7 @@ impl From<&AdcsConfiguration> for super::CubesenseConfiguration {
 }
 
 /// Magnetometer Configuration, as it is repeated from byte 150.
-impl From<&AdcsConfiguration> for super::MagnetometerConfiguration {
+impl ::core::convert::From<&AdcsConfiguration> for super::MagnetometerConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::MagnetometerConfiguration {
             mounting_alpha: message.magnetometer_mounting_alpha,
@@ -4427,7 +4427,7 @@ impl From<&AdcsConfiguration> for super::MagnetometerConfiguration {
 }
 
 /// Redundant Magnetometer Configuration, as it is repeated from byte 180.
-impl From<&AdcsConfiguration> for super::RedundantMagConfiguration {
+impl ::core::convert::From<&AdcsConfiguration> for super::RedundantMagConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::RedundantMagConfiguration {
             mounting_alpha: message.redundant_mag_mounting_alpha,
@@ -4450,7 +4450,7 @@ impl From<&AdcsConfiguration> for super::RedundantMagConfiguration {
 }
 
 /// Set Star Tracker Configuration, as it is repeated from byte 210.
-impl From<&AdcsConfiguration> for super::SetStarTrackerConfiguration {
+impl ::core::convert::From<&AdcsConfiguration> for super::SetStarTrackerConfiguration {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetStarTrackerConfiguration {
             mounting_alpha: message.star_tracker_mounting_alpha,
@@ -4484,7 +4484,7 @@ impl From<&AdcsConfiguration> for super::SetStarTrackerConfiguration {
 }
 
 /// Set Detumbling Control Parameters, as it is repeated from byte 263.
-impl From<&AdcsConfiguration> for super::SetDetumblingControlParameters {
+impl ::core::convert::From<&AdcsConfiguration> for super::SetDetumblingControlParameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetDetumblingControlParameters {
             detumbling_spin_gain: message.detumbling_spin_gain,
@@ -4496,7 +4496,7 @@ impl From<&AdcsConfiguration> for super::SetDetumblingControlParameters {
 }
 
 /// Set Y-Wheel Control Parameters, as it is repeated from byte 277.
-impl From<&AdcsConfiguration> for super::SetYWheelControlParameters {
+impl ::core::convert::From<&AdcsConfiguration> for super::SetYWheelControlParameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetYWheelControlParameters {
             y_momentum_control_gain: message.y_momentum_control_gain,
@@ -4509,7 +4509,7 @@ impl From<&AdcsConfiguration> for super::SetYWheelControlParameters {
 }
 
 /// Set Reaction Wheel Control Parameters, as it is repeated from byte 297.
-impl From<&AdcsConfiguration> for super::SetReactionWheelControlParameters {
+impl ::core::convert::From<&AdcsConfiguration> for super::SetReactionWheelControlParameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetReactionWheelControlParameters {
             rwheel_proportional_gain: message.rwheel_proportional_gain,
@@ -4522,7 +4522,7 @@ impl From<&AdcsConfiguration> for super::SetReactionWheelControlParameters {
 }
 
 /// Set Tracking Controller Gain Parameters, as it is repeated from byte 310.
-impl From<&AdcsConfiguration> for super::SetTrackingControllerGainParameters {
+impl ::core::convert::From<&AdcsConfiguration> for super::SetTrackingControllerGainParameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::SetTrackingControllerGainParameters {
             tracking_proportional_gain: message.tracking_proportional_gain,
@@ -4534,7 +4534,7 @@ impl From<&AdcsConfiguration> for super::SetTrackingControllerGainParameters {
 }
 
 /// Moment of Inertia Matrix, as it is repeated from byte 323.
-impl From<&AdcsConfiguration> for super::MomentOfInertiaMatrix {
+impl ::core::convert::From<&AdcsConfiguration> for super::MomentOfInertiaMatrix {
     fn from(message: &AdcsConfiguration) -> Self {
         super::MomentOfInertiaMatrix {
             moment_of_inertia_ixx: message.moment_of_inertia_ixx,
@@ -4548,7 +4548,7 @@ impl From<&AdcsConfiguration> for super::MomentOfInertiaMatrix {
 }
 
 /// Estimation Parameters, as it is repeated from byte 347.
-impl From<&AdcsConfiguration> for super::EstimationParameters {
+impl ::core::convert::From<&AdcsConfiguration> for super::EstimationParameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::EstimationParameters {
             magnetometer_rate_filter_system_noise: message.magnetometer_rate_filter_system_noise,
@@ -4574,7 +4574,7 @@ impl From<&AdcsConfiguration> for super::EstimationParameters {
 }
 
 /// Augmented-SGP4 Parameters, as it is repeated from byte 378.
-impl From<&AdcsConfiguration> for super::AugmentedSgp4Parameters {
+impl ::core::convert::From<&AdcsConfiguration> for super::AugmentedSgp4Parameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::AugmentedSgp4Parameters {
             incl_coefficient: message.incl_coefficient,
@@ -4599,7 +4599,7 @@ impl From<&AdcsConfiguration> for super::AugmentedSgp4Parameters {
 }
 
 /// User-coded Controller and Estimator Parameters, as it is repeated from byte 408.
-impl From<&AdcsConfiguration> for super::UserCodedControllerAndEstimatorParameters {
+impl ::core::convert::From<&AdcsConfiguration> for super::UserCodedControllerAndEstimatorParameters {
     fn from(message: &AdcsConfiguration) -> Self {
         super::UserCodedControllerAndEstimatorParameters {
             user_coded_controller_settings: message.user_coded_controller_settings,

@@ -1409,7 +1409,7 @@ message!(AdcsMeasurements {
 });
 
 /// Magnetic Field Vector, as it is repeated from byte 0.
-impl From<&AdcsMeasurements> for super::MagneticFieldVector {
+impl ::core::convert::From<&AdcsMeasurements> for super::MagneticFieldVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::MagneticFieldVector {
             magnetic_field_x: message.magnetic_field_x,
@@ -1420,7 +1420,7 @@ impl From<&AdcsMeasurements> for super::MagneticFieldVector {
 }
 
 /// Coarse Sun Vector, as it is repeated from byte 6.
-impl From<&AdcsMeasurements> for super::CoarseSunVector {
+impl ::core::convert::From<&AdcsMeasurements> for super::CoarseSunVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::CoarseSunVector {
             coarse_sun_x: message.coarse_sun_x,
@@ -1431,7 +1431,7 @@ impl From<&AdcsMeasurements> for super::CoarseSunVector {
 }
 
 /// Fine Sun Vector, as it is repeated from byte 12.
-impl From<&AdcsMeasurements> for super::FineSunVector {
+impl ::core::convert::From<&AdcsMeasurements> for super::FineSunVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::FineSunVector {
             sun_x: message.sun_x,
@@ -1442,7 +1442,7 @@ impl From<&AdcsMeasurements> for super::FineSunVector {
 }
 
 /// Nadir Vector, as it is repeated from byte 18.
-impl From<&AdcsMeasurements> for super::NadirVector {
+impl ::core::convert::From<&AdcsMeasurements> for super::NadirVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::NadirVector {
             nadir_x: message.nadir_x,
@@ -1453,7 +1453,7 @@ impl From<&AdcsMeasurements> for super::NadirVector {
 }
 
 /// Rate Sensor Rates, as it is repeated from byte 24.
-impl From<&AdcsMeasurements> for super::RateSensorRates {
+impl ::core::convert::From<&AdcsMeasurements> for super::RateSensorRates {
     fn from(message: &AdcsMeasurements) -> Self {
         super::RateSensorRates {
             x_angular_rate: message.x_angular_rate,
@@ -1464,7 +1464,7 @@ impl From<&AdcsMeasurements> for super::RateSensorRates {
 }
 
 /// Wheel Speed, as it is repeated from byte 30.
-impl From<&AdcsMeasurements> for super::WheelSpeed {
+impl ::core::convert::From<&AdcsMeasurements> for super::WheelSpeed {
     fn from(message: &AdcsMeasurements) -> Self {
         super::WheelSpeed {
             x_wheel_speed: message.x_wheel_speed,
@@ -1475,7 +1475,7 @@ impl From<&AdcsMeasurements> for super::WheelSpeed {
 }
 
 /// Star 1 Body Vector, as it is repeated from byte 36.
-impl From<&AdcsMeasurements> for super::Star1BodyVector {
+impl ::core::convert::From<&AdcsMeasurements> for super::Star1BodyVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::Star1BodyVector {
             star1_body_x: message.star1_body_x,
@@ -1486,7 +1486,7 @@ impl From<&AdcsMeasurements> for super::Star1BodyVector {
 }
 
 /// Star 1 Orbit Vector, as it is repeated from byte 42.
-impl From<&AdcsMeasurements> for super::Star1OrbitVector {
+impl ::core::convert::From<&AdcsMeasurements> for super::Star1OrbitVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::Star1OrbitVector {
             star1_orbit_x: message.star1_orbit_x,
@@ -1497,7 +1497,7 @@ impl From<&AdcsMeasurements> for super::Star1OrbitVector {
 }
 
 /// Star 2 Body Vector, as it is repeated from byte 48.
-impl From<&AdcsMeasurements> for super::Star2BodyVector {
+impl ::core::convert::From<&AdcsMeasurements> for super::Star2BodyVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::Star2BodyVector {
             star2_body_x: message.star2_body_x,
@@ -1508,7 +1508,7 @@ impl From<&AdcsMeasurements> for super::Star2BodyVector {
 }
 
 /// Star 2 Orbit Vector, as it is repeated from byte 54.
-impl From<&AdcsMeasurements> for super::Star2OrbitVector {
+impl ::core::convert::From<&AdcsMeasurements> for super::Star2OrbitVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::Star2OrbitVector {
             star2_orbit_x: message.star2_orbit_x,
@@ -1519,7 +1519,7 @@ impl From<&AdcsMeasurements> for super::Star2OrbitVector {
 }
 
 /// Star 3 Body Vector, as it is repeated from byte 60.
-impl From<&AdcsMeasurements> for super::Star3BodyVector {
+impl ::core::convert::From<&AdcsMeasurements> for super::Star3BodyVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::Star3BodyVector {
             star3_body_x: message.star3_body_x,
@@ -1530,7 +1530,7 @@ impl From<&AdcsMeasurements> for super::Star3BodyVector {
 }
 
 /// Star 3 Orbit Vector, as it is repeated from byte 66.
-impl From<&AdcsMeasurements> for super::Star3OrbitVector {
+impl ::core::convert::From<&AdcsMeasurements> for super::Star3OrbitVector {
     fn from(message: &AdcsMeasurements) -> Self {
         super::Star3OrbitVector {
             star3_orbit_x: message.star3_orbit_x,

@@ -1108,7 +1108,7 @@ message!(AdcsState {
 });
 
 /// Current ADCS State, as it is repeated from byte 0.
-impl From<&AdcsState> for super::CurrentAdcsState {
+impl ::core::convert::From<&AdcsState> for super::CurrentAdcsState {
     fn from(message: &AdcsState) -> Self {
         super::CurrentAdcsState {
             attitude_estimation_mode: message.attitude_estimation_mode,
@@ -1156,7 +1156,7 @@ impl From<&AdcsState> for super::CurrentAdcsState {
 }
 
 /// Current ADCS State 2, as it is repeated from byte 6.
-impl From<&AdcsState> for super::CurrentAdcsState2 {
+impl ::core::convert::From<&AdcsState> for super::CurrentAdcsState2 {
     fn from(message: &AdcsState) -> Self {
         super::CurrentAdcsState2 {
             orbit_parameters_are_invalid: message.orbit_parameters_are_invalid,
@@ -1181,7 +1181,7 @@ impl From<&AdcsState> for super::CurrentAdcsState2 {
 }
 
 /// Estimated Attitude Angles, as it is repeated from byte 12.
-impl From<&AdcsState> for super::EstimatedAttitudeAngles {
+impl ::core::convert::From<&AdcsState> for super::EstimatedAttitudeAngles {
     fn from(message: &AdcsState) -> Self {
         super::EstimatedAttitudeAngles {
             estimated_roll_angle: message.estimated_roll_angle,
@@ -1192,7 +1192,7 @@ impl From<&AdcsState> for super::EstimatedAttitudeAngles {
 }
 
 /// Estimated Quaternion, as it is repeated from byte 18.
-impl From<&AdcsState> for super::EstimatedQuaternion {
+impl ::core::convert::From<&AdcsState> for super::EstimatedQuaternion {
     fn from(message: &AdcsState) -> Self {
         super::EstimatedQuaternion {
             estimated_q1: message.estimated_q1,
@@ -1203,7 +1203,7 @@ impl From<&AdcsState> for super::EstimatedQuaternion {
 }
 
 /// Estimated Angular Rates, as it is repeated from byte 24.
-impl From<&AdcsState> for super::EstimatedAngularRates {
+impl ::core::convert::From<&AdcsState> for super::EstimatedAngularRates {
     fn from(message: &AdcsState) -> Self {
         super::EstimatedAngularRates {
             estimated_x_angular_rate: message.estimated_x_angular_rate,
@@ -1214,7 +1214,7 @@ impl From<&AdcsState> for super::EstimatedAngularRates {
 }
 
 /// Satellite Position (ECI), as it is repeated from byte 30.
-impl From<&AdcsState> for super::SatellitePositionEci {
+impl ::core::convert::From<&AdcsState> for super::SatellitePositionEci {
     fn from(message: &AdcsState) -> Self {
         super::SatellitePositionEci {
             x_position: message.x_position,
@@ -1225,7 +1225,7 @@ impl From<&AdcsState> for super::SatellitePositionEci {
 }
 
 /// Satellite Velocity (ECI), as it is repeated from byte 36.
-impl From<&AdcsState> for super::SatelliteVelocityEci {
+impl ::core::convert::From<&AdcsState> for super::SatelliteVelocityEci {
     fn from(message: &AdcsState) -> Self {
         super::SatelliteVelocityEci {
             x_velocity: message.x_velocity,
@@ -1236,7 +1236,7 @@ impl From<&AdcsState> for super::SatelliteVelocityEci {
 }
 
 /// Satellite Position (LLH), as it is repeated from byte 42.
-impl From<&AdcsState> for super::SatellitePositionLlh {
+impl ::core::convert::From<&AdcsState> for super::SatellitePositionLlh {
     fn from(message: &AdcsState) -> Self {
         super::SatellitePositionLlh {
             latitude: message.latitude,
@@ -1247,7 +1247,7 @@ impl From<&AdcsState> for super::SatellitePositionLlh {
 }
 
 /// ECEF Position, as it is repeated from byte 48.
-impl From<&AdcsState> for super::EcefPosition {
+impl ::core::convert::From<&AdcsState> for super::EcefPosition {
     fn from(message: &AdcsState) -> Self {
         super::EcefPosition {
             ecef_position_x: message.ecef_position_x,

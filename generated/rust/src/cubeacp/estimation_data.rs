@@ -962,7 +962,7 @@ message!(EstimationData {
 });
 
 /// IGRF Modelled Magnetic Field Vector, as it is repeated from byte 0.
-impl From<&EstimationData> for super::IgrfModelledMagneticFieldVector {
+impl ::core::convert::From<&EstimationData> for super::IgrfModelledMagneticFieldVector {
     fn from(message: &EstimationData) -> Self {
         super::IgrfModelledMagneticFieldVector {
             field_x: message.igrf_modelled_magnetic_field_x,
@@ -973,7 +973,7 @@ impl From<&EstimationData> for super::IgrfModelledMagneticFieldVector {
 }
 
 /// Modelled Sun Vector, as it is repeated from byte 6.
-impl From<&EstimationData> for super::ModelledSunVector {
+impl ::core::convert::From<&EstimationData> for super::ModelledSunVector {
     fn from(message: &EstimationData) -> Self {
         super::ModelledSunVector {
             modelled_sun_vector_x: message.modelled_sun_vector_x,
@@ -984,7 +984,7 @@ impl From<&EstimationData> for super::ModelledSunVector {
 }
 
 /// Estimated Gyro Bias, as it is repeated from byte 12.
-impl From<&EstimationData> for super::EstimatedGyroBias {
+impl ::core::convert::From<&EstimationData> for super::EstimatedGyroBias {
     fn from(message: &EstimationData) -> Self {
         super::EstimatedGyroBias {
             estimated_x_gyro_bias: message.estimated_x_gyro_bias,
@@ -995,7 +995,7 @@ impl From<&EstimationData> for super::EstimatedGyroBias {
 }
 
 /// Estimation Innovation Vector, as it is repeated from byte 18.
-impl From<&EstimationData> for super::EstimationInnovationVector {
+impl ::core::convert::From<&EstimationData> for super::EstimationInnovationVector {
     fn from(message: &EstimationData) -> Self {
         super::EstimationInnovationVector {
             innovation_vector_x: message.innovation_vector_x,
@@ -1006,7 +1006,7 @@ impl From<&EstimationData> for super::EstimationInnovationVector {
 }
 
 /// Quaternion Error Vector, as it is repeated from byte 24.
-impl From<&EstimationData> for super::QuaternionErrorVector {
+impl ::core::convert::From<&EstimationData> for super::QuaternionErrorVector {
     fn from(message: &EstimationData) -> Self {
         super::QuaternionErrorVector {
             quaternion_error_q1: message.quaternion_error_q1,
@@ -1017,7 +1017,7 @@ impl From<&EstimationData> for super::QuaternionErrorVector {
 }
 
 /// Quaternion Covariance, as it is repeated from byte 30.
-impl From<&EstimationData> for super::QuaternionCovariance {
+impl ::core::convert::From<&EstimationData> for super::QuaternionCovariance {
     fn from(message: &EstimationData) -> Self {
         super::QuaternionCovariance {
             q1_rms: message.quaternion_covariance_q1_rms,
@@ -1028,7 +1028,7 @@ impl From<&EstimationData> for super::QuaternionCovariance {
 }
 
 /// Angular Rate Covariance, as it is repeated from byte 36.
-impl From<&EstimationData> for super::AngularRateCovariance {
+impl ::core::convert::From<&EstimationData> for super::AngularRateCovariance {
     fn from(message: &EstimationData) -> Self {
         super::AngularRateCovariance {
             x_angular_rate_covariance: message.x_angular_rate_covariance,

@@ -697,7 +697,7 @@ message!(PowerAndTemperature {
 });
 
 /// CubeSense1 Current Measurements, as it is repeated from byte 0.
-impl From<&PowerAndTemperature> for super::Cubesense1Currents {
+impl ::core::convert::From<&PowerAndTemperature> for super::Cubesense1Currents {
     fn from(message: &PowerAndTemperature) -> Self {
         super::Cubesense1Currents {
             cubesense1_3v3_current: message.cubesense1_3v3_current,
@@ -707,7 +707,7 @@ impl From<&PowerAndTemperature> for super::Cubesense1Currents {
 }
 
 /// CubeSense2 Current Measurements, as it is repeated from byte 4.
-impl From<&PowerAndTemperature> for super::Cubesense2Currents {
+impl ::core::convert::From<&PowerAndTemperature> for super::Cubesense2Currents {
     fn from(message: &PowerAndTemperature) -> Self {
         super::Cubesense2Currents {
             cubesense2_3v3_current: message.cubesense2_3v3_current,
@@ -717,7 +717,7 @@ impl From<&PowerAndTemperature> for super::Cubesense2Currents {
 }
 
 /// CubeControl Current Measurements, as it is repeated from byte 8.
-impl From<&PowerAndTemperature> for super::CubecontrolCurrents {
+impl ::core::convert::From<&PowerAndTemperature> for super::CubecontrolCurrents {
     fn from(message: &PowerAndTemperature) -> Self {
         super::CubecontrolCurrents {
             cubecontrol_3v3_current: message.cubecontrol_3v3_current,
@@ -728,7 +728,7 @@ impl From<&PowerAndTemperature> for super::CubecontrolCurrents {
 }
 
 /// Wheel Currents, as it is repeated from byte 14.
-impl From<&PowerAndTemperature> for super::WheelCurrents {
+impl ::core::convert::From<&PowerAndTemperature> for super::WheelCurrents {
     fn from(message: &PowerAndTemperature) -> Self {
         super::WheelCurrents {
             wheel1_current: message.wheel1_current,
@@ -739,7 +739,7 @@ impl From<&PowerAndTemperature> for super::WheelCurrents {
 }
 
 /// ADCS Misc Current Measurements, as it is repeated from byte 20.
-impl From<&PowerAndTemperature> for super::AdcsMiscCurrents {
+impl ::core::convert::From<&PowerAndTemperature> for super::AdcsMiscCurrents {
     fn from(message: &PowerAndTemperature) -> Self {
         super::AdcsMiscCurrents {
             cubestar_current: message.cubestar_current,
@@ -750,7 +750,7 @@ impl From<&PowerAndTemperature> for super::AdcsMiscCurrents {
 }
 
 /// ADCS Temperatures, as it is repeated from byte 26.
-impl From<&PowerAndTemperature> for super::AdcsTemperatures {
+impl ::core::convert::From<&PowerAndTemperature> for super::AdcsTemperatures {
     fn from(message: &PowerAndTemperature) -> Self {
         super::AdcsTemperatures {
             mcu_temperature: message.mcu_temperature,
@@ -761,7 +761,7 @@ impl From<&PowerAndTemperature> for super::AdcsTemperatures {
 }
 
 /// Rate sensor temperatures, as it is repeated from byte 32.
-impl From<&PowerAndTemperature> for super::RateSensorTemperatures {
+impl ::core::convert::From<&PowerAndTemperature> for super::RateSensorTemperatures {
     fn from(message: &PowerAndTemperature) -> Self {
         super::RateSensorTemperatures {
             x_rate_sensor_temperature: message.x_rate_sensor_temperature,

@@ -309,7 +309,7 @@ message!(RawGpsMeasurements {
 });
 
 /// Raw GPS Status, as it is repeated from byte 0.
-impl From<&RawGpsMeasurements> for super::RawGpsStatus {
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsStatus {
     fn from(message: &RawGpsMeasurements) -> Self {
         super::RawGpsStatus {
             gps_solution_status: message.gps_solution_status,
@@ -323,7 +323,7 @@ impl From<&RawGpsMeasurements> for super::RawGpsStatus {
 }
 
 /// Raw GPS Time, as it is repeated from byte 6.
-impl From<&RawGpsMeasurements> for super::RawGpsTime {
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsTime {
     fn from(message: &RawGpsMeasurements) -> Self {
         super::RawGpsTime {
             gps_reference_week: message.gps_reference_week,
@@ -333,7 +333,7 @@ impl From<&RawGpsMeasurements> for super::RawGpsTime {
 }
 
 /// Raw GPS X, as it is repeated from byte 12.
-impl From<&RawGpsMeasurements> for super::RawGpsX {
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsX {
     fn from(message: &RawGpsMeasurements) -> Self {
         super::RawGpsX {
             ecef_position_x: message.ecef_position_x,
@@ -343,7 +343,7 @@ impl From<&RawGpsMeasurements> for super::RawGpsX {
 }
 
 /// Raw GPS Y, as it is repeated from byte 18.
-impl From<&RawGpsMeasurements> for super::RawGpsY {
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsY {
     fn from(message: &RawGpsMeasurements) -> Self {
         super::RawGpsY {
             ecef_position_y: message.ecef_position_y,
@@ -353,7 +353,7 @@ impl From<&RawGpsMeasurements> for super::RawGpsY {
 }
 
 /// Raw GPS Z, as it is repeated from byte 24.
-impl From<&RawGpsMeasurements> for super::RawGpsZ {
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsZ {
     fn from(message: &RawGpsMeasurements) -> Self {
         super::RawGpsZ {
             ecef_position_z: message.ecef_position_z,

@@ -251,7 +251,7 @@ message!(RawSensorMeasurements {
 });
 
 /// Raw Cam2 Sensor, as it is repeated from byte 0.
-impl From<&RawSensorMeasurements> for super::RawCam2Sensor {
+impl ::core::convert::From<&RawSensorMeasurements> for super::RawCam2Sensor {
     fn from(message: &RawSensorMeasurements) -> Self {
         super::RawCam2Sensor {
             cam2_centroid_x: message.cam2_centroid_x,
@@ -263,7 +263,7 @@ impl From<&RawSensorMeasurements> for super::RawCam2Sensor {
 }
 
 /// Raw Cam1 Sensor, as it is repeated from byte 6.
-impl From<&RawSensorMeasurements> for super::RawCam1Sensor {
+impl ::core::convert::From<&RawSensorMeasurements> for super::RawCam1Sensor {
     fn from(message: &RawSensorMeasurements) -> Self {
         super::RawCam1Sensor {
             cam1_centroid_x: message.cam1_centroid_x,
@@ -275,7 +275,7 @@ impl From<&RawSensorMeasurements> for super::RawCam1Sensor {
 }
 
 /// Raw CSS 1 to 6, as it is repeated from byte 12.
-impl From<&RawSensorMeasurements> for super::RawCss1To6 {
+impl ::core::convert::From<&RawSensorMeasurements> for super::RawCss1To6 {
     fn from(message: &RawSensorMeasurements) -> Self {
         super::RawCss1To6 {
             css1: message.css1,
@@ -289,7 +289,7 @@ impl From<&RawSensorMeasurements> for super::RawCss1To6 {
 }
 
 /// Raw CSS 7 to 10, as it is repeated from byte 18.
-impl From<&RawSensorMeasurements> for super::RawCss7To10 {
+impl ::core::convert::From<&RawSensorMeasurements> for super::RawCss7To10 {
     fn from(message: &RawSensorMeasurements) -> Self {
         super::RawCss7To10 {
             css7: message.css7,
@@ -301,7 +301,7 @@ impl From<&RawSensorMeasurements> for super::RawCss7To10 {
 }
 
 /// Raw Magnetometer, as it is repeated from byte 22.
-impl From<&RawSensorMeasurements> for super::RawMagnetometer {
+impl ::core::convert::From<&RawSensorMeasurements> for super::RawMagnetometer {
     fn from(message: &RawSensorMeasurements) -> Self {
         super::RawMagnetometer {
             mag_x: message.mag_x,
@@ -312,7 +312,7 @@ impl From<&RawSensorMeasurements> for super::RawMagnetometer {
 }
 
 /// Raw Rate Sensor, as it is repeated from byte 28.
-impl From<&RawSensorMeasurements> for super::RawRateSensor {
+impl ::core::convert::From<&RawSensorMeasurements> for super::RawRateSensor {
     fn from(message: &RawSensorMeasurements) -> Self {
         super::RawRateSensor {
             rate_x: message.rate_x,

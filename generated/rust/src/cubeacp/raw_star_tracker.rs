@@ -541,7 +541,7 @@ message!(RawStarTracker {
 });
 
 /// Star Performance1, as it is repeated from byte 0.
-impl From<&RawStarTracker> for super::StarPerformance1 {
+impl ::core::convert::From<&RawStarTracker> for super::StarPerformance1 {
     fn from(message: &RawStarTracker) -> Self {
         super::StarPerformance1 {
             number_of_stars_detected: message.number_of_stars_detected,
@@ -555,7 +555,7 @@ impl From<&RawStarTracker> for super::StarPerformance1 {
 }
 
 /// Star Performance2, as it is repeated from byte 6.
-impl From<&RawStarTracker> for super::StarPerformance2 {
+impl ::core::convert::From<&RawStarTracker> for super::StarPerformance2 {
     fn from(message: &RawStarTracker) -> Self {
         super::StarPerformance2 {
             image_capture_success: message.image_capture_success,
@@ -575,7 +575,7 @@ impl From<&RawStarTracker> for super::StarPerformance2 {
 }
 
 /// Star Magnitude, as it is repeated from byte 12.
-impl From<&RawStarTracker> for super::StarMagnitude {
+impl ::core::convert::From<&RawStarTracker> for super::StarMagnitude {
     fn from(message: &RawStarTracker) -> Self {
         super::StarMagnitude {
             magnitude_star_1: message.magnitude_star_1,
@@ -586,7 +586,7 @@ impl From<&RawStarTracker> for super::StarMagnitude {
 }
 
 /// Star 1 Raw Data, as it is repeated from byte 18.
-impl From<&RawStarTracker> for super::Star1RawData {
+impl ::core::convert::From<&RawStarTracker> for super::Star1RawData {
     fn from(message: &RawStarTracker) -> Self {
         super::Star1RawData {
             catalogue_star_1: message.catalogue_star_1,
@@ -597,7 +597,7 @@ impl From<&RawStarTracker> for super::Star1RawData {
 }
 
 /// Star 2 Raw Data, as it is repeated from byte 24.
-impl From<&RawStarTracker> for super::Star2RawData {
+impl ::core::convert::From<&RawStarTracker> for super::Star2RawData {
     fn from(message: &RawStarTracker) -> Self {
         super::Star2RawData {
             catalogue_star_2: message.catalogue_star_2,
@@ -608,7 +608,7 @@ impl From<&RawStarTracker> for super::Star2RawData {
 }
 
 /// Star 3 Raw Data, as it is repeated from byte 30.
-impl From<&RawStarTracker> for super::Star3RawData {
+impl ::core::convert::From<&RawStarTracker> for super::Star3RawData {
     fn from(message: &RawStarTracker) -> Self {
         super::Star3RawData {
             catalogue_star_3: message.catalogue_star_3,
@@ -619,7 +619,7 @@ impl From<&RawStarTracker> for super::Star3RawData {
 }
 
 /// Star Timing, as it is repeated from byte 36.
-impl From<&RawStarTracker> for super::StarTiming {
+impl ::core::convert::From<&RawStarTracker> for super::StarTiming {
     fn from(message: &RawStarTracker) -> Self {
         super::StarTiming {
             capture: message.capture,
@@ -630,7 +630,7 @@ impl From<&RawStarTracker> for super::StarTiming {
 }
 
 /// CubeStar Estimated Rates, as it is repeated from byte 42.
-impl From<&RawStarTracker> for super::CubestarEstimatedRates {
+impl ::core::convert::From<&RawStarTracker> for super::CubestarEstimatedRates {
     fn from(message: &RawStarTracker) -> Self {
         super::CubestarEstimatedRates {
             x_axis_rate: message.x_axis_rate,
@@ -641,7 +641,7 @@ impl From<&RawStarTracker> for super::CubestarEstimatedRates {
 }
 
 /// CubeStar Estimated Quaternion, as it is repeated from byte 48.
-impl From<&RawStarTracker> for super::CubestarEstimatedQuaternion {
+impl ::core::convert::From<&RawStarTracker> for super::CubestarEstimatedQuaternion {
     fn from(message: &RawStarTracker) -> Self {
         super::CubestarEstimatedQuaternion {
             q0: message.q0,
