@@ -51,8 +51,8 @@ def headers(message: MessageDescription) -> list[str]:
 def _statements(copied: Copied) -> Iterator[str]:
     member = copied.member
     if copied.is_whole and (member.count or member.model.is_bytes):
-        twin = copied.twins[0].member
-        yield f"(void)memcpy(part->{member.member}, message->{twin}, sizeof part->{member.member});"
+        whole = f"part->{member.member}"
+        yield f"(void)memcpy({whole}, message->{copied.twins[0].member}, sizeof {whole});"
         return
     for one, twin in zip(member.elements or (member,), copied.twins, strict=True):
         yield f"part->{one.member} = message->{twin.member};"
