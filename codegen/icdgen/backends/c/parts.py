@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from icdgen.backends.c.names import stem
+from icdgen.backends.c.statement import call
 from icdgen.backends.c.text import comment
 from icdgen.describe import MessageDescription
 from icdgen.describe.comments import part_comment
@@ -52,7 +53,7 @@ def _statements(copied: Copied) -> Iterator[str]:
     member = copied.member
     if copied.is_whole and (member.count or member.model.is_bytes):
         whole = f"part->{member.member}"
-        yield f"(void)memcpy({whole}, message->{copied.twins[0].member}, sizeof {whole});"
+        yield call("(void)memcpy", (whole, f"message->{copied.twins[0].member}", f"sizeof {whole}"))
         return
     for one, twin in zip(member.elements or (member,), copied.twins, strict=True):
         yield f"part->{one.member} = message->{twin.member};"
