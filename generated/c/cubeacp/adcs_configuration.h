@@ -1408,8 +1408,14 @@ static inline void cubeacp_adcs_configuration_part_user_coded_controller_and_est
     const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
     cubeacp_user_coded_controller_and_estimator_parameters_t *ICDGEN_RESTRICT part)
 {
-    (void)memcpy(part->user_coded_controller_settings, message->user_coded_controller_settings, sizeof part->user_coded_controller_settings);
-    (void)memcpy(part->user_coded_estimator_settings, message->user_coded_estimator_settings, sizeof part->user_coded_estimator_settings);
+    (void)memcpy(
+        part->user_coded_controller_settings,
+        message->user_coded_controller_settings,
+        sizeof part->user_coded_controller_settings);
+    (void)memcpy(
+        part->user_coded_estimator_settings,
+        message->user_coded_estimator_settings,
+        sizeof part->user_coded_estimator_settings);
 }
 
 /** X-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767. */
