@@ -7,6 +7,17 @@ use crate::support::{message, put, take, Error};
 /// Actuator Commands: telemetry 192, 12 bytes. Table 151.
 ///
 /// Repeats Magnetorquer Command from byte 0. Repeats Wheel Speed Commands from byte 6.
+///
+/// ```
+/// use icd::cubeacp::ActuatorCommands;
+///
+/// let mut frame = [0; ActuatorCommands::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = ActuatorCommands::from_bytes(&frame)?;
+/// assert_eq!(message.x_magnetorquer_command, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -27,6 +27,17 @@ use crate::support::{array, flags, message, put, put_array, take, Coded, Error, 
 /// current configuration. It joins 16 of the 25 others; orbit, target, attitude command, power,
 /// logs, inertial vector and system configuration are not in it. Save Configuration uses the same
 /// words.
+///
+/// ```
+/// use icd::cubeacp::AdcsConfiguration;
+///
+/// let mut frame = [0; AdcsConfiguration::LENGTH];
+/// frame[10..12].copy_from_slice(&[0xd2, 0x04]);
+/// let message = AdcsConfiguration::from_bytes(&frame)?;
+/// assert_eq!(message.x_rate_sensor_offset_deg_per_s(), 1.234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

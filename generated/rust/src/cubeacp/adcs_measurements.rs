@@ -13,6 +13,17 @@ use crate::support::{message, put, take, Error, Scale};
 /// 24\. Repeats Wheel Speed from byte 30. Repeats Star 1 Body Vector from byte 36. Repeats Star 1
 /// Orbit Vector from byte 42. Repeats Star 2 Body Vector from byte 48. Repeats Star 2 Orbit Vector
 /// from byte 54. Repeats Star 3 Body Vector from byte 60. Repeats Star 3 Orbit Vector from byte 66.
+///
+/// ```
+/// use icd::cubeacp::AdcsMeasurements;
+///
+/// let mut frame = [0; AdcsMeasurements::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = AdcsMeasurements::from_bytes(&frame)?;
+/// assert_eq!(message.magnetic_field_x_ut(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

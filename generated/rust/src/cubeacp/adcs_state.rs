@@ -21,6 +21,17 @@ use crate::support::{flags, message, put, take, Coded, Error, Scale};
 ///
 /// Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles. Bits 66 to 95 are
 /// not described. They are the unused end of frame 224, which the frame repeats.
+///
+/// ```
+/// use icd::cubeacp::AdcsState;
+///
+/// let mut frame = [0; AdcsState::LENGTH];
+/// frame[12..14].copy_from_slice(&[0xd2, 0x04]);
+/// let message = AdcsState::from_bytes(&frame)?;
+/// assert_eq!(message.estimated_roll_angle_deg(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -12,6 +12,17 @@ use crate::support::{message, put, take, Error, Scale};
 /// 6\. Repeats Estimated Gyro Bias from byte 12. Repeats Estimation Innovation Vector from byte 18.
 /// Repeats Quaternion Error Vector from byte 24. Repeats Quaternion Covariance from byte 30.
 /// Repeats Angular Rate Covariance from byte 36.
+///
+/// ```
+/// use icd::cubeacp::EstimationData;
+///
+/// let mut frame = [0; EstimationData::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = EstimationData::from_bytes(&frame)?;
+/// assert_eq!(message.igrf_modelled_magnetic_field_x_ut(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

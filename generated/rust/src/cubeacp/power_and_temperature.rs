@@ -10,6 +10,17 @@ use crate::support::{message, put, take, Error, Scale};
 /// from byte 4. Repeats CubeControl Current Measurements from byte 8. Repeats Wheel Currents from
 /// byte 14. Repeats ADCS Misc Current Measurements from byte 20. Repeats ADCS Temperatures from
 /// byte 26. Repeats Rate sensor temperatures from byte 32.
+///
+/// ```
+/// use icd::cubeacp::PowerAndTemperature;
+///
+/// let mut frame = [0; PowerAndTemperature::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = PowerAndTemperature::from_bytes(&frame)?;
+/// assert_eq!(message.cubesense1_3v3_current_ma(), 123.4);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,6 +9,17 @@ use crate::support::{message, put, take, Coded, Error, Scale};
 ///
 /// Repeats Raw GPS Status from byte 0. Repeats Raw GPS Time from byte 6. Repeats Raw GPS X from
 /// byte 12. Repeats Raw GPS Y from byte 18. Repeats Raw GPS Z from byte 24.
+///
+/// ```
+/// use icd::cubeacp::RawGpsMeasurements;
+///
+/// let mut frame = [0; RawGpsMeasurements::LENGTH];
+/// frame[30] = 0x7b;
+/// let message = RawGpsMeasurements::from_bytes(&frame)?;
+/// assert_eq!(message.x_pos_standard_deviation_m(), 12.3);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -11,6 +11,17 @@ use crate::support::{flags, message, put, take, Coded, Error, Scale};
 /// Magnitude from byte 12. Repeats Star 1 Raw Data from byte 18. Repeats Star 2 Raw Data from byte
 /// 24\. Repeats Star 3 Raw Data from byte 30. Repeats Star Timing from byte 36. Repeats CubeStar
 /// Estimated Rates from byte 42. Repeats CubeStar Estimated Quaternion from byte 48.
+///
+/// ```
+/// use icd::cubeacp::RawStarTracker;
+///
+/// let mut frame = [0; RawStarTracker::LENGTH];
+/// frame[42..44].copy_from_slice(&[0xd2, 0x04]);
+/// let message = RawStarTracker::from_bytes(&frame)?;
+/// assert_eq!(message.x_axis_rate_physical(), 0.123_4);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
