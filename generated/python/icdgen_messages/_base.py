@@ -5,13 +5,12 @@ from __future__ import annotations
 
 # Itself: what annotations name is loaded when they are evaluated.
 from . import _lazy
-from ._fields import FieldInfo, Form, Tail, field, scaled, text, whole
+from ._fields import FieldInfo, Form, field, scaled, text, whole
 
 __all__ = [
     "FieldInfo",
     "Message",
     "MessageType",
-    "Tail",
     "field",
     "scaled",
     "text",
@@ -108,9 +107,7 @@ class Message(metaclass=MessageType):
         KIND: ClassVar[str]
         """``telecommand``, ``telemetry`` or ``configuration`` (which is both)."""
         LENGTH: ClassVar[int]
-        """Bytes of a frame, without the id; of the longest, where frames differ."""
-        TAIL: ClassVar[Tail | None]
-        """The end of frames that differ in length."""
+        """Bytes of a frame, without the id."""
         IDS: ClassVar[tuple[int, ...]]
         """Its ids: one, or the id to set it and the id to get it."""
         TABLE: ClassVar[int | None]
@@ -121,11 +118,13 @@ class Message(metaclass=MessageType):
         """The fields in the order of the manual."""
         VIEWS: ClassVar[tuple[FieldInfo, ...]]
         """What reads bits of the fields in another way, and is not set."""
+        PARTS: ClassVar[tuple[tuple[str, str, int], ...]]
+        """The messages that it repeats: their nodes, their classes, and from which bit."""
         BYTE_ORDER: ClassVar[Literal["little", "big"]]
         BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
     else:
-        IDS = FIELDS = VIEWS = ()
-        TABLE = TAIL = None
+        IDS = FIELDS = VIEWS = PARTS = ()
+        TABLE = None
         ACKNOWLEDGED = True
         BYTE_ORDER, BIT_ORDER = "little", "lsb0"
         __dataclass_fields__ = _DataclassFields()
@@ -166,11 +165,27 @@ class Message(metaclass=MessageType):
 
     @classmethod
     def from_bytes(cls: type[_lazy.M], data: _lazy.Buffer) -> _lazy.M:
-        """The message in a frame of a length that it has. Raises `LengthError`."""
+        """The message in a frame of exactly ``LENGTH`` bytes. Raises `LengthError`."""
         from ._compiled import compiled
 
         made: _lazy.M = compiled(cls, "from_bytes")(cls, data)
         return made
+
+    @classmethod
+    def from_part(cls: type[_lazy.M], message: Message, index: int = 0) -> _lazy.M:
+        """The message as another one repeats it, of several times the one with this index.
+
+        Raises `IcdError` if it does not.
+        """
+        from ._parts import part
+
+        return part(cls, message, index)
+
+    def iter_parts(self) -> _lazy.Iterator[Message]:
+        """The messages that it repeats, one after the other, each of its own class."""
+        from ._parts import parts
+
+        return parts(self)
 
     def to_bytes(self) -> bytes:
         """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
@@ -218,21 +233,20 @@ class Message(metaclass=MessageType):
 
     @classmethod
     def decode_many(
-        cls, frames: _lazy.Frames, physical: bool = False
+        cls, frames: _lazy.Buffer, physical: bool = False
     ) -> dict[str, _lazy.Any]:
         """Frames that follow each other, as one numpy array a field.
 
         The names are those of `as_dict`. What stands on whole bytes is a view of the
         frames, or of a copy of them if they can change. Raises `LengthError` if they
-        are not whole frames. Frames that differ in length are given one by one, as a
-        list; what ends them is an array of arrays, or of bytes. Needs numpy.
+        are not whole frames. Needs numpy.
         """
         from . import _columns
 
         return _columns.decode_many(cls, frames, physical)
 
     @classmethod
-    def decode_table(cls, frames: _lazy.Frames, physical: bool = True) -> _lazy.Any:
+    def decode_table(cls, frames: _lazy.Buffer, physical: bool = True) -> _lazy.Any:
         """Frames that follow each other, as a `pyarrow.Table`.
 
         Units, the manual's names and those of enumerations are metadata of its fields:
