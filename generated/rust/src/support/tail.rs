@@ -34,6 +34,20 @@ impl<const N: usize> core::ops::Deref for Frame<N> {
     }
 }
 
+impl<const N: usize, const M: usize> PartialEq<[u8; M]> for Frame<N> {
+    fn eq(&self, other: &[u8; M]) -> bool {
+        self.as_ref() == other.as_slice()
+    }
+}
+
+impl<const N: usize> PartialEq for Frame<N> {
+    fn eq(&self, other: &Self) -> bool {
+        self.as_ref() == other.as_ref()
+    }
+}
+
+impl<const N: usize> Eq for Frame<N> {}
+
 /// The longest frame, the rest of it 0, and how many elements of `step` bytes there are behind the first `least` bytes.
 pub(crate) fn longest<const N: usize>(
     bytes: &[u8],
