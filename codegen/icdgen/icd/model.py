@@ -280,6 +280,12 @@ class Message:
         """The lengths that frames have."""
         return range(self.least, self.length + 1, self.tail.step if self.tail else 1)
 
+    def with_fields(self, fields: tuple[Field, ...]) -> Message:
+        """The message with these of its fields; without the open end where what it is made of is not among them."""
+        found = replace(self, fields=fields)
+        names = {field.name for field in found.members}
+        return found if self.tail and {self.tail.name, self.tail.counter} <= names else replace(found, tail=None)
+
     @property
     def counter(self) -> Field | None:
         """Where frames differ in length: the field that says how many elements the end has."""

@@ -53,11 +53,7 @@ def _sound(ctx: Context) -> Icd:
 
     def sound(message: Message) -> Message:
         kept = tuple(f for f in message.fields if id(f.source) not in bad and (f.enum or f.type != "enum"))
-        if len(kept) == len(message.fields):
-            return message
-        found = replace(message, fields=kept)
-        names = {field.name for field in found.members}
-        return found if found.tail and {found.tail.name, found.tail.counter} <= names else replace(found, tail=None)
+        return message if len(kept) == len(message.fields) else message.with_fields(kept)
 
     def sound_node(node: Node) -> Node:
         messages = tuple(sound(m) for m in node.messages if id(m.source) not in twins)
