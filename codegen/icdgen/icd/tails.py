@@ -63,6 +63,10 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Obstacle]:
     """What is wrong with how many elements there are said to be."""
     name = f"`{item['name']}`"
     key = "size" if "size" in item else "count"
+    if _is_unknown(message, item):
+        text = f"`{item['count']}`, which counts {name}, is no field of `{message['name']}`"
+        yield Obstacle(item, "count", text, "`count` is a number, the name of an earlier field, or `rest`")
+        return
     if "up_to" not in item and key == "count":
         text = f"{name} has no fixed {key}, and nothing says how large it can become"
         yield Obstacle(item, key, text, "add `up_to:`, the most elements that there are: buffers are made for them")
@@ -74,10 +78,7 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Obstacle]:
     if item["count"] == REST:
         return
     counter = counter_of(message, item)
-    if counter is None:
-        text = f"`{item['count']}`, which counts {name}, is no field of `{message['name']}`"
-        yield Obstacle(item, "count", text, "`count` is a number, the name of an earlier field, or `rest`")
-        return
+    assert counter is not None
     odd = _odd(counter, message)
     if odd:
         text = f"`{counter['name']}`, which counts {name}, {odd}"
@@ -85,6 +86,11 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Obstacle]:
     elif (1 << counter["bits"]) - 1 < item["up_to"]:
         text = f"`{counter['name']}` counts up to {(1 << counter['bits']) - 1:,}, and {name} has up to {item['up_to']:,} elements"
         yield Obstacle(item, "up_to", text, "correct `up_to`, or the `bits` of the field that counts")
+
+
+def _is_unknown(message: Map, item: Map) -> bool:
+    """Whether what is said to count is no field."""
+    return item.get("count", REST) != REST and counter_of(message, item) is None
 
 
 def _odd(counter: Map, message: Map) -> str:
@@ -104,6 +110,8 @@ def _odd(counter: Map, message: Map) -> str:
 def faults_of_place(message: Map, item: Map) -> Iterator[Obstacle]:
     """What is wrong with where it stands, and with what it is."""
     name, fixed = f"`{item['name']}`", 8 * message["length"]
+    if _is_unknown(message, item):
+        return  # perhaps it is not meant to be open
     others = [one for one in open_parts(message) if one is not item]
     if others and item is not open_parts(message)[0]:
         text = f"{name} is the second part of `{message['name']}` that has no fixed size"

@@ -41,7 +41,7 @@ def part_exists(ctx: Context) -> Iterator[Fault]:
             if frame is not message:
                 text = f"{text}, in {quote(frame.name)}"
             yield Fault(message.source, row.at("message"), text, "name another frame")
-        elif part.at + frame.length * 8 > message.length * 8:
+        elif frame.tail is None and part.at + frame.length * 8 > message.length * 8:
             end = part.at + frame.length * 8
             text = f"{quote(frame.name)} ends at bit {end:,}, but {quote(message.name)} has {message.length * 8:,} bits"
             yield Fault(message.source, row.at("at"), text, "correct `at`, or the `length` of either")
@@ -63,7 +63,7 @@ def _repeated(frame: Message, frames: dict[str, Message]) -> set[str]:
 def part_matches(ctx: Context) -> Iterator[Fault]:
     for message, node, part, row in _parts(ctx):
         frame = next((m for m in ctx.messages_of(node) if m.name == part.message), None)
-        if frame is None or frame is message or part.at + frame.length * 8 > message.length * 8:
+        if frame is None or frame is message or frame.tail is not None or part.at + frame.length * 8 > message.length * 8:
             continue  # a finding already
         wanted = {part.at + f.at: f for f in frame.owners}
         start, end = part.at, part.at + frame.length * 8
