@@ -270,7 +270,11 @@ messages:
       - {at: 0, bits: 64, name: Number, type: uint}
       - {at: 72, bits: 8, name: Octets, type: uint, count: Number, up_to: 200, const: 3}
   - {name: Lengthy, id: 137, kind: telemetry, length: 0, fields: [{at: 0, bits: 8, name: Fn, type: uint, count: rest, up_to: 300}]}
-  - {name: Doubles, id: 138, kind: telemetry, length: 0, fields: [{at: 0, bits: 64, name: Values, type: float, count: rest, up_to: 1}]}
+  - name: Doubles
+    id: 138
+    kind: telemetry
+    length: 0
+    fields: [{at: 0, bits: 64, name: Values, type: float, count: rest, up_to: 1}]
   - name: Fives
     id: 139
     kind: telecommand

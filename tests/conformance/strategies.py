@@ -199,8 +199,14 @@ def _open_end(draw, fields: list[dict], length: int, enums: list[dict]) -> dict:
     """What ends a message of variable length: elements that a field counts or that the frame ends, bytes or text."""
     end = {"at": 8 * length, **Names(draw, {field["name"] for field in fields}).one("end")}
     if draw(st.integers(0, 3)) == 0:
-        return end | {"type": draw(st.sampled_from(("bytes", "text"))), "size": "rest", "up_to": draw(st.integers(1, 20))}
-    element = draw(_field(enums).filter(lambda one: one["type"] not in ("bool", "bytes", "text") and one["bits"] % 8 == 0))
+        return end | {
+            "type": draw(st.sampled_from(("bytes", "text"))),
+            "size": "rest",
+            "up_to": draw(st.integers(1, 20)),
+        }
+    element = draw(
+        _field(enums).filter(lambda one: one["type"] not in ("bool", "bytes", "text") and one["bits"] % 8 == 0)
+    )
     counters = [field for field in fields if _counts(field)]
     counter = draw(st.sampled_from([None, *counters]))
     most = draw(st.integers(1, min(9, (1 << counter["bits"]) - 1) if counter else 9))

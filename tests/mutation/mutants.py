@@ -76,7 +76,11 @@ class _Home:
             one.pop("contains", None)
             one.pop("listed", None)
             if message.fields:  # what the manual divides in words is its parts
-                one["fields"] = [{"type": "uint", **plain(field.source), "at": field.at} for field in message.members if not field.implied]
+                one["fields"] = [
+                    {"type": "uint", **plain(field.source), "at": field.at}
+                    for field in message.members
+                    if not field.implied
+                ]
             tree["messages"] = [one]
             used = {field.get("unit") for field in one.get("fields") or ()}
             tree["units"] = [unit for symbol, unit in self.units.items() if symbol in used]
@@ -155,7 +159,9 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
     if field.get("view"):
         yield "view", "no view", lambda f: f.pop("view")
     for other in OTHER_TYPES[field["type"]]:
-        if (other == "bytes" and field.get("view")) or (is_open(field) and ("size" in field or other in ("bytes", "bool"))):
+        if (other == "bytes" and field.get("view")) or (
+            is_open(field) and ("size" in field or other in ("bytes", "bool"))
+        ):
             continue
         yield "type", f"{field['type']} -> {other}", lambda f, o=other: _retype(f, o)
     for key, values in (("byte_order", ("little", "big")), ("bit_order", ("lsb0", "msb0"))):

@@ -205,7 +205,9 @@ class MessageDescription(Named[Message]):
         tail = self.model.tail
         if tail is None:
             return None
-        part, counter = (next(one for one in self.members if one.model.name == name) for name in (tail.name, tail.counter))
+        part, counter = (
+            next(one for one in self.members if one.model.name == name) for name in (tail.name, tail.counter)
+        )
         return TailDescription(part, counter, self.model.least, tail.step, tail.most)
 
     @property

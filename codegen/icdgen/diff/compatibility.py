@@ -133,7 +133,7 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     wrong = [(p, why) for p in pair.kept if (why := _misread(p))]
     if not absent and not wrong:
         return lengths, odd
-    reasons = [*odd] + _together((p.any.name, why) for p, why in wrong)
+    reasons = [*odd, *_together((p.any.name, why) for p, why in wrong)]
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
     verdict = NO if len(absent) + len(wrong) == len(reader.members) - len(reader.views) else PARTLY

@@ -156,7 +156,9 @@ class Builder:
             at=8 * (message["length"] + most * tail.step),
             bits=8 if most < 256 else 16,
             type="uint",
-            identifier=f"{item['identifier']} {'Size' if 'size' in item else 'Count'}" if "identifier" in item else None,
+            identifier=(
+                f"{item['identifier']} {'Size' if 'size' in item else 'Count'}" if "identifier" in item else None
+            ),
             implied=True,
             source=item,
         )

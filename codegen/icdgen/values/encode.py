@@ -75,9 +75,7 @@ class _Wrong:
             raise BadValue("\n".join(self.messages), next(filter(None, self.helps), help))
 
 
-def _without_end(
-    message: Message, tail: Tail, missing: list[str], given: dict[str, str], is_empty: bool
-) -> list[str]:
+def _without_end(message: Message, tail: Tail, missing: list[str], given: dict[str, str], is_empty: bool) -> list[str]:
     """What is missing: of the open end its name alone, unless some of it is given; how many there are follows from that."""
     counter = message.counter
     own = {one.name for one in message.fields if one.name == tail.name or (one.path and one.path[0].name == tail.name)}

@@ -83,7 +83,13 @@ def _message(vectors: MessageVectors) -> str:
     head["length"] = message.length
     if message.tail is not None:
         tail = message.tail
-        head["tail"] = {"part": tail.name, "counter": tail.counter, "least": message.least, "step": tail.step, "most": tail.most}
+        head["tail"] = {
+            "part": tail.name,
+            "counter": tail.counter,
+            "least": message.least,
+            "step": tail.step,
+            "most": tail.most,
+        }
     parts = [_json(head)[1:-1]]
     parts.append(_array("fields", [_field(vectors, field) for field in message.fields]))
     parts.append(f'"refused_lengths": {_json(list(vectors.lengths))}')

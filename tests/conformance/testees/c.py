@@ -134,7 +134,9 @@ class _Rows:
 
     def dispatcher(self, direction: str, messages: list[tuple[MessageDescription, str]]) -> Dispatcher:
         routes = [Route(names.constant(one, id), names.stem(one)) for one, id in messages]
-        return Dispatcher(direction, f"{self.node.name}_{direction}", routes, any(one.tail is not None for one, _ in messages))
+        return Dispatcher(
+            direction, f"{self.node.name}_{direction}", routes, any(one.tail is not None for one, _ in messages)
+        )
 
     def message(self, message: MessageDescription) -> MessageRow:
         return MessageRow(

@@ -25,7 +25,9 @@ def statements(message: MessageDescription) -> list[str]:
         for one in in_groups(message.sent_fields)
     ]
     if message.tail is not None and message.tail.counter.model.implied:
-        found.append(f"message->{message.tail.counter.name} = {cast(_count(message.tail), message.tail.counter.storage.bits)};")
+        found.append(
+            f"message->{message.tail.counter.name} = {cast(_count(message.tail), message.tail.counter.storage.bits)};"
+        )
     return found
 
 

@@ -100,7 +100,11 @@ def scaled(field: FieldDescription) -> str:
     """``estimated_roll_angle_deg: float = _base.scaled(...)``: the steps of the physical value, and the first one."""
     assert field.steps is not None
     first = "()" if field.is_open else repr(field.steps.double(field.fresh))
-    first, note = (first, "tuple[float, ...]") if field.is_open else (f"({first},) * {field.count}", "tuple[float, ...]") if field.count else (first, "float")
+    first, note = (
+        (first, "tuple[float, ...]")
+        if field.is_open
+        else (f"({first},) * {field.count}", "tuple[float, ...]") if field.count else (first, "float")
+    )
     items = [*map(str, field.steps.terms), f"default={first}"]
     return _statement(field.physical_name, note, "scaled", items)
 

@@ -63,7 +63,12 @@ def _repeated(frame: Message, frames: dict[str, Message]) -> set[str]:
 def part_matches(ctx: Context) -> Iterator[Fault]:
     for message, node, part, row in _parts(ctx):
         frame = next((m for m in ctx.messages_of(node) if m.name == part.message), None)
-        if frame is None or frame is message or frame.tail is not None or part.at + frame.length * 8 > message.length * 8:
+        if (
+            frame is None
+            or frame is message
+            or frame.tail is not None
+            or part.at + frame.length * 8 > message.length * 8
+        ):
             continue  # a finding already
         wanted = {part.at + f.at: f for f in frame.owners}
         start, end = part.at, part.at + frame.length * 8

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.icd import tails
+from icdgen.icd.located import Map
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
@@ -50,7 +51,11 @@ def carried(ctx: Context) -> Iterator[Fault]:
     named = {message.name: message for message, _ in ctx.messages if message.tail is not None}
     for message, node in ctx.messages:
         for part in message.source.get("contains") or ():
-            if isinstance(part, dict) and part.get("message") in named and (known := named[part["message"]]) in ctx.messages_of(node):
+            if (
+                isinstance(part, Map)
+                and part.get("message") in named
+                and (known := named[part["message"]]) in ctx.messages_of(node)
+            ):
                 text = f"{quote(known.name)} has no fixed length, so {quote(message.name)} cannot repeat it"
                 yield Fault(message.source, part.at("message"), text, "remove it from `contains`")
 
