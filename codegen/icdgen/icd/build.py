@@ -145,24 +145,12 @@ class Builder:
         (item,) = items
         most, bits, counter = item["up_to"], tails.unit(item), tails.counter_of(message, item)
         tail = model.Tail(item["name"], counter["name"] if counter else "", bits // 8, most)
-        if "size" in item:
-            elements: tuple[model.Field, ...] = (replace(self.field(item, orders(message)), bits=8 * most),)
-        else:
-            elements = replace(self.field(item, orders(message)), count=most).elements
+        end = self.field(item, orders(message))
+        end = replace(end, bits=8 * most) if "size" in item else replace(end, count=most)
         if counter is not None:
-            return tail, elements
-        implied = model.Field(
-            name=f"{tail.name} {'Size' if 'size' in item else 'Count'}",
-            at=8 * (message["length"] + most * tail.step),
-            bits=8 if most < 256 else 16,
-            type="uint",
-            identifier=(
-                f"{item['identifier']} {'Size' if 'size' in item else 'Count'}" if "identifier" in item else None
-            ),
-            implied=True,
-            source=item,
-        )
-        return replace(tail, counter=implied.name), (*elements, implied)
+            return tail, end.elements
+        implied = model.implied_count(end, message["length"] + most * tail.step)
+        return replace(tail, counter=implied.name), (*end.elements, implied)
 
     def fields(self, around: Orders, item: Map) -> tuple[model.Field, ...]:
         """The field, the elements of an array, or the parts that it is divided into; ``around``: the orders of its message."""
