@@ -69,6 +69,9 @@ impl fmt::Display for Failure {
                 code.map_or(Ok(()), |code| write!(out, ", code {code}"))?;
                 reason.map_or(Ok(()), |reason| write!(out, ": {reason:?}"))
             }
+            Self::Timeout { id, attempts: 1 } => {
+                write!(out, "no answer to request {id}, asked once")
+            }
             Self::Timeout { id, attempts } => {
                 write!(out, "no answer to request {id}, asked {attempts} times")
             }
