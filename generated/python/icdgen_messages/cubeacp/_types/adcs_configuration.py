@@ -10,6 +10,8 @@ from .asgp_filter import AsgpFilter
 from .axis_select import AxisSelect
 from .mag_mode_val import MagModeVal
 
+__all__ = ["AdcsConfiguration"]
+
 
 class AdcsConfiguration(_base.Message):
     """ADCS Configuration: configuration, set by telecommand 20, got by telemetry 206,
