@@ -20,19 +20,20 @@ _MARK = re.compile(r"\s*(?:/\*|//|#) \[(?P<key>\w*)\](?: \*/)?\s*")
 BEGIN = """\
 # The API in each language
 
-The same in every language, named by the same rule. The message is one of an ICD made for this page, [imu.yaml](api/imu.yaml), for it has a field of each
-kind; what is generated from the shipped ICDs looks the same. Each cell is taken from a program that a test builds and runs, [imu.c](api/imu.c),
-[imu.py](api/imu.py) and [imu.rs](api/imu.rs), and the page is made of them by `python -m scripts.api_page`.
+The same in every language, named by the same rule. The message is one of an ICD made for this page, [imu.yaml](api/imu.yaml), for
+it has a field of each kind; what is generated from the shipped ICDs looks the same. Each cell is taken from a program that a test
+builds and runs, [imu.c](api/imu.c), [imu.py](api/imu.py) and [imu.rs](api/imu.rs), and the page is made of them by
+`python -m scripts.api_page`.
 
-Messages hold raw values; physical values are computed on demand. A divided field is its parts, which are fields like any other. Setting refuses what the field
-cannot hold; the limits of the ICD are data, which `allows` asks, since only the device knows when they hold. What is refused is a status in C
-(`ICD_ERROR_RANGE`), an exception in Python (`RangeError`) and a `Result` in Rust (`Error::Range`). The JavaScript of the documentation
-site reads and writes the same values, and is no library.
+Messages hold raw values; physical values are computed on demand. A divided field is its parts, which are fields like any other.
+Setting refuses what the field cannot hold; the limits of the ICD are data, which `allows` asks, since only the device knows when
+they hold. What is refused is a status in C (`ICD_ERROR_RANGE`), an exception in Python (`RangeError`) and a `Result` in Rust
+(`Error::Range`). The JavaScript of the documentation site reads and writes the same values, and is no library.
 """
 END = """
 [A program in each language](programs.md) shows the same at work; [the wire layer](wire.md) describes buses, files and logs. In C an
-event of a message that was not asked for, or of another node, is refused by `imu_receive_state` with `ICD_ERROR_UNKNOWN_ID`; in Rust another node's message does
-not compile.
+event of a message that was not asked for, or of another node, is refused by `imu_receive_state` with `ICD_ERROR_UNKNOWN_ID`; in
+Rust another node's message does not compile.
 """
 
 
