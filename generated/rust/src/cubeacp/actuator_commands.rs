@@ -128,6 +128,28 @@ message!(ActuatorCommands {
     commanded_z_wheel_speed: ("Commanded Z Wheel Speed", 80, 16).unit("rpm"),
 });
 
+/// Magnetorquer Command, as it is repeated from byte 0.
+impl ::core::convert::From<&ActuatorCommands> for super::MagnetorquerCommand {
+    fn from(message: &ActuatorCommands) -> Self {
+        super::MagnetorquerCommand {
+            x_magnetorquer_command: message.x_magnetorquer_command,
+            y_magnetorquer_command: message.y_magnetorquer_command,
+            z_magnetorquer_command: message.z_magnetorquer_command,
+        }
+    }
+}
+
+/// Wheel Speed Commands, as it is repeated from byte 6.
+impl ::core::convert::From<&ActuatorCommands> for super::WheelSpeedCommands {
+    fn from(message: &ActuatorCommands) -> Self {
+        super::WheelSpeedCommands {
+            commanded_x_wheel_speed: message.commanded_x_wheel_speed,
+            commanded_y_wheel_speed: message.commanded_y_wheel_speed,
+            commanded_z_wheel_speed: message.commanded_z_wheel_speed,
+        }
+    }
+}
+
 impl crate::Telemetry for ActuatorCommands {
     const TELEMETRY_ID: u32 = 192;
 }

@@ -972,6 +972,83 @@ message!(EstimationData {
         .scale(&Z_ANGULAR_RATE_COVARIANCE),
 });
 
+/// IGRF Modelled Magnetic Field Vector, as it is repeated from byte 0.
+impl ::core::convert::From<&EstimationData> for super::IgrfModelledMagneticFieldVector {
+    fn from(message: &EstimationData) -> Self {
+        super::IgrfModelledMagneticFieldVector {
+            field_x: message.igrf_modelled_magnetic_field_x,
+            field_y: message.igrf_modelled_magnetic_field_y,
+            field_z: message.igrf_modelled_magnetic_field_z,
+        }
+    }
+}
+
+/// Modelled Sun Vector, as it is repeated from byte 6.
+impl ::core::convert::From<&EstimationData> for super::ModelledSunVector {
+    fn from(message: &EstimationData) -> Self {
+        super::ModelledSunVector {
+            modelled_sun_vector_x: message.modelled_sun_vector_x,
+            modelled_sun_vector_y: message.modelled_sun_vector_y,
+            modelled_sun_vector_z: message.modelled_sun_vector_z,
+        }
+    }
+}
+
+/// Estimated Gyro Bias, as it is repeated from byte 12.
+impl ::core::convert::From<&EstimationData> for super::EstimatedGyroBias {
+    fn from(message: &EstimationData) -> Self {
+        super::EstimatedGyroBias {
+            estimated_x_gyro_bias: message.estimated_x_gyro_bias,
+            estimated_y_gyro_bias: message.estimated_y_gyro_bias,
+            estimated_z_gyro_bias: message.estimated_z_gyro_bias,
+        }
+    }
+}
+
+/// Estimation Innovation Vector, as it is repeated from byte 18.
+impl ::core::convert::From<&EstimationData> for super::EstimationInnovationVector {
+    fn from(message: &EstimationData) -> Self {
+        super::EstimationInnovationVector {
+            innovation_vector_x: message.innovation_vector_x,
+            innovation_vector_y: message.innovation_vector_y,
+            innovation_vector_z: message.innovation_vector_z,
+        }
+    }
+}
+
+/// Quaternion Error Vector, as it is repeated from byte 24.
+impl ::core::convert::From<&EstimationData> for super::QuaternionErrorVector {
+    fn from(message: &EstimationData) -> Self {
+        super::QuaternionErrorVector {
+            quaternion_error_q1: message.quaternion_error_q1,
+            quaternion_error_q2: message.quaternion_error_q2,
+            quaternion_error_q3: message.quaternion_error_q3,
+        }
+    }
+}
+
+/// Quaternion Covariance, as it is repeated from byte 30.
+impl ::core::convert::From<&EstimationData> for super::QuaternionCovariance {
+    fn from(message: &EstimationData) -> Self {
+        super::QuaternionCovariance {
+            q1_rms: message.quaternion_covariance_q1_rms,
+            q2_rms: message.quaternion_covariance_q2_rms,
+            q3_rms: message.quaternion_covariance_q3_rms,
+        }
+    }
+}
+
+/// Angular Rate Covariance, as it is repeated from byte 36.
+impl ::core::convert::From<&EstimationData> for super::AngularRateCovariance {
+    fn from(message: &EstimationData) -> Self {
+        super::AngularRateCovariance {
+            x_angular_rate_covariance: message.x_angular_rate_covariance,
+            y_angular_rate_covariance: message.y_angular_rate_covariance,
+            z_angular_rate_covariance: message.z_angular_rate_covariance,
+        }
+    }
+}
+
 impl crate::Telemetry for EstimationData {
     const TELEMETRY_ID: u32 = 193;
 }

@@ -319,6 +319,60 @@ message!(RawGpsMeasurements {
     z_vel_standard_deviation: ("Z-vel Standard Deviation", 280, 8).unit("m/s"),
 });
 
+/// Raw GPS Status, as it is repeated from byte 0.
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsStatus {
+    fn from(message: &RawGpsMeasurements) -> Self {
+        super::RawGpsStatus {
+            gps_solution_status: message.gps_solution_status,
+            number_of_tracked_gps_satellites: message.number_of_tracked_gps_satellites,
+            number_of_gps_satellites_used_in_solution: message.number_of_gps_satellites_used_in_solution,
+            counter_for_xyz_log_from_gps: message.counter_for_xyz_log_from_gps,
+            counter_for_range_log_from_gps: message.counter_for_range_log_from_gps,
+            response_message_for_gps_log_setup: message.response_message_for_gps_log_setup,
+        }
+    }
+}
+
+/// Raw GPS Time, as it is repeated from byte 6.
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsTime {
+    fn from(message: &RawGpsMeasurements) -> Self {
+        super::RawGpsTime {
+            gps_reference_week: message.gps_reference_week,
+            gps_time_milliseconds: message.gps_time_milliseconds,
+        }
+    }
+}
+
+/// Raw GPS X, as it is repeated from byte 12.
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsX {
+    fn from(message: &RawGpsMeasurements) -> Self {
+        super::RawGpsX {
+            ecef_position_x: message.ecef_position_x,
+            ecef_velocity_x: message.ecef_velocity_x,
+        }
+    }
+}
+
+/// Raw GPS Y, as it is repeated from byte 18.
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsY {
+    fn from(message: &RawGpsMeasurements) -> Self {
+        super::RawGpsY {
+            ecef_position_y: message.ecef_position_y,
+            ecef_velocity_y: message.ecef_velocity_y,
+        }
+    }
+}
+
+/// Raw GPS Z, as it is repeated from byte 24.
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsZ {
+    fn from(message: &RawGpsMeasurements) -> Self {
+        super::RawGpsZ {
+            ecef_position_z: message.ecef_position_z,
+            ecef_velocity_z: message.ecef_velocity_z,
+        }
+    }
+}
+
 impl crate::Telemetry for RawGpsMeasurements {
     const TELEMETRY_ID: u32 = 210;
 }
