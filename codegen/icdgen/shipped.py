@@ -1,4 +1,4 @@
-"""Where the shipped templates, runtimes, ICDs, CMake module and manual lie: in the wheel under ``icdgen/data``, in a checkout at its top."""
+"""Where what is shipped beside the code lies: in the wheel under ``icdgen/data``, in a checkout at its top."""
 
 from __future__ import annotations
 

@@ -34,8 +34,8 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
 
     FRAME may have its framing, id and checksum or not; it may be - for standard input, @FILE or the name of a file, text or
     bytes as they came over the line, with any number of frames. NODE (a name) and MESSAGE (an id or a name) are found where
-    the frame tells them; what is ambiguous is said; NODE may be left out where there is one only. JSON is an object, of several frames an array. Exit status: 1 if a field
-    that must hold a constant holds something else.
+    the frame tells them; what is ambiguous is said. NODE may be left out where there is one only. JSON is an object, of
+    several frames an array. Exit status: 1 if a field that must hold a constant holds something else.
     """
     from icdgen import recognize
 

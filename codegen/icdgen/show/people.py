@@ -41,7 +41,8 @@ _MESSAGES = [
 def to_text(icd: Icd, selection: Sequence[str] = (), width: int | None = None, kind: str | None = None) -> str:
     """Without a selection the nodes; of one node its messages; of a node and a name or id that message.
 
-    The second name may also be an enumeration or an erratum's id; the node need not be named if it is the only one. ``width`` is that of the terminal, None for a pipe.
+    The second name may also be an enumeration or an erratum's id; the node need not be named if it is the only one.
+    ``width`` is that of the terminal, None for a pipe.
     Raises `NotFound` or `Ambiguous`.
     """
     if not selection:
