@@ -58,9 +58,7 @@ def _columns(
     return columns, numpy.array(counts, numpy.int32)
 
 
-def _together(
-    message: type[Message], frames: Frames
-) -> tuple[Buffer, list[int]]:
+def _together(message: type[Message], frames: Frames) -> tuple[Buffer, list[int]]:
     """Frames that follow each other; where they differ in length, the longest, and the elements of each."""
     is_one = isinstance(frames, (bytes, bytearray, memoryview))
     if message.TAIL is None:

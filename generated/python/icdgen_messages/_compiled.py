@@ -42,7 +42,7 @@ def compiled(message: type[_lazy.Message], name: str) -> _lazy.Any:
     owner = next(one for one in message.__mro__ if "FIELDS" in vars(one))
     if (owner, name) not in _functions:
         function = longest(owner, name)
-        if owner.TAIL is not None:
+        if message.TAIL is not None:
             from . import _tails
 
             function = {"from_bytes": _tails.decoder, "to_bytes": _tails.encoder}[name](

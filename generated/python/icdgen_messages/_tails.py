@@ -65,8 +65,9 @@ def encoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
 def count_in(message: _lazy.Any, data: _lazy.Buffer) -> int:
     """How many elements the end of a frame has. Raises `LengthError`."""
     tail, actual = message.TAIL, memoryview(data).nbytes
-    least = message.LENGTH - tail.most * tail.step
-    count, part = divmod(actual - least, tail.step)
+    least: int = message.LENGTH - tail.most * tail.step
+    step: int = tail.step
+    count, part = divmod(actual - least, step)
     if actual < least:
         raise LengthError(message.NAME, least, actual)
     if actual > message.LENGTH:

@@ -75,7 +75,7 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     for end in ("h", "length", *(id.name for id in message.ids)):
         yield message.identifier(FILE, names.constant(message, end))
     rare = (*(("misfit",) if message.is_narrow else ()), *(("size",) if message.tail else ()))
-    for end in ("t", "init", "decode", "encode", *rare):
+    for end in ("t", "init", "decode", "encode", "fields", *rare):
         yield message.identifier(FILE, f"{stem}_{end}")
     for part in parts_of(message):
         yield message.identifier(FILE, f"{stem}_{part_name(part.message)}")
