@@ -79,7 +79,10 @@ class _Tables:
             Row(boolean(known.node.bit_order == "msb0"), "bit 0 is the most significant one"),
             Row(f"{known.telemetry_ids.first}u, {known.telemetry_ids.last}u", "ids of telemetry"),
             Row(self.array("telecommands", "icd_message_t", map(self.telecommand, telecommands)), "what can be sent"),
-            Row(self.array("telemetry", "icd_message_t", (_message(one, "0u") for one in telemetry)), "what can be requested"),
+            Row(
+                self.array("telemetry", "icd_message_t", (_message(one, "0u") for one in telemetry)),
+                "what can be requested",
+            ),
             Row(f"{len(telecommands)}u, {len(telemetry)}u", "how many"),
             Row(
                 f"{known.longest_telecommand}u, {known.longest_reply}u, {known.longest}u",
@@ -88,7 +91,9 @@ class _Tables:
             Row(f"{known.longest_data}u", "longest without id and checksum"),
             Row(or_none(known.node.node_type), "node type"),
             Row(or_none(known.node.interface_version), "interface version"),
-            Row(f"{{{self.values('client', known.client)}}}", "ms for a reply, retries, ms between polls, ms of polling"),
+            Row(
+                f"{{{self.values('client', known.client)}}}", "ms for a reply, retries, ms between polls, ms of polling"
+            ),
             Row(
                 self.array(
                     "errors", "icd_error_code_t", (f"{{ICD_REASON_{key.upper()}, {code}u}}" for key, code in codes)
