@@ -11,8 +11,16 @@ from icdgen.describe.comments import Comment
 
 WIDTH = 120
 
-_CAN_BE_MARKUP = re.compile(r"[\\@<&#%*_~[]")
-_MARKUP = re.compile(r"[\\@]|<(?=[A-Za-z/!?])|[&#%](?=[\w#:])|(?:(?<![^\s<{(\[,:;]))[*_~](?=\S)|\[(?=[^\]]*\][(\[:])")
+_MARKUP = re.compile(
+    r"""[\\@<&#%*_~[]  # all that can be: where none of these stands, nothing else is tried
+        (?: (?<=[\\@])
+          | (?<=<)(?=[A-Za-z/!?])
+          | (?<=[&#%])(?=[\w#:])
+          | (?<=[*_~])(?<![^\s<{(\[,:;].)(?=\S)
+          | (?<=\[)(?=[^\]]*\][(\[:])
+        )""",
+    re.VERBOSE,
+)
 
 
 class _Command(str):
@@ -37,8 +45,7 @@ def plain(text: str) -> str:
 @lru_cache(maxsize=8192)
 def prose(text: str) -> str:
     """`plain` text for a documentation comment: only backticks are markup, nothing is a command or HTML to Doxygen or clang."""
-    text = plain(text)
-    return _MARKUP.sub(r"\\\g<0>", text) if _CAN_BE_MARKUP.search(text) else text
+    return _MARKUP.sub(r"\\\g<0>", plain(text))
 
 
 def _spelled(paragraph: str) -> str:
