@@ -21,7 +21,13 @@ _MARKUP = re.compile(
         )""",
     re.VERBOSE,
 )
-_COMMAND = re.compile(r"@file\Z|@note (?=Erratum |Note )")
+
+
+class _Command(str):
+    """A paragraph that begins with a command of documentation tools: only we make one, no text of an ICD does."""
+
+
+FILE = _Command("@file")
 
 
 @lru_cache(maxsize=8192)
@@ -43,9 +49,8 @@ def prose(text: str) -> str:
 
 
 def _spelled(paragraph: str) -> str:
-    command = _COMMAND.match(paragraph) if paragraph[0] == "@" else None
-    start = command.group() if command else ""
-    return start + prose(paragraph[len(start) :])
+    command, space, rest = paragraph.partition(" ") if isinstance(paragraph, _Command) else ("", "", paragraph)
+    return command + space + prose(rest)
 
 
 def comment(paragraphs: Iterable[str], indent: str = "") -> str:
@@ -63,7 +68,7 @@ def described(one: Comment, indent: str = "") -> str:
 
 def noted(one: Comment) -> list[str]:
     """The errata as notes of the usual documentation tools."""
-    return [f"@note {paragraph}" for paragraph in one.errata]
+    return [_Command(f"@note {paragraph.removeprefix('Note ')}") for paragraph in one.errata]
 
 
 @lru_cache(maxsize=4096)
