@@ -10,8 +10,9 @@ from icdgen.icd.model import Field, Message, Node, Part
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import close_to, line_of, listing, quote
+from icdgen.icd.rules.wording import line_of, listing, quote
 from icdgen.icd.wire_ids import number
+from icdgen.suggest import close_to
 
 _KEYS = ("bits", "type", "enum", "unit", "formula")
 _IDS = ("id", "set_id", "get_id")
@@ -73,9 +74,7 @@ def part_matches(ctx: Context) -> Iterator[Fault]:
         wanted = {part.at + f.at: f for f in frame.owners}
         start, end = part.at, part.at + frame.length * 8
         told = set()
-        for field in message.owners:
-            if field.at + field.bits <= start or field.at >= end:
-                continue
+        for field in [one for one in message.owners if one.at < end and one.at + one.bits > start]:
             twin = wanted.pop(field.at, None)
             if id(field.source) in told:
                 continue  # another element of the same array
