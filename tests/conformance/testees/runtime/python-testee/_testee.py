@@ -144,7 +144,7 @@ class Element:
             return value.ljust(info.bits // 8, b"\0") if is_cut else value
         if self.index < len(value):
             return value[self.index]
-        p, c, q = info.scale  # it is not in the frame
+        _, c, q = info.scale  # it is not in the frame
         if attribute == info.physical:
             return c / q
         return info.enum(0) if info.enum else 0.0 if info.type == "float" else 0
