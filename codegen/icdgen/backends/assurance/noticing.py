@@ -51,14 +51,6 @@ class MessageWatch:
         pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
         return [number for number, row in pairs if _answer(node, changed, row.frame) != (row.raw, row.encoded)]
 
-    def end(self, now: Message) -> list[int]:
-        """Lines that notice that the open end is another."""
-        pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
-        found = [number for number, row in pairs if _answer(self.node, now, row.frame) != (row.raw, row.encoded)]
-        if any(length in now.lengths for length in self.vectors.lengths):
-            found.append(self.lines.lengths)
-        return found
-
     def id(self, key: str) -> list[int]:
         """Lines that notice another id: frames are asked for by the id, by the set id where there are two."""
         rows = self.lines.rows[:1] if key == "get_id" else self.lines.rows

@@ -104,9 +104,6 @@ class Trace:
                     continue
                 found = changes.of_field(field, message, node)
                 own = tuple(Traced(change, _noticed(node, watch.member(place, field, now))) for change, now in found)
-                if message.tail is not None and message.tail.name == field.name:
-                    ends = changes.of_end(message)
-                    own += tuple(Traced(change, _noticed(node, watch.end(now))) for change, now in ends)
                 yield Element("field", node, message, field, row, own)
                 place += len(field.elements)
 
