@@ -128,6 +128,8 @@ def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]
     source = message.source
     for key in (*IDS, "length"):
         value = getattr(message, key)
+        if key == "length" and message.tail is not None:
+            continue  # what is open begins where it ends
         for step in (-1, 1) if value is not None else ():
             if value + step >= 0:
                 kind = "length" if key == "length" else "id"
