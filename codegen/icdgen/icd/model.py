@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
+from icdgen.icd.curve import Curve, leads_back
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, unread
 from icdgen.icd.units import Unit
@@ -140,7 +141,10 @@ class Field:
     enum: Enum | None = None
     unit: Unit | None = None
     formula: str = ""  # as held, for documentation
-    scale: Scale | None = None  # None: the physical value is the raw value
+    scale: Scale | None = None  # of a number, where the formula is a line
+    curve: Curve | None = (
+        None  # of any other formula, and of one on floats; without either, the physical value is the raw one
+    )
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
@@ -185,6 +189,20 @@ class Field:
         if not self.path:
             return self.identifier
         return ".".join(step.alias for step in self.path) if any(step.identifier for step in self.path) else None
+
+    @property
+    def has_formula(self) -> bool:
+        """Whether its physical value is computed from the raw one."""
+        return self.scale is not None or self.curve is not None
+
+    @property
+    def leads_back(self) -> bool:
+        """Whether a physical value gives the nearest raw one: always, but with some polynomials."""
+        if self.curve is None:
+            return True
+        if self.type == "float":
+            return len(self.curve.coefficients) == 2
+        return leads_back(self.curve, self.raw_min, self.raw_max)
 
     @property
     def is_bytes(self) -> bool:

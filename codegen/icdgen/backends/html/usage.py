@@ -56,6 +56,6 @@ def names(message: MessageDescription) -> list[tuple[str, str]]:
 
 
 def _worth_showing(message: MessageDescription) -> FieldDescription | None:
-    """The first field with a scale, else the first that is neither constant nor an array."""
+    """The first field with a formula, else the first that is neither constant nor an array."""
     usual = [one for one in message.members if one.model.const is None and not one.model.is_bytes and not one.count]
-    return next((one for one in usual if one.steps is not None), usual[0] if usual else None)
+    return next((one for one in usual if one.is_scaled and one.is_set), usual[0] if usual else None)

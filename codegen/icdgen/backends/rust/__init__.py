@@ -70,13 +70,13 @@ class RustBackend:
 def _functions() -> dict[str, object]:
     """What templates spell names and text with."""
     from icdgen.backends.rust import text
-    from icdgen.backends.rust.accessors import accessors, field_row, scale_of
+    from icdgen.backends.rust.accessors import accessors, curve_of, field_row, scale_of
     from icdgen.backends.rust.physical import big_parts
     from icdgen.describe.comments import sentence, text_comment, words
 
     found = (
         accessors, big_parts, field_row, names.catch_all, names.field_name, names.message_path, names.raw_type,
-        names.type_name, scale_of, sentence, text.arm, text.assigned, text.described, text.doc, text.integer,
+        names.type_name, curve_of, scale_of, sentence, text.arm, text.assigned, text.described, text.doc, text.integer,
         text.prose, text.signature, text.string, text_comment, words,
     )  # fmt: skip
     return {function.__name__: function for function in found}

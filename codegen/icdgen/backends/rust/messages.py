@@ -22,7 +22,8 @@ def values(message: MessageDescription) -> dict[str, object]:
     narrow = [field for field in fields if field.is_narrow]
     scales = [field for field in message.all_members if has_constant(field)]
     has_text = any(field.is_text for field in fields)
-    has_elements = any(field.count and field.steps is not None for field in fields)
+    has_elements = any(field.count and field.is_scaled for field in fields)
+    curves = [field for field in message.all_members if field.curve is not None]
     is_usual = any(field.steps is None or not field.steps.is_wide for field in scales)
     imported = {
         "array": any("array(" in reading for reading in readings),
@@ -38,6 +39,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "text_array": has_text,
         "words": any("words(" in reading for reading in readings),
         "Big": message.has_wide_steps,
+        "Curve": bool(curves),
         "Coded": any(field.enum for field in message.all_fields),
         "Error": True,
         "Scale": is_usual,
@@ -52,6 +54,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "writings": writings,
         "fits": [line for field in narrow for line in bits.fitting(field)],
         "scales": scales,
+        "curves": curves,
         "default": None if has_default else _literal(fields, [_fresh(field) for field in fields]),
         "derives": ", ".join(derived + ([] if message.has_floats else ["Eq", "Hash"])),
         "imports": f"{{{', '.join(names)}}}" if len(names) > 1 else names[0],
