@@ -5,13 +5,16 @@ from __future__ import annotations
 
 # Itself: what annotations name is loaded when they are evaluated.
 from . import _lazy
-from ._fields import FieldInfo, Form, field, scaled, text, whole
+from ._fields import FieldInfo, Form, curve, curve_only, field, scaled, text, whole
 
 __all__ = [
     "FieldInfo",
     "Message",
     "MessageType",
+    "curve",
+    "curve_only",
     "field",
+    "on_curve",
     "scaled",
     "text",
     "view",
@@ -35,7 +38,7 @@ else:
 
 
 @dataclass_transform(
-    kw_only_default=True, field_specifiers=(field, scaled, whole, text)
+    kw_only_default=True, field_specifiers=(field, scaled, curve, curve_only, whole, text)
 )
 class MessageType(type):
     """Makes the class of a message: a dataclass with slots, of fields that `field` declares.
@@ -157,7 +160,7 @@ class Message(metaclass=MessageType):
             Raises `RangeError`, and `TypeError` for a raw value that has a physical one.
             """
             for info in cls.FIELDS:
-                if info.physical and info.attribute in values:
+                if info.physical and info.leads_back and info.attribute in values:
                     raise TypeError(
                         f"from_physical takes {info.physical}, not {info.attribute}"
                     )
@@ -279,3 +282,10 @@ def view(message: Message, attribute: str, kind: type[_lazy.T]) -> _lazy.T:
 
     value: _lazy.T = seen(message, attribute, kind)
     return value
+
+
+def on_curve(coefficients: tuple[float, ...], raw: float) -> float:
+    """The physical value of a view, by a polynomial whose constant stands first."""
+    from ._curves import on_curve as found
+
+    return found(coefficients, raw)
