@@ -38,7 +38,8 @@ else:
 
 
 @dataclass_transform(
-    kw_only_default=True, field_specifiers=(field, scaled, curve, curve_only, whole, text)
+    kw_only_default=True,
+    field_specifiers=(field, scaled, curve, curve_only, whole, text),
 )
 class MessageType(type):
     """Makes the class of a message: a dataclass with slots, of fields that `field` declares.
