@@ -13,6 +13,7 @@ import click
 from icdgen import __version__
 from icdgen.errors import UserError
 from icdgen.reports.excerpt import shown
+from icdgen.suggest import close_words
 
 # Each is a module in ``icdgen.commands`` with a click command of the same name; `import` cannot be one in Python.
 _COMMANDS = (
@@ -37,7 +38,7 @@ class _Commands(click.Group):
         return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        if args and args[0] not in (*_COMMANDS, "--help", "-h", "--version"):
+        if args and args[0] not in (*_COMMANDS, "--help", "-h", "--version", "--cmake-dir"):
             _refuse_mistyped(args[0])
             args = [_DEFAULT, *args]
         return super().parse_args(ctx, args)
@@ -67,11 +68,17 @@ def _refuse_mistyped(word: str) -> None:
     """A word that is no option, and no file or folder, was meant as a command, and not as an ICD."""
     if not word.isidentifier() or os.path.lexists(word):
         return
-    from difflib import get_close_matches
-
-    close = get_close_matches(word.lower(), _COMMANDS, 3)
+    close = close_words(word, _COMMANDS)
     meant = "did you mean " + " or ".join(f"`{name}`" for name in close) + "?" if close else ""
     raise UserError(f"there is no command `{word}`, and no file of that name", meant or "`icdgen --help` lists them")
+
+
+def _show_cmake_dir(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if wanted:
+        from icdgen import shipped
+
+        click.echo(shipped.cmake().as_posix())  # as CMake takes paths everywhere
+        ctx.exit()
 
 
 @click.group(
@@ -81,6 +88,14 @@ def _refuse_mistyped(word: str) -> None:
     epilog="`icdgen --lang c` is short for `icdgen generate --lang c`. Exit status: 0 clean, 1 findings, 2 misuse.",
 )
 @click.version_option(__version__, prog_name="icdgen")
+@click.option(
+    "--cmake-dir",
+    is_flag=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_show_cmake_dir,
+    help="Show the folder of the CMake module, for CMAKE_MODULE_PATH, and exit.",
+)
 @click.pass_context
 def icdgen(ctx: click.Context) -> None:
     """Code, golden vectors and documentation from validated device ICDs."""

@@ -24,4 +24,6 @@
 
 #include "support/text.h"
 
+#include "support/field.h"
+
 #endif /* ICDGEN_H */

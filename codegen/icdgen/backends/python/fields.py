@@ -7,7 +7,7 @@ from fractions import Fraction
 from icdgen.backends.lines import STEP, exploded
 from icdgen.backends.python.names import class_name
 from icdgen.backends.python.text import literal
-from icdgen.describe import FieldDescription, wholes
+from icdgen.describe import FieldDescription, MessageDescription, wholes
 from icdgen.describe.wholes import Whole
 
 _WIDTH = 120  # columns of a declaration
@@ -27,6 +27,8 @@ def _annotation(field: FieldDescription) -> str:
 
 def default(field: FieldDescription) -> str:
     """The raw value in a new message."""
+    if field.is_open:
+        return "()" if field.count else 'b""'
     return f"({_default(field)},) * {field.count}" if field.count else _default(field)
 
 
@@ -45,6 +47,10 @@ def _told(field: FieldDescription) -> list[str]:
     one, items = field.model, []
     if field.count:
         items.append(f"elements={field.count}")
+    if field.is_open:
+        items.append("is_open=True")
+    if field.is_open and field.enum is not None:
+        items.append(f"enum={class_name(field.enum)}")
     if one.unit:
         items.append(f"unit={literal(one.unit.symbol)}")
     if one.const is not None:
@@ -53,7 +59,7 @@ def _told(field: FieldDescription) -> list[str]:
         pairs = [f"({special.value}, {literal(special.meaning)})" for special in one.special]
         items.append(exploded("special=(", pairs, ")", " " * 8))
     items += (f'{key}="{value}"' for key in ("byte_order", "bit_order") if (value := getattr(one, key)))
-    items += (f"{_KEYWORDS.get(bound.key, bound.key)}={_number(bound.value)}" for bound in field.bounds)
+    items += (f"{_KEYWORDS.get(bound.key, bound.key)}={number(bound.value)}" for bound in field.bounds)
     return items
 
 
@@ -62,6 +68,14 @@ def declaration(field: FieldDescription) -> str:
     one = field.model
     items = [literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', f"default={default(field)}", *_told(field)]
     return _statement(field.name, annotation(field), "field", items)
+
+
+def tail(message: MessageDescription) -> str:
+    """``_base.Tail(...)``: attributes, bytes and elements of the open end."""
+    one = message.tail
+    assert one is not None
+    counter = "" if one.counter.model.implied else one.counter.name
+    return f'_base.Tail("{one.part.name}", "{counter}", {one.step}, {one.most})'
 
 
 def view_info(field: FieldDescription) -> str:
@@ -90,7 +104,12 @@ def scaled(field: FieldDescription) -> str:
     """``estimated_roll_angle_deg: float = _base.scaled(...)``: the steps of the physical value, and the first one."""
     curve, steps = field.curve, field.steps
     first = repr(curve.double(field.fresh) if curve is not None else steps.double(field.fresh) if steps else 0.0)
-    first, note = (f"({first},) * {field.count}", "tuple[float, ...]") if field.count else (first, "float")
+    if field.is_open:
+        first, note = "()", "tuple[float, ...]"
+    elif field.count:
+        first, note = f"({first},) * {field.count}", "tuple[float, ...]"
+    else:
+        note = "float"
     if curve is not None:
         items = [str(curve.coefficients), f"default={first}"]
         return _statement(field.physical_name, note, "curve" if field.is_set else "curve_only", items)
@@ -123,5 +142,6 @@ def _statement(name: str, note: str, call: str, items: list[str]) -> str:
     return line if len(line) + len(STEP) <= _WIDTH else f"{head}\n{STEP * 2}{inner}\n{STEP})"
 
 
-def _number(exact: Fraction) -> str:
+def number(exact: Fraction | int) -> str:
+    """A literal: of an int, or of the nearest float."""
     return str(exact.numerator) if exact.denominator == 1 else repr(exact.numerator / exact.denominator)

@@ -21,11 +21,11 @@ use core::fmt::{Formatter, Result as Shown};
 pub struct Field {
     /// What the ICD calls it.
     pub name: &'static str,
-    /// Its first bit in the frame.
+    /// Its first bit in the frame; behind the longest one, if only the length of the frame tells its value.
     pub at: usize,
     /// How many bits it has; of an array, each element.
     pub bits: usize,
-    /// How many elements an array has; 1 if it is none.
+    /// How many elements an array has, or can have; 1 if it is none.
     pub count: usize,
     /// The unit of the physical value; empty without one.
     pub unit: &'static str,
@@ -79,12 +79,27 @@ impl Field {
         self
     }
 
+<<<<<<< HEAD
     pub(crate) const fn curve(mut self, curve: &'static Curve) -> Self {
         self.scale = Some(Formula::Curve(curve));
         self
     }
 
     /// The physical value of a raw one, the double nearest to it but of a polynomial; None without a formula.
+=======
+    /// Whether a physical value (a raw one where there is no scale) keeps the limits; NaN keeps none.
+    #[must_use]
+    pub fn allows(&self, value: f64) -> bool {
+        self.limits.iter().all(|&(kind, limit)| match kind {
+            "min" => value >= limit,
+            "above" => value > limit,
+            "max" => value <= limit,
+            _ => value < limit,
+        })
+    }
+
+    /// The double nearest to the physical value of a raw one; None without a scale.
+>>>>>>> main
     #[must_use]
     pub fn physical(&self, raw: i64) -> Option<f64> {
         self.converted(raw.into())
@@ -134,7 +149,7 @@ impl Row {
         Ok(Self { rest, mark })
     }
 
-    pub(crate) fn show(&mut self, out: &mut Formatter<'_>, value: &impl Value) -> Shown {
+    pub(crate) fn show(&mut self, out: &mut Formatter<'_>, value: &(impl Value + ?Sized)) -> Shown {
         let mark = core::mem::replace(&mut self.mark, ", ");
         match self.rest.next() {
             Some(field) => {
@@ -201,6 +216,12 @@ impl<E: super::Enumeration> Value for super::Coded<E> {
 }
 
 impl<T: Value, const N: usize> Value for [T; N] {
+    fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
+        self.as_slice().show(out, field)
+    }
+}
+
+impl<T: Value> Value for [T] {
     fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
         let mut mark = "[";
         for one in self {
