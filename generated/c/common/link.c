@@ -478,7 +478,8 @@ ICDGEN_API const icd_link_t *common_link(void)
         128u, 255u, /* ids of telemetry */
         telecommands,
         telemetry,
-        ICDGEN_U16((sizeof telecommands / sizeof telecommands[0]) - 1u), ICDGEN_U16((sizeof telemetry / sizeof telemetry[0]) - 1u), /* how many */
+        ICDGEN_U16((sizeof(telecommands) / sizeof(telecommands[0])) - 1u), /* how many */
+        ICDGEN_U16((sizeof(telemetry) / sizeof(telemetry[0])) - 1u), /* how many */
         23u, 23u, 23u, /* longest telecommand, reply, any */
         22u, /* longest without id and checksum */
         -1, /* node type */

@@ -1072,7 +1072,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         128u, 255u, /* ids of telemetry */
         telecommands,
         telemetry,
-        ICDGEN_U16((sizeof telecommands / sizeof telecommands[0]) - 1u), ICDGEN_U16((sizeof telemetry / sizeof telemetry[0]) - 1u), /* how many */
+        ICDGEN_U16((sizeof(telecommands) / sizeof(telecommands[0])) - 1u), /* how many */
+        ICDGEN_U16((sizeof(telemetry) / sizeof(telemetry[0])) - 1u), /* how many */
         506u, 506u, 506u, /* longest telecommand, reply, any */
         504u, /* longest without id and checksum */
         10, /* node type */

@@ -308,7 +308,7 @@ def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:
 
 
 def _count(name: str, messages: list[SentMessage]) -> str:
-    return f"ICDGEN_U16((sizeof {name} / sizeof {name}[0]) - 1u)" if messages else "0u"
+    return f"ICDGEN_U16((sizeof({name}) / sizeof({name}[0])) - 1u)" if messages else "0u"
 
 
 def crc_table(one: Crc) -> list[int]:
