@@ -812,7 +812,7 @@ static inline icd_status_t bootloader_send_copy_to_internal_flash(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_IDENTIFICATION)
-/** Requests Identification. */
+/** Requests Identification, as icd_client_request(). */
 static inline icd_status_t bootloader_request_identification(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
@@ -829,7 +829,7 @@ static inline icd_status_t bootloader_receive_identification(common_identificati
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
-/** Requests Boot And Running Program Status. */
+/** Requests Boot And Running Program Status, as icd_client_request(). */
 static inline icd_status_t bootloader_request_boot_and_running_program_status(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
@@ -848,7 +848,7 @@ static inline icd_status_t bootloader_receive_boot_and_running_program_status(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_BOOT_INDEX_AND_STATUS)
-/** Requests Boot Index and Status. */
+/** Requests Boot Index and Status, as icd_client_request(). */
 static inline icd_status_t bootloader_request_boot_index_and_status(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
@@ -867,7 +867,7 @@ static inline icd_status_t bootloader_receive_boot_index_and_status(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_LAST_LOGGED_EVENT)
-/** Requests Last Logged Event. */
+/** Requests Last Logged Event, as icd_client_request(). */
 static inline icd_status_t bootloader_request_last_logged_event(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
@@ -886,7 +886,7 @@ static inline icd_status_t bootloader_receive_last_logged_event(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SRAM_LATCHUP_COUNTERS)
-/** Requests SRAM Latchup counters. */
+/** Requests SRAM Latchup counters, as icd_client_request(). */
 static inline icd_status_t bootloader_request_sram_latchup_counters(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
@@ -905,7 +905,7 @@ static inline icd_status_t bootloader_receive_sram_latchup_counters(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_EDAC_ERROR_COUNTERS)
-/** Requests EDAC Error Counters. */
+/** Requests EDAC Error Counters, as icd_client_request(). */
 static inline icd_status_t bootloader_request_edac_error_counters(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
@@ -924,7 +924,7 @@ static inline icd_status_t bootloader_receive_edac_error_counters(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_COMMUNICATION_STATUS)
-/** Requests Communication Status. */
+/** Requests Communication Status, as icd_client_request(). */
 static inline icd_status_t bootloader_request_communication_status(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
@@ -943,7 +943,7 @@ static inline icd_status_t bootloader_receive_communication_status(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SD_CARD_FORMAT_ERASE_PROGRESS)
-/** Requests SD card format/erase progress. */
+/** Requests SD card format/erase progress, as icd_client_request(). */
 static inline icd_status_t bootloader_request_sd_card_format_erase_progress(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
@@ -962,7 +962,7 @@ static inline icd_status_t bootloader_receive_sd_card_format_erase_progress(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_TELECOMMAND_ACKNOWLEDGE)
-/** Requests Telecommand Acknowledge. */
+/** Requests Telecommand Acknowledge, as icd_client_request(). */
 static inline icd_status_t bootloader_request_telecommand_acknowledge(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
@@ -981,7 +981,7 @@ static inline icd_status_t bootloader_receive_telecommand_acknowledge(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
-/** Requests File Download Buffer with File Contents. */
+/** Requests File Download Buffer with File Contents, as icd_client_request(). */
 static inline icd_status_t bootloader_request_file_download_buffer_with_file_contents(
     bootloader_client_t *client,
     uint32_t now)
@@ -1005,7 +1005,7 @@ static inline icd_status_t bootloader_receive_file_download_buffer_with_file_con
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_DOWNLOAD_BLOCK_READY)
-/** Requests Download Block Ready. */
+/** Requests Download Block Ready, as icd_client_request(). */
 static inline icd_status_t bootloader_request_download_block_ready(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
@@ -1024,7 +1024,7 @@ static inline icd_status_t bootloader_receive_download_block_ready(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FILE_INFORMATION)
-/** Requests File Information. */
+/** Requests File Information, as icd_client_request(). */
 static inline icd_status_t bootloader_request_file_information(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
@@ -1043,7 +1043,7 @@ static inline icd_status_t bootloader_receive_file_information(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_INITIALIZE_UPLOAD_COMPLETE)
-/** Requests Initialize Upload Complete. */
+/** Requests Initialize Upload Complete, as icd_client_request(). */
 static inline icd_status_t bootloader_request_initialize_upload_complete(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
@@ -1062,7 +1062,7 @@ static inline icd_status_t bootloader_receive_initialize_upload_complete(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_UPLOAD_BLOCK_COMPLETE)
-/** Requests Upload Block Complete. */
+/** Requests Upload Block Complete, as icd_client_request(). */
 static inline icd_status_t bootloader_request_upload_block_complete(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
@@ -1081,7 +1081,7 @@ static inline icd_status_t bootloader_receive_upload_block_complete(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_BLOCK_CHECKSUM)
-/** Requests Block Checksum. */
+/** Requests Block Checksum, as icd_client_request(). */
 static inline icd_status_t bootloader_request_block_checksum(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
@@ -1098,7 +1098,7 @@ static inline icd_status_t bootloader_receive_block_checksum(common_block_checks
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CACHE_ENABLED_STATE)
-/** Requests Cache enabled state. */
+/** Requests Cache enabled state, as icd_client_request(). */
 static inline icd_status_t bootloader_request_cache_enabled_state(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
@@ -1117,7 +1117,7 @@ static inline icd_status_t bootloader_receive_cache_enabled_state(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SRAM_SCRUB_PARAMETERS)
-/** Requests SRAM Scrub Parameters. */
+/** Requests SRAM Scrub Parameters, as icd_client_request(). */
 static inline icd_status_t bootloader_request_sram_scrub_parameters(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
@@ -1136,7 +1136,7 @@ static inline icd_status_t bootloader_receive_sram_scrub_parameters(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CURRENT_UNIX_TIME)
-/** Requests Current Unix Time. */
+/** Requests Current Unix Time, as icd_client_request(). */
 static inline icd_status_t bootloader_request_current_unix_time(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
@@ -1155,7 +1155,7 @@ static inline icd_status_t bootloader_receive_current_unix_time(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_UNIX_TIME_SAVE_TO_FLASH)
-/** Requests Unix Time Save to Flash. */
+/** Requests Unix Time Save to Flash, as icd_client_request(). */
 static inline icd_status_t bootloader_request_unix_time_save_to_flash(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
@@ -1174,7 +1174,7 @@ static inline icd_status_t bootloader_receive_unix_time_save_to_flash(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_1)
-/** Requests Hole Map 1. */
+/** Requests Hole Map 1, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_1(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
@@ -1191,7 +1191,7 @@ static inline icd_status_t bootloader_receive_hole_map_1(common_hole_map_1_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_2)
-/** Requests Hole Map 2. */
+/** Requests Hole Map 2, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_2(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
@@ -1208,7 +1208,7 @@ static inline icd_status_t bootloader_receive_hole_map_2(common_hole_map_2_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_3)
-/** Requests Hole Map 3. */
+/** Requests Hole Map 3, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_3(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
@@ -1225,7 +1225,7 @@ static inline icd_status_t bootloader_receive_hole_map_3(common_hole_map_3_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_4)
-/** Requests Hole Map 4. */
+/** Requests Hole Map 4, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_4(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
@@ -1242,7 +1242,7 @@ static inline icd_status_t bootloader_receive_hole_map_4(common_hole_map_4_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_5)
-/** Requests Hole Map 5. */
+/** Requests Hole Map 5, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_5(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
@@ -1259,7 +1259,7 @@ static inline icd_status_t bootloader_receive_hole_map_5(common_hole_map_5_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_6)
-/** Requests Hole Map 6. */
+/** Requests Hole Map 6, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_6(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
@@ -1276,7 +1276,7 @@ static inline icd_status_t bootloader_receive_hole_map_6(common_hole_map_6_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_7)
-/** Requests Hole Map 7. */
+/** Requests Hole Map 7, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_7(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
@@ -1293,7 +1293,7 @@ static inline icd_status_t bootloader_receive_hole_map_7(common_hole_map_7_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_8)
-/** Requests Hole Map 8. */
+/** Requests Hole Map 8, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_8(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);
@@ -1310,7 +1310,7 @@ static inline icd_status_t bootloader_receive_hole_map_8(common_hole_map_8_t *me
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_STATE)
-/** Requests Bootloader State. */
+/** Requests Bootloader State, as icd_client_request(). */
 static inline icd_status_t bootloader_request_state(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, BOOTLOADER_STATE_ID);
@@ -1327,7 +1327,7 @@ static inline icd_status_t bootloader_receive_state(bootloader_state_t *message,
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_PROGRAM_INFORMATION)
-/** Requests Program Information. */
+/** Requests Program Information, as icd_client_request(). */
 static inline icd_status_t bootloader_request_program_information(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, BOOTLOADER_PROGRAM_INFORMATION_ID);
@@ -1346,7 +1346,7 @@ static inline icd_status_t bootloader_receive_program_information(
 #endif
 
 #if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_COPY_TO_INTERNAL_FLASH_PROGRESS)
-/** Requests Copy To Internal Flash Progress. */
+/** Requests Copy To Internal Flash Progress, as icd_client_request(). */
 static inline icd_status_t bootloader_request_copy_to_internal_flash_progress(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_ID);

@@ -719,7 +719,7 @@ static inline icd_status_t common_send_hole_map_8(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_IDENTIFICATION)
-/** Requests Identification. */
+/** Requests Identification, as icd_client_request(). */
 static inline icd_status_t common_request_identification(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
@@ -736,7 +736,7 @@ static inline icd_status_t common_receive_identification(common_identification_t
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
-/** Requests Boot And Running Program Status. */
+/** Requests Boot And Running Program Status, as icd_client_request(). */
 static inline icd_status_t common_request_boot_and_running_program_status(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
@@ -755,7 +755,7 @@ static inline icd_status_t common_receive_boot_and_running_program_status(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_BOOT_INDEX_AND_STATUS)
-/** Requests Boot Index and Status. */
+/** Requests Boot Index and Status, as icd_client_request(). */
 static inline icd_status_t common_request_boot_index_and_status(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
@@ -774,7 +774,7 @@ static inline icd_status_t common_receive_boot_index_and_status(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_LAST_LOGGED_EVENT)
-/** Requests Last Logged Event. */
+/** Requests Last Logged Event, as icd_client_request(). */
 static inline icd_status_t common_request_last_logged_event(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
@@ -793,7 +793,7 @@ static inline icd_status_t common_receive_last_logged_event(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SRAM_LATCHUP_COUNTERS)
-/** Requests SRAM Latchup counters. */
+/** Requests SRAM Latchup counters, as icd_client_request(). */
 static inline icd_status_t common_request_sram_latchup_counters(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
@@ -812,7 +812,7 @@ static inline icd_status_t common_receive_sram_latchup_counters(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_EDAC_ERROR_COUNTERS)
-/** Requests EDAC Error Counters. */
+/** Requests EDAC Error Counters, as icd_client_request(). */
 static inline icd_status_t common_request_edac_error_counters(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
@@ -831,7 +831,7 @@ static inline icd_status_t common_receive_edac_error_counters(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_COMMUNICATION_STATUS)
-/** Requests Communication Status. */
+/** Requests Communication Status, as icd_client_request(). */
 static inline icd_status_t common_request_communication_status(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
@@ -850,7 +850,7 @@ static inline icd_status_t common_receive_communication_status(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SD_CARD_FORMAT_ERASE_PROGRESS)
-/** Requests SD card format/erase progress. */
+/** Requests SD card format/erase progress, as icd_client_request(). */
 static inline icd_status_t common_request_sd_card_format_erase_progress(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
@@ -869,7 +869,7 @@ static inline icd_status_t common_receive_sd_card_format_erase_progress(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_TELECOMMAND_ACKNOWLEDGE)
-/** Requests Telecommand Acknowledge. */
+/** Requests Telecommand Acknowledge, as icd_client_request(). */
 static inline icd_status_t common_request_telecommand_acknowledge(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
@@ -888,7 +888,7 @@ static inline icd_status_t common_receive_telecommand_acknowledge(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
-/** Requests File Download Buffer with File Contents. */
+/** Requests File Download Buffer with File Contents, as icd_client_request(). */
 static inline icd_status_t common_request_file_download_buffer_with_file_contents(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID);
@@ -910,7 +910,7 @@ static inline icd_status_t common_receive_file_download_buffer_with_file_content
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_DOWNLOAD_BLOCK_READY)
-/** Requests Download Block Ready. */
+/** Requests Download Block Ready, as icd_client_request(). */
 static inline icd_status_t common_request_download_block_ready(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
@@ -929,7 +929,7 @@ static inline icd_status_t common_receive_download_block_ready(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FILE_INFORMATION)
-/** Requests File Information. */
+/** Requests File Information, as icd_client_request(). */
 static inline icd_status_t common_request_file_information(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
@@ -946,7 +946,7 @@ static inline icd_status_t common_receive_file_information(common_file_informati
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_INITIALIZE_UPLOAD_COMPLETE)
-/** Requests Initialize Upload Complete. */
+/** Requests Initialize Upload Complete, as icd_client_request(). */
 static inline icd_status_t common_request_initialize_upload_complete(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
@@ -965,7 +965,7 @@ static inline icd_status_t common_receive_initialize_upload_complete(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_UPLOAD_BLOCK_COMPLETE)
-/** Requests Upload Block Complete. */
+/** Requests Upload Block Complete, as icd_client_request(). */
 static inline icd_status_t common_request_upload_block_complete(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
@@ -984,7 +984,7 @@ static inline icd_status_t common_receive_upload_block_complete(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_BLOCK_CHECKSUM)
-/** Requests Block Checksum. */
+/** Requests Block Checksum, as icd_client_request(). */
 static inline icd_status_t common_request_block_checksum(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
@@ -1001,7 +1001,7 @@ static inline icd_status_t common_receive_block_checksum(common_block_checksum_t
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CACHE_ENABLED_STATE)
-/** Requests Cache enabled state. */
+/** Requests Cache enabled state, as icd_client_request(). */
 static inline icd_status_t common_request_cache_enabled_state(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
@@ -1020,7 +1020,7 @@ static inline icd_status_t common_receive_cache_enabled_state(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SRAM_SCRUB_PARAMETERS)
-/** Requests SRAM Scrub Parameters. */
+/** Requests SRAM Scrub Parameters, as icd_client_request(). */
 static inline icd_status_t common_request_sram_scrub_parameters(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
@@ -1039,7 +1039,7 @@ static inline icd_status_t common_receive_sram_scrub_parameters(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CURRENT_UNIX_TIME)
-/** Requests Current Unix Time. */
+/** Requests Current Unix Time, as icd_client_request(). */
 static inline icd_status_t common_request_current_unix_time(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
@@ -1058,7 +1058,7 @@ static inline icd_status_t common_receive_current_unix_time(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_UNIX_TIME_SAVE_TO_FLASH)
-/** Requests Unix Time Save to Flash. */
+/** Requests Unix Time Save to Flash, as icd_client_request(). */
 static inline icd_status_t common_request_unix_time_save_to_flash(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
@@ -1077,7 +1077,7 @@ static inline icd_status_t common_receive_unix_time_save_to_flash(
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_1)
-/** Requests Hole Map 1. */
+/** Requests Hole Map 1, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_1(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
@@ -1094,7 +1094,7 @@ static inline icd_status_t common_receive_hole_map_1(common_hole_map_1_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_2)
-/** Requests Hole Map 2. */
+/** Requests Hole Map 2, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_2(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
@@ -1111,7 +1111,7 @@ static inline icd_status_t common_receive_hole_map_2(common_hole_map_2_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_3)
-/** Requests Hole Map 3. */
+/** Requests Hole Map 3, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_3(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
@@ -1128,7 +1128,7 @@ static inline icd_status_t common_receive_hole_map_3(common_hole_map_3_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_4)
-/** Requests Hole Map 4. */
+/** Requests Hole Map 4, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_4(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
@@ -1145,7 +1145,7 @@ static inline icd_status_t common_receive_hole_map_4(common_hole_map_4_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_5)
-/** Requests Hole Map 5. */
+/** Requests Hole Map 5, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_5(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
@@ -1162,7 +1162,7 @@ static inline icd_status_t common_receive_hole_map_5(common_hole_map_5_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_6)
-/** Requests Hole Map 6. */
+/** Requests Hole Map 6, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_6(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
@@ -1179,7 +1179,7 @@ static inline icd_status_t common_receive_hole_map_6(common_hole_map_6_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_7)
-/** Requests Hole Map 7. */
+/** Requests Hole Map 7, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_7(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
@@ -1196,7 +1196,7 @@ static inline icd_status_t common_receive_hole_map_7(common_hole_map_7_t *messag
 #endif
 
 #if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_8)
-/** Requests Hole Map 8. */
+/** Requests Hole Map 8, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_8(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);

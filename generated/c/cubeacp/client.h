@@ -1868,7 +1868,7 @@ static inline icd_status_t cubeacp_send_inertial_pointing_reference_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_IDENTIFICATION)
-/** Requests Identification. */
+/** Requests Identification, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_identification(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
@@ -1885,7 +1885,7 @@ static inline icd_status_t cubeacp_receive_identification(common_identification_
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
-/** Requests Boot And Running Program Status. */
+/** Requests Boot And Running Program Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_boot_and_running_program_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
@@ -1904,7 +1904,7 @@ static inline icd_status_t cubeacp_receive_boot_and_running_program_status(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BOOT_INDEX_AND_STATUS)
-/** Requests Boot Index and Status. */
+/** Requests Boot Index and Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_boot_index_and_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
@@ -1923,7 +1923,7 @@ static inline icd_status_t cubeacp_receive_boot_index_and_status(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_LAST_LOGGED_EVENT)
-/** Requests Last Logged Event. */
+/** Requests Last Logged Event, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_last_logged_event(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
@@ -1942,7 +1942,7 @@ static inline icd_status_t cubeacp_receive_last_logged_event(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_LATCHUP_COUNTERS)
-/** Requests SRAM Latchup counters. */
+/** Requests SRAM Latchup counters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sram_latchup_counters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
@@ -1961,7 +1961,7 @@ static inline icd_status_t cubeacp_receive_sram_latchup_counters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_EDAC_ERROR_COUNTERS)
-/** Requests EDAC Error Counters. */
+/** Requests EDAC Error Counters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_edac_error_counters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
@@ -1980,7 +1980,7 @@ static inline icd_status_t cubeacp_receive_edac_error_counters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMUNICATION_STATUS)
-/** Requests Communication Status. */
+/** Requests Communication Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_communication_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
@@ -1999,7 +1999,7 @@ static inline icd_status_t cubeacp_receive_communication_status(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_CARD_FORMAT_ERASE_PROGRESS)
-/** Requests SD card format/erase progress. */
+/** Requests SD card format/erase progress, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_card_format_erase_progress(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
@@ -2018,7 +2018,7 @@ static inline icd_status_t cubeacp_receive_sd_card_format_erase_progress(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TELECOMMAND_ACKNOWLEDGE)
-/** Requests Telecommand Acknowledge. */
+/** Requests Telecommand Acknowledge, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_telecommand_acknowledge(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
@@ -2037,7 +2037,7 @@ static inline icd_status_t cubeacp_receive_telecommand_acknowledge(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
-/** Requests File Download Buffer with File Contents. */
+/** Requests File Download Buffer with File Contents, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_file_download_buffer_with_file_contents(
     cubeacp_client_t *client,
     uint32_t now)
@@ -2061,7 +2061,7 @@ static inline icd_status_t cubeacp_receive_file_download_buffer_with_file_conten
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_DOWNLOAD_BLOCK_READY)
-/** Requests Download Block Ready. */
+/** Requests Download Block Ready, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_download_block_ready(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
@@ -2080,7 +2080,7 @@ static inline icd_status_t cubeacp_receive_download_block_ready(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_INFORMATION)
-/** Requests File Information. */
+/** Requests File Information, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_file_information(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
@@ -2099,7 +2099,7 @@ static inline icd_status_t cubeacp_receive_file_information(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INITIALIZE_UPLOAD_COMPLETE)
-/** Requests Initialize Upload Complete. */
+/** Requests Initialize Upload Complete, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_initialize_upload_complete(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
@@ -2118,7 +2118,7 @@ static inline icd_status_t cubeacp_receive_initialize_upload_complete(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UPLOAD_BLOCK_COMPLETE)
-/** Requests Upload Block Complete. */
+/** Requests Upload Block Complete, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_upload_block_complete(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
@@ -2137,7 +2137,7 @@ static inline icd_status_t cubeacp_receive_upload_block_complete(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BLOCK_CHECKSUM)
-/** Requests Block Checksum. */
+/** Requests Block Checksum, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_block_checksum(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
@@ -2154,7 +2154,7 @@ static inline icd_status_t cubeacp_receive_block_checksum(common_block_checksum_
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CACHE_ENABLED_STATE)
-/** Requests Cache enabled state. */
+/** Requests Cache enabled state, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cache_enabled_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
@@ -2173,7 +2173,7 @@ static inline icd_status_t cubeacp_receive_cache_enabled_state(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_SCRUB_PARAMETERS)
-/** Requests SRAM Scrub Parameters. */
+/** Requests SRAM Scrub Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sram_scrub_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
@@ -2192,7 +2192,7 @@ static inline icd_status_t cubeacp_receive_sram_scrub_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_UNIX_TIME)
-/** Requests Current Unix Time. */
+/** Requests Current Unix Time, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_unix_time(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
@@ -2211,7 +2211,7 @@ static inline icd_status_t cubeacp_receive_current_unix_time(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UNIX_TIME_SAVE_TO_FLASH)
-/** Requests Unix Time Save to Flash. */
+/** Requests Unix Time Save to Flash, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_unix_time_save_to_flash(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
@@ -2230,7 +2230,7 @@ static inline icd_status_t cubeacp_receive_unix_time_save_to_flash(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_1)
-/** Requests Hole Map 1. */
+/** Requests Hole Map 1, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_1(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
@@ -2247,7 +2247,7 @@ static inline icd_status_t cubeacp_receive_hole_map_1(common_hole_map_1_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_2)
-/** Requests Hole Map 2. */
+/** Requests Hole Map 2, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_2(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
@@ -2264,7 +2264,7 @@ static inline icd_status_t cubeacp_receive_hole_map_2(common_hole_map_2_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_3)
-/** Requests Hole Map 3. */
+/** Requests Hole Map 3, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_3(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
@@ -2281,7 +2281,7 @@ static inline icd_status_t cubeacp_receive_hole_map_3(common_hole_map_3_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_4)
-/** Requests Hole Map 4. */
+/** Requests Hole Map 4, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_4(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
@@ -2298,7 +2298,7 @@ static inline icd_status_t cubeacp_receive_hole_map_4(common_hole_map_4_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_5)
-/** Requests Hole Map 5. */
+/** Requests Hole Map 5, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_5(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
@@ -2315,7 +2315,7 @@ static inline icd_status_t cubeacp_receive_hole_map_5(common_hole_map_5_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_6)
-/** Requests Hole Map 6. */
+/** Requests Hole Map 6, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_6(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
@@ -2332,7 +2332,7 @@ static inline icd_status_t cubeacp_receive_hole_map_6(common_hole_map_6_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_7)
-/** Requests Hole Map 7. */
+/** Requests Hole Map 7, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_7(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
@@ -2349,7 +2349,7 @@ static inline icd_status_t cubeacp_receive_hole_map_7(common_hole_map_7_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_8)
-/** Requests Hole Map 8. */
+/** Requests Hole Map 8, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_8(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);
@@ -2366,7 +2366,7 @@ static inline icd_status_t cubeacp_receive_hole_map_8(common_hole_map_8_t *messa
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_ADCS_STATE)
-/** Requests Current ADCS State. */
+/** Requests Current ADCS State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_adcs_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CURRENT_ADCS_STATE_ID);
@@ -2385,7 +2385,7 @@ static inline icd_status_t cubeacp_receive_current_adcs_state(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_JPG_CONVERSION_PROGRESS)
-/** Requests JPG Conversion Progress. */
+/** Requests JPG Conversion Progress, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_jpg_conversion_progress(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_JPG_CONVERSION_PROGRESS_ID);
@@ -2404,7 +2404,7 @@ static inline icd_status_t cubeacp_receive_jpg_conversion_progress(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STATE)
-/** Requests CubeACP State. */
+/** Requests CubeACP State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STATE_ID);
@@ -2421,7 +2421,7 @@ static inline icd_status_t cubeacp_receive_state(cubeacp_state_t *message, const
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_ATTITUDE_ANGLES)
-/** Requests Estimated Attitude Angles. */
+/** Requests Estimated Attitude Angles, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_attitude_angles(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID);
@@ -2440,7 +2440,7 @@ static inline icd_status_t cubeacp_receive_estimated_attitude_angles(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_ANGULAR_RATES)
-/** Requests Estimated Angular Rates. */
+/** Requests Estimated Angular Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_angular_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_ANGULAR_RATES_ID);
@@ -2459,7 +2459,7 @@ static inline icd_status_t cubeacp_receive_estimated_angular_rates(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_POSITION_ECI)
-/** Requests Satellite Position (ECI). */
+/** Requests Satellite Position (ECI), as icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_position_eci(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_POSITION_ECI_ID);
@@ -2478,7 +2478,7 @@ static inline icd_status_t cubeacp_receive_satellite_position_eci(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_VELOCITY_ECI)
-/** Requests Satellite Velocity (ECI). */
+/** Requests Satellite Velocity (ECI), as icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_velocity_eci(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_VELOCITY_ECI_ID);
@@ -2497,7 +2497,7 @@ static inline icd_status_t cubeacp_receive_satellite_velocity_eci(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_POSITION_LLH)
-/** Requests Satellite Position (LLH). */
+/** Requests Satellite Position (LLH), as icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_position_llh(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_POSITION_LLH_ID);
@@ -2516,7 +2516,7 @@ static inline icd_status_t cubeacp_receive_satellite_position_llh(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETIC_FIELD_VECTOR)
-/** Requests Magnetic Field Vector. */
+/** Requests Magnetic Field Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetic_field_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MAGNETIC_FIELD_VECTOR_ID);
@@ -2535,7 +2535,7 @@ static inline icd_status_t cubeacp_receive_magnetic_field_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COARSE_SUN_VECTOR)
-/** Requests Coarse Sun Vector. */
+/** Requests Coarse Sun Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_coarse_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_COARSE_SUN_VECTOR_ID);
@@ -2554,7 +2554,7 @@ static inline icd_status_t cubeacp_receive_coarse_sun_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINE_SUN_VECTOR)
-/** Requests Fine Sun Vector. */
+/** Requests Fine Sun Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_fine_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_FINE_SUN_VECTOR_ID);
@@ -2571,7 +2571,7 @@ static inline icd_status_t cubeacp_receive_fine_sun_vector(cubeacp_fine_sun_vect
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_NADIR_VECTOR)
-/** Requests Nadir Vector. */
+/** Requests Nadir Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_nadir_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_NADIR_VECTOR_ID);
@@ -2588,7 +2588,7 @@ static inline icd_status_t cubeacp_receive_nadir_vector(cubeacp_nadir_vector_t *
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RATE_SENSOR_RATES)
-/** Requests Rate Sensor Rates. */
+/** Requests Rate Sensor Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_rate_sensor_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RATE_SENSOR_RATES_ID);
@@ -2607,7 +2607,7 @@ static inline icd_status_t cubeacp_receive_rate_sensor_rates(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_SPEED)
-/** Requests Wheel Speed. */
+/** Requests Wheel Speed, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_speed(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_SPEED_ID);
@@ -2624,7 +2624,7 @@ static inline icd_status_t cubeacp_receive_wheel_speed(cubeacp_wheel_speed_t *me
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETORQUER_COMMAND)
-/** Requests Magnetorquer Command. */
+/** Requests Magnetorquer Command, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetorquer_command(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MAGNETORQUER_COMMAND_ID);
@@ -2643,7 +2643,7 @@ static inline icd_status_t cubeacp_receive_magnetorquer_command(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_SPEED_COMMANDS)
-/** Requests Wheel Speed Commands. */
+/** Requests Wheel Speed Commands, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_speed_commands(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_SPEED_COMMANDS_ID);
@@ -2662,7 +2662,7 @@ static inline icd_status_t cubeacp_receive_wheel_speed_commands(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR)
-/** Requests IGRF Modelled Magnetic Field Vector. */
+/** Requests IGRF Modelled Magnetic Field Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_igrf_modelled_magnetic_field_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_ID);
@@ -2683,7 +2683,7 @@ static inline icd_status_t cubeacp_receive_igrf_modelled_magnetic_field_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MODELLED_SUN_VECTOR)
-/** Requests Modelled Sun Vector. */
+/** Requests Modelled Sun Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_modelled_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MODELLED_SUN_VECTOR_ID);
@@ -2702,7 +2702,7 @@ static inline icd_status_t cubeacp_receive_modelled_sun_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_GYRO_BIAS)
-/** Requests Estimated Gyro Bias. */
+/** Requests Estimated Gyro Bias, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_gyro_bias(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_GYRO_BIAS_ID);
@@ -2721,7 +2721,7 @@ static inline icd_status_t cubeacp_receive_estimated_gyro_bias(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_INNOVATION_VECTOR)
-/** Requests Estimation Innovation Vector. */
+/** Requests Estimation Innovation Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_innovation_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_INNOVATION_VECTOR_ID);
@@ -2740,7 +2740,7 @@ static inline icd_status_t cubeacp_receive_estimation_innovation_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_QUATERNION_ERROR_VECTOR)
-/** Requests Quaternion Error Vector. */
+/** Requests Quaternion Error Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_quaternion_error_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_QUATERNION_ERROR_VECTOR_ID);
@@ -2759,7 +2759,7 @@ static inline icd_status_t cubeacp_receive_quaternion_error_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_QUATERNION_COVARIANCE)
-/** Requests Quaternion Covariance. */
+/** Requests Quaternion Covariance, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_quaternion_covariance(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_QUATERNION_COVARIANCE_ID);
@@ -2778,7 +2778,7 @@ static inline icd_status_t cubeacp_receive_quaternion_covariance(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ANGULAR_RATE_COVARIANCE)
-/** Requests Angular Rate Covariance. */
+/** Requests Angular Rate Covariance, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_angular_rate_covariance(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ANGULAR_RATE_COVARIANCE_ID);
@@ -2797,7 +2797,7 @@ static inline icd_status_t cubeacp_receive_angular_rate_covariance(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CAM2_SENSOR)
-/** Requests Raw Cam2 Sensor. */
+/** Requests Raw Cam2 Sensor, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_cam2_sensor(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CAM2_SENSOR_ID);
@@ -2814,7 +2814,7 @@ static inline icd_status_t cubeacp_receive_raw_cam2_sensor(cubeacp_raw_cam2_sens
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CAM1_SENSOR)
-/** Requests Raw Cam1 Sensor. */
+/** Requests Raw Cam1 Sensor, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_cam1_sensor(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CAM1_SENSOR_ID);
@@ -2831,7 +2831,7 @@ static inline icd_status_t cubeacp_receive_raw_cam1_sensor(cubeacp_raw_cam1_sens
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CSS_1_TO_6)
-/** Requests Raw CSS 1 to 6. */
+/** Requests Raw CSS 1 to 6, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_css_1_to_6(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CSS_1_TO_6_ID);
@@ -2848,7 +2848,7 @@ static inline icd_status_t cubeacp_receive_raw_css_1_to_6(cubeacp_raw_css_1_to_6
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CSS_7_TO_10)
-/** Requests Raw CSS 7 to 10. */
+/** Requests Raw CSS 7 to 10, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_css_7_to_10(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CSS_7_TO_10_ID);
@@ -2865,7 +2865,7 @@ static inline icd_status_t cubeacp_receive_raw_css_7_to_10(cubeacp_raw_css_7_to_
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_MAGNETOMETER)
-/** Requests Raw Magnetometer. */
+/** Requests Raw Magnetometer, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_magnetometer(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_MAGNETOMETER_ID);
@@ -2884,7 +2884,7 @@ static inline icd_status_t cubeacp_receive_raw_magnetometer(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE1_CURRENTS)
-/** Requests CubeSense1 Current Measurements. */
+/** Requests CubeSense1 Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense1_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE1_CURRENTS_ID);
@@ -2903,7 +2903,7 @@ static inline icd_status_t cubeacp_receive_cubesense1_currents(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBECONTROL_CURRENTS)
-/** Requests CubeControl Current Measurements. */
+/** Requests CubeControl Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubecontrol_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBECONTROL_CURRENTS_ID);
@@ -2924,7 +2924,7 @@ static inline icd_status_t cubeacp_receive_cubecontrol_currents(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_CURRENTS)
-/** Requests Wheel Currents. */
+/** Requests Wheel Currents, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_CURRENTS_ID);
@@ -2941,7 +2941,7 @@ static inline icd_status_t cubeacp_receive_wheel_currents(cubeacp_wheel_currents
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_TEMPERATURES)
-/** Requests ADCS Temperatures. */
+/** Requests ADCS Temperatures, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_temperatures(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_TEMPERATURES_ID);
@@ -2960,7 +2960,7 @@ static inline icd_status_t cubeacp_receive_adcs_temperatures(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RATE_SENSOR_TEMPERATURES)
-/** Requests Rate sensor temperatures. */
+/** Requests Rate sensor temperatures, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_rate_sensor_temperatures(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RATE_SENSOR_TEMPERATURES_ID);
@@ -2979,7 +2979,7 @@ static inline icd_status_t cubeacp_receive_rate_sensor_temperatures(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_STATUS)
-/** Requests Raw GPS Status. */
+/** Requests Raw GPS Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_STATUS_ID);
@@ -2996,7 +2996,7 @@ static inline icd_status_t cubeacp_receive_raw_gps_status(cubeacp_raw_gps_status
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_TIME)
-/** Requests Raw GPS Time. */
+/** Requests Raw GPS Time, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_time(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_TIME_ID);
@@ -3013,7 +3013,7 @@ static inline icd_status_t cubeacp_receive_raw_gps_time(cubeacp_raw_gps_time_t *
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_X)
-/** Requests Raw GPS X. */
+/** Requests Raw GPS X, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_x(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_X_ID);
@@ -3030,7 +3030,7 @@ static inline icd_status_t cubeacp_receive_raw_gps_x(cubeacp_raw_gps_x_t *messag
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_Y)
-/** Requests Raw GPS Y. */
+/** Requests Raw GPS Y, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_y(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_Y_ID);
@@ -3047,7 +3047,7 @@ static inline icd_status_t cubeacp_receive_raw_gps_y(cubeacp_raw_gps_y_t *messag
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_Z)
-/** Requests Raw GPS Z. */
+/** Requests Raw GPS Z, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_z(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_Z_ID);
@@ -3064,7 +3064,7 @@ static inline icd_status_t cubeacp_receive_raw_gps_z(cubeacp_raw_gps_z_t *messag
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_BODY_VECTOR)
-/** Requests Star 1 Body Vector. */
+/** Requests Star 1 Body Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_body_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_BODY_VECTOR_ID);
@@ -3083,7 +3083,7 @@ static inline icd_status_t cubeacp_receive_star_1_body_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_BODY_VECTOR)
-/** Requests Star 2 Body Vector. */
+/** Requests Star 2 Body Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_body_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_BODY_VECTOR_ID);
@@ -3102,7 +3102,7 @@ static inline icd_status_t cubeacp_receive_star_2_body_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_BODY_VECTOR)
-/** Requests Star 3 Body Vector. */
+/** Requests Star 3 Body Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_body_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_BODY_VECTOR_ID);
@@ -3121,7 +3121,7 @@ static inline icd_status_t cubeacp_receive_star_3_body_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_ORBIT_VECTOR)
-/** Requests Star 1 Orbit Vector. */
+/** Requests Star 1 Orbit Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_ORBIT_VECTOR_ID);
@@ -3140,7 +3140,7 @@ static inline icd_status_t cubeacp_receive_star_1_orbit_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_ORBIT_VECTOR)
-/** Requests Star 2 Orbit Vector. */
+/** Requests Star 2 Orbit Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_ORBIT_VECTOR_ID);
@@ -3159,7 +3159,7 @@ static inline icd_status_t cubeacp_receive_star_2_orbit_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_ORBIT_VECTOR)
-/** Requests Star 3 Orbit Vector. */
+/** Requests Star 3 Orbit Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_ORBIT_VECTOR_ID);
@@ -3178,7 +3178,7 @@ static inline icd_status_t cubeacp_receive_star_3_orbit_vector(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_MAGNITUDE)
-/** Requests Star Magnitude. */
+/** Requests Star Magnitude, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_magnitude(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_MAGNITUDE_ID);
@@ -3195,7 +3195,7 @@ static inline icd_status_t cubeacp_receive_star_magnitude(cubeacp_star_magnitude
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_PERFORMANCE1)
-/** Requests Star Performance1. */
+/** Requests Star Performance1, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_performance1(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_PERFORMANCE1_ID);
@@ -3214,7 +3214,7 @@ static inline icd_status_t cubeacp_receive_star_performance1(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_TIMING)
-/** Requests Star Timing. */
+/** Requests Star Timing, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_timing(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_TIMING_ID);
@@ -3231,7 +3231,7 @@ static inline icd_status_t cubeacp_receive_star_timing(cubeacp_star_timing_t *me
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_STATE)
-/** Requests ADCS State. */
+/** Requests ADCS State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_STATE_ID);
@@ -3248,7 +3248,7 @@ static inline icd_status_t cubeacp_receive_adcs_state(cubeacp_adcs_state_t *mess
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_MEASUREMENTS)
-/** Requests ADCS Measurements. */
+/** Requests ADCS Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_measurements(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_MEASUREMENTS_ID);
@@ -3267,7 +3267,7 @@ static inline icd_status_t cubeacp_receive_adcs_measurements(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ACTUATOR_COMMANDS)
-/** Requests Actuator Commands. */
+/** Requests Actuator Commands, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_actuator_commands(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ACTUATOR_COMMANDS_ID);
@@ -3286,7 +3286,7 @@ static inline icd_status_t cubeacp_receive_actuator_commands(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_DATA)
-/** Requests Estimation Data. */
+/** Requests Estimation Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_DATA_ID);
@@ -3303,7 +3303,7 @@ static inline icd_status_t cubeacp_receive_estimation_data(cubeacp_estimation_da
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_SENSOR_MEASUREMENTS)
-/** Requests Raw Sensor Measurements. */
+/** Requests Raw Sensor Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_sensor_measurements(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_SENSOR_MEASUREMENTS_ID);
@@ -3322,7 +3322,7 @@ static inline icd_status_t cubeacp_receive_raw_sensor_measurements(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_POWER_AND_TEMPERATURE)
-/** Requests Power and Temperature Measurements. */
+/** Requests Power and Temperature Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_power_and_temperature(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_POWER_AND_TEMPERATURE_ID);
@@ -3343,7 +3343,7 @@ static inline icd_status_t cubeacp_receive_power_and_temperature(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_EXECUTION_TIMES)
-/** Requests Adcs Execution Times. */
+/** Requests Adcs Execution Times, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_execution_times(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_EXECUTION_TIMES_ID);
@@ -3362,7 +3362,7 @@ static inline icd_status_t cubeacp_receive_adcs_execution_times(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_MISC_CURRENTS)
-/** Requests ADCS Misc Current Measurements. */
+/** Requests ADCS Misc Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_misc_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_MISC_CURRENTS_ID);
@@ -3381,7 +3381,7 @@ static inline icd_status_t cubeacp_receive_adcs_misc_currents(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINE_ANGULAR_RATES)
-/** Requests Fine Estimated Angular Rates. */
+/** Requests Fine Estimated Angular Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_fine_angular_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_FINE_ANGULAR_RATES_ID);
@@ -3400,7 +3400,7 @@ static inline icd_status_t cubeacp_receive_fine_angular_rates(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_MEASUREMENTS)
-/** Requests Raw GPS Measurements. */
+/** Requests Raw GPS Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_measurements(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_MEASUREMENTS_ID);
@@ -3419,7 +3419,7 @@ static inline icd_status_t cubeacp_receive_raw_gps_measurements(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_STAR_TRACKER)
-/** Requests Raw Star Tracker. */
+/** Requests Raw Star Tracker, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_star_tracker(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_STAR_TRACKER_ID);
@@ -3438,7 +3438,7 @@ static inline icd_status_t cubeacp_receive_raw_star_tracker(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_RAW_DATA)
-/** Requests Star 1 Raw Data. */
+/** Requests Star 1 Raw Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_raw_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_RAW_DATA_ID);
@@ -3455,7 +3455,7 @@ static inline icd_status_t cubeacp_receive_star_1_raw_data(cubeacp_star_1_raw_da
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_RAW_DATA)
-/** Requests Star 2 Raw Data. */
+/** Requests Star 2 Raw Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_raw_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_RAW_DATA_ID);
@@ -3472,7 +3472,7 @@ static inline icd_status_t cubeacp_receive_star_2_raw_data(cubeacp_star_2_raw_da
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_RAW_DATA)
-/** Requests Star 3 Raw Data. */
+/** Requests Star 3 Raw Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_raw_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_RAW_DATA_ID);
@@ -3489,7 +3489,7 @@ static inline icd_status_t cubeacp_receive_star_3_raw_data(cubeacp_star_3_raw_da
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS)
-/** Requests Secondary Magnetometer Raw Measurements. */
+/** Requests Secondary Magnetometer Raw Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_secondary_magnetometer_raw_measurements(
     cubeacp_client_t *client,
     uint32_t now)
@@ -3513,7 +3513,7 @@ static inline icd_status_t cubeacp_receive_secondary_magnetometer_raw_measuremen
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_RATE_SENSOR)
-/** Requests Raw Rate Sensor. */
+/** Requests Raw Rate Sensor, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_rate_sensor(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_RATE_SENSOR_ID);
@@ -3530,7 +3530,7 @@ static inline icd_status_t cubeacp_receive_raw_rate_sensor(cubeacp_raw_rate_sens
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_QUATERNION)
-/** Requests Estimated Quaternion. */
+/** Requests Estimated Quaternion, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_quaternion(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_QUATERNION_ID);
@@ -3549,7 +3549,7 @@ static inline icd_status_t cubeacp_receive_estimated_quaternion(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ECEF_POSITION)
-/** Requests ECEF Position. */
+/** Requests ECEF Position, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_ecef_position(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ECEF_POSITION_ID);
@@ -3566,7 +3566,7 @@ static inline icd_status_t cubeacp_receive_ecef_position(cubeacp_ecef_position_t
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ACP_EXECUTION_STATE)
-/** Requests ACP Execution State. */
+/** Requests ACP Execution State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_acp_execution_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ACP_EXECUTION_STATE_ID);
@@ -3585,7 +3585,7 @@ static inline icd_status_t cubeacp_receive_acp_execution_state(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_ADCS_STATE_2)
-/** Requests Current ADCS State 2. */
+/** Requests Current ADCS State 2, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_adcs_state_2(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CURRENT_ADCS_STATE_2_ID);
@@ -3604,7 +3604,7 @@ static inline icd_status_t cubeacp_receive_current_adcs_state_2(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_TLES)
-/** Requests ASGP4 TLEs. */
+/** Requests ASGP4 TLEs, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_asgp4_tles(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ASGP4_TLES_ID);
@@ -3621,7 +3621,7 @@ static inline icd_status_t cubeacp_receive_asgp4_tles(cubeacp_asgp4_tles_t *mess
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESTAR_ESTIMATED_RATES)
-/** Requests CubeStar Estimated Rates. */
+/** Requests CubeStar Estimated Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubestar_estimated_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESTAR_ESTIMATED_RATES_ID);
@@ -3640,7 +3640,7 @@ static inline icd_status_t cubeacp_receive_cubestar_estimated_rates(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESTAR_ESTIMATED_QUATERNION)
-/** Requests CubeStar Estimated Quaternion. */
+/** Requests CubeStar Estimated Quaternion, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubestar_estimated_quaternion(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_ID);
@@ -3659,7 +3659,7 @@ static inline icd_status_t cubeacp_receive_cubestar_estimated_quaternion(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_PERFORMANCE2)
-/** Requests Star Performance2. */
+/** Requests Star Performance2, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_performance2(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_PERFORMANCE2_ID);
@@ -3678,7 +3678,7 @@ static inline icd_status_t cubeacp_receive_star_performance2(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE2_CURRENTS)
-/** Requests CubeSense2 Current Measurements. */
+/** Requests CubeSense2 Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense2_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE2_CURRENTS_ID);
@@ -3697,7 +3697,7 @@ static inline icd_status_t cubeacp_receive_cubesense2_currents(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION)
-/** Requests Status of Image Capture and Save Operation. */
+/** Requests Status of Image Capture and Save Operation, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_status_of_image_capture_and_save_operation(
     cubeacp_client_t *client,
     uint32_t now)
@@ -3721,7 +3721,7 @@ static inline icd_status_t cubeacp_receive_status_of_image_capture_and_save_oper
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MAGNETORQUER_CONFIGURATION)
-/** Requests Set Magnetorquer Configuration. */
+/** Requests Set Magnetorquer Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_magnetorquer_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_MAGNETORQUER_CONFIGURATION_GET_ID);
@@ -3740,7 +3740,7 @@ static inline icd_status_t cubeacp_receive_set_magnetorquer_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_WHEEL_CONFIGURATION)
-/** Requests Set Wheel Configuration. */
+/** Requests Set Wheel Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_wheel_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_WHEEL_CONFIGURATION_GET_ID);
@@ -3759,7 +3759,7 @@ static inline icd_status_t cubeacp_receive_set_wheel_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_RATE_GYRO_CONFIGURATION)
-/** Requests Set Rate Gyro Configuration. */
+/** Requests Set Rate Gyro Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_rate_gyro_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_RATE_GYRO_CONFIGURATION_GET_ID);
@@ -3778,7 +3778,7 @@ static inline icd_status_t cubeacp_receive_set_rate_gyro_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CSS_CONFIGURATION)
-/** Requests CSS Configuration. */
+/** Requests CSS Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_css_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CSS_CONFIGURATION_GET_ID);
@@ -3797,7 +3797,7 @@ static inline icd_status_t cubeacp_receive_css_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_POWER_CONTROL)
-/** Requests ADCS Power Control. */
+/** Requests ADCS Power Control, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_power_control(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_POWER_CONTROL_GET_ID);
@@ -3816,7 +3816,7 @@ static inline icd_status_t cubeacp_receive_adcs_power_control(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMANDED_ATTITUDE_ANGLES)
-/** Requests Commanded Attitude Angles. */
+/** Requests Commanded Attitude Angles, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_commanded_attitude_angles(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_COMMANDED_ATTITUDE_ANGLES_GET_ID);
@@ -3835,7 +3835,7 @@ static inline icd_status_t cubeacp_receive_commanded_attitude_angles(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRACKING_CONTROLLER_TARGET_REFERENCE)
-/** Requests Tracking Controller Target Reference. */
+/** Requests Tracking Controller Target Reference, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_tracking_controller_target_reference(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_GET_ID);
@@ -3857,7 +3857,7 @@ static inline icd_status_t cubeacp_receive_tracking_controller_target_reference(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_STAR_TRACKER_CONFIGURATION)
-/** Requests Set Star Tracker Configuration. */
+/** Requests Set Star Tracker Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_star_tracker_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_STAR_TRACKER_CONFIGURATION_GET_ID);
@@ -3876,7 +3876,7 @@ static inline icd_status_t cubeacp_receive_set_star_tracker_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE_CONFIGURATION)
-/** Requests CubeSense Configuration. */
+/** Requests CubeSense Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE_CONFIGURATION_GET_ID);
@@ -3895,7 +3895,7 @@ static inline icd_status_t cubeacp_receive_cubesense_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETOMETER_CONFIGURATION)
-/** Requests Magnetometer Configuration. */
+/** Requests Magnetometer Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetometer_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID);
@@ -3914,7 +3914,7 @@ static inline icd_status_t cubeacp_receive_magnetometer_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_REDUNDANT_MAG_CONFIGURATION)
-/** Requests Redundant Magnetometer Configuration. */
+/** Requests Redundant Magnetometer Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_redundant_mag_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_REDUNDANT_MAG_CONFIGURATION_GET_ID);
@@ -3936,7 +3936,7 @@ static inline icd_status_t cubeacp_receive_redundant_mag_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_CONFIGURATION)
-/** Requests ADCS Configuration. */
+/** Requests ADCS Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_CONFIGURATION_GET_ID);
@@ -3955,7 +3955,7 @@ static inline icd_status_t cubeacp_receive_adcs_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SGP4_ORBIT_PARAMETERS)
-/** Requests SGP4 Orbit Parameters. */
+/** Requests SGP4 Orbit Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sgp4_orbit_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SGP4_ORBIT_PARAMETERS_GET_ID);
@@ -3974,7 +3974,7 @@ static inline icd_status_t cubeacp_receive_sgp4_orbit_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_DETUMBLING_CONTROL_PARAMETERS)
-/** Requests Set Detumbling Control Parameters. */
+/** Requests Set Detumbling Control Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_detumbling_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_GET_ID);
@@ -3995,7 +3995,7 @@ static inline icd_status_t cubeacp_receive_set_detumbling_control_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_Y_WHEEL_CONTROL_PARAMETERS)
-/** Requests Set Y-Wheel Control Parameters. */
+/** Requests Set Y-Wheel Control Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_y_wheel_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_GET_ID);
@@ -4014,7 +4014,7 @@ static inline icd_status_t cubeacp_receive_set_y_wheel_control_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_REACTION_WHEEL_CONTROL_PARAMETERS)
-/** Requests Set Reaction Wheel Control Parameters. */
+/** Requests Set Reaction Wheel Control Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_reaction_wheel_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_GET_ID);
@@ -4036,7 +4036,7 @@ static inline icd_status_t cubeacp_receive_set_reaction_wheel_control_parameters
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS)
-/** Requests Set Tracking Controller Gain Parameters. */
+/** Requests Set Tracking Controller Gain Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_tracking_controller_gain_parameters(
     cubeacp_client_t *client,
     uint32_t now)
@@ -4060,7 +4060,7 @@ static inline icd_status_t cubeacp_receive_set_tracking_controller_gain_paramete
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MOMENT_OF_INERTIA_MATRIX)
-/** Requests Moment of Inertia Matrix. */
+/** Requests Moment of Inertia Matrix, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_moment_of_inertia_matrix(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MOMENT_OF_INERTIA_MATRIX_GET_ID);
@@ -4079,7 +4079,7 @@ static inline icd_status_t cubeacp_receive_moment_of_inertia_matrix(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_PARAMETERS)
-/** Requests Estimation Parameters. */
+/** Requests Estimation Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_PARAMETERS_GET_ID);
@@ -4098,7 +4098,7 @@ static inline icd_status_t cubeacp_receive_estimation_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_SYSTEM_CONFIGURATION)
-/** Requests ADCS System Configuration. */
+/** Requests ADCS System Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_system_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_SYSTEM_CONFIGURATION_GET_ID);
@@ -4117,7 +4117,7 @@ static inline icd_status_t cubeacp_receive_adcs_system_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS)
-/** Requests User-coded Controller and Estimator Parameters. */
+/** Requests User-coded Controller and Estimator Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_user_coded_controller_and_estimator_parameters(
     cubeacp_client_t *client,
     uint32_t now)
@@ -4141,7 +4141,7 @@ static inline icd_status_t cubeacp_receive_user_coded_controller_and_estimator_p
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_AUGMENTED_SGP4_PARAMETERS)
-/** Requests Augmented-SGP4 Parameters. */
+/** Requests Augmented-SGP4 Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_augmented_sgp4_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_AUGMENTED_SGP4_PARAMETERS_GET_ID);
@@ -4160,7 +4160,7 @@ static inline icd_status_t cubeacp_receive_augmented_sgp4_parameters(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG1_CONFIGURATION)
-/** Requests SD Log1 Configuration. */
+/** Requests SD Log1 Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_log1_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SD_LOG1_CONFIGURATION_GET_ID);
@@ -4179,7 +4179,7 @@ static inline icd_status_t cubeacp_receive_sd_log1_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG2_CONFIGURATION)
-/** Requests SD Log2 Configuration. */
+/** Requests SD Log2 Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_log2_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SD_LOG2_CONFIGURATION_GET_ID);
@@ -4198,7 +4198,7 @@ static inline icd_status_t cubeacp_receive_sd_log2_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UART_LOG_CONFIGURATION)
-/** Requests UART Log Configuration. */
+/** Requests UART Log Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_uart_log_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_UART_LOG_CONFIGURATION_GET_ID);
@@ -4217,7 +4217,7 @@ static inline icd_status_t cubeacp_receive_uart_log_configuration(
 #endif
 
 #if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INERTIAL_POINTING_REFERENCE_VECTOR)
-/** Requests Inertial Pointing Reference Vector. */
+/** Requests Inertial Pointing Reference Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_inertial_pointing_reference_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_GET_ID);
