@@ -5,22 +5,25 @@ from __future__ import annotations
 
 # Itself: what annotations name is loaded when they are evaluated.
 from . import _lazy
-<<<<<<< HEAD
-from ._fields import FieldInfo, Form, curve, curve_only, field, scaled, text, whole
-=======
-from ._fields import FieldInfo, Form, Tail, field, scaled, text, whole
->>>>>>> main
+from ._fields import (
+    FieldInfo,
+    Form,
+    Tail,
+    curve,
+    curve_only,
+    field,
+    scaled,
+    text,
+    whole,
+)
 
 __all__ = [
     "FieldInfo",
     "Message",
     "MessageType",
-<<<<<<< HEAD
+    "Tail",
     "curve",
     "curve_only",
-=======
-    "Tail",
->>>>>>> main
     "field",
     "on_curve",
     "scaled",

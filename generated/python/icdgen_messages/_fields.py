@@ -22,11 +22,7 @@ class FieldInfo:
     __slots__ = (
         "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
         "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
-<<<<<<< HEAD
-        "elements", "curve", "leads_back",
-=======
-        "elements", "is_open",
->>>>>>> main
+        "elements", "is_open", "curve", "leads_back",
     )  # fmt: skip
 
     def __init__(
@@ -51,12 +47,9 @@ class FieldInfo:
         whole: str = "",
         default: _lazy.Any = None,
         elements: int = 0,
-<<<<<<< HEAD
+        is_open: bool = False,
         curve: tuple[float, ...] = (),
         leads_back: bool = True,
-=======
-        is_open: bool = False,
->>>>>>> main
     ) -> None:
         self.attribute = attribute
         """The attribute that holds the raw value."""
@@ -100,7 +93,8 @@ class FieldInfo:
 
         0 if it is no array.
         """
-<<<<<<< HEAD
+        self.is_open = is_open
+        """Whether frames hold up to so many elements, or bytes: see `Message.TAIL`."""
         self.curve = curve
         """Of a polynomial its coefficients, the constant first, and no scale.
 
@@ -108,10 +102,6 @@ class FieldInfo:
         """
         self.leads_back = leads_back
         """Whether the physical value can be set."""
-=======
-        self.is_open = is_open
-        """Whether frames hold up to so many elements, or bytes: see `Message.TAIL`."""
->>>>>>> main
 
     @property
     def signed(self) -> bool:
@@ -277,8 +267,8 @@ def _curve_property(info: FieldInfo) -> property:
 
 def _counted(info: FieldInfo, values: Any) -> None:
     """Raises `RangeError` unless there is a value for each element."""
-    if not hasattr(values, "__len__") or len(values) != info.elements:
-        raise RangeError(info.attribute, f"{info.elements} values", values)
+    if not has_elements(info, values):
+        raise RangeError(info.attribute, elements_of(info), values)
 
 
 def _array_property(info: FieldInfo, form: Form) -> property:
@@ -293,12 +283,7 @@ def _array_property(info: FieldInfo, form: Form) -> property:
         return tuple((raw * p + c) / q for raw in getattr(self, attribute))
 
     def set_nearest(self: Any, values: Any) -> None:
-<<<<<<< HEAD
         _counted(info, values)
-=======
-        if not has_elements(info, values):
-            raise RangeError(attribute, elements_of(info), values)
->>>>>>> main
         found = (
             nearest_raw(value, f"{attribute}[{index}]", terms, info.raw_range)
             for index, value in enumerate(values)

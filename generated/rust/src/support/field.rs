@@ -79,14 +79,11 @@ impl Field {
         self
     }
 
-<<<<<<< HEAD
     pub(crate) const fn curve(mut self, curve: &'static Curve) -> Self {
         self.scale = Some(Formula::Curve(curve));
         self
     }
 
-    /// The physical value of a raw one, the double nearest to it but of a polynomial; None without a formula.
-=======
     /// Whether a physical value (a raw one where there is no scale) keeps the limits; NaN keeps none.
     #[must_use]
     pub fn allows(&self, value: f64) -> bool {
@@ -98,8 +95,7 @@ impl Field {
         })
     }
 
-    /// The double nearest to the physical value of a raw one; None without a scale.
->>>>>>> main
+    /// The physical value of a raw one, the double nearest to it but of a polynomial; None without a formula.
     #[must_use]
     pub fn physical(&self, raw: i64) -> Option<f64> {
         self.converted(raw.into())
