@@ -76,8 +76,13 @@ def is_finite(curve: Curve, low: int, high: int) -> bool:
 
 
 @lru_cache(maxsize=1024)
-def leads_back(curve: Curve, low: int, high: int) -> bool:
-    """Whether the physical values rise, or fall, from each raw value to the next; False where these are too many to try."""
+def leads_back(curve: Curve, is_float: bool, low: int, high: int) -> bool:
+    """Whether the physical values rise, or fall, from each raw value to the next; False where these are too many to try.
+
+    In floats a line does.
+    """
+    if is_float:
+        return len(curve.coefficients) == 2
     if high - low >= 1 << MOST_BITS:
         return False
     for step in (max(1, (high - low) // 64), 1):  # a look at few of them tells most

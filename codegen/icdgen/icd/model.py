@@ -200,11 +200,7 @@ class Field:
     @property
     def leads_back(self) -> bool:
         """Whether a physical value gives the nearest raw one: always, but with some polynomials."""
-        if self.curve is None:
-            return True
-        if self.type == "float":
-            return len(self.curve.coefficients) == 2
-        return leads_back(self.curve, self.raw_min, self.raw_max)
+        return self.curve is None or leads_back(self.curve, self.type == "float", self.raw_min, self.raw_max)
 
     @property
     def is_bytes(self) -> bool:
@@ -246,10 +242,7 @@ class Tail:
 
 
 def implied_count(end: Field, length: int) -> Field:
-    """How many elements the open ``end`` of a message has, an array that stands as one, bytes or text.
-
-    It is for frames whose longest has so many bytes, and no field that says it.
-    """
+    """How many elements the open ``end`` has (bytes, text, an array as one) of frames of up to so many bytes that do not say it."""
     most, what = (end.bits // 8, "Size") if end.is_bytes else (end.count, "Count")
     return Field(
         name=f"{end.name} {what}",
