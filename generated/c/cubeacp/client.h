@@ -149,6 +149,7 @@ static inline icd_status_t cubeacp_client_can(cubeacp_client_t *client, uint8_t 
     return icd_client_can(&client->client, cubeacp_link(), address, buffer, size);
 }
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET)
 /**
  * Sends Reset, as icd_client_send().
  * Dangerous: The program that runs is stopped, and what it has not saved is lost.
@@ -167,7 +168,9 @@ static inline icd_status_t cubeacp_send_reset(
     }
     return icd_client_send(&client->client, now, COMMON_RESET_ID, data, COMMON_RESET_LENGTH, false, on_event, context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_LOG_POINTER)
 /** Sends Reset Log Pointer, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_reset_log_pointer(
     cubeacp_client_t *client,
@@ -185,7 +188,9 @@ static inline icd_status_t cubeacp_send_reset_log_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADVANCE_LOG_POINTER)
 /** Sends Advance Log Pointer, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_advance_log_pointer(
     cubeacp_client_t *client,
@@ -203,7 +208,9 @@ static inline icd_status_t cubeacp_send_advance_log_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_BOOT_REGISTERS)
 /** Sends Reset Boot Registers, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_reset_boot_registers(
     cubeacp_client_t *client,
@@ -221,7 +228,9 @@ static inline icd_status_t cubeacp_send_reset_boot_registers(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FORMAT_SD_CARD)
 /**
  * Sends Format SD card, as icd_client_send().
  * Dangerous: All files on the SD card are lost.
@@ -248,7 +257,9 @@ static inline icd_status_t cubeacp_send_format_sd_card(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ERASE_FILE)
 /**
  * Sends Erase File, as icd_client_send().
  * Dangerous: The file is lost; all files are with Erase All.
@@ -275,7 +286,9 @@ static inline icd_status_t cubeacp_send_erase_file(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_LOAD_FILE_DOWNLOAD_BLOCK)
 /** Sends Load File Download Block, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_load_file_download_block(
     cubeacp_client_t *client,
@@ -299,7 +312,9 @@ static inline icd_status_t cubeacp_send_load_file_download_block(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADVANCE_FILE_LIST_READ_POINTER)
 /** Sends Advance File List Read Pointer, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_advance_file_list_read_pointer(
     cubeacp_client_t *client,
@@ -317,7 +332,9 @@ static inline icd_status_t cubeacp_send_advance_file_list_read_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INITIATE_FILE_UPLOAD)
 /**
  * Sends Initiate File Upload, as icd_client_send().
  * Dangerous: The program in the destination is lost.
@@ -344,7 +361,9 @@ static inline icd_status_t cubeacp_send_initiate_file_upload(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_UPLOAD_PACKET)
 /** Sends File Upload Packet, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_file_upload_packet(
     cubeacp_client_t *client,
@@ -368,7 +387,9 @@ static inline icd_status_t cubeacp_send_file_upload_packet(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINALIZE_UPLOAD_BLOCK)
 /** Sends Finalize Upload Block, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_finalize_upload_block(
     cubeacp_client_t *client,
@@ -392,7 +413,9 @@ static inline icd_status_t cubeacp_send_finalize_upload_block(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_UPLOAD_BLOCK)
 /** Sends Reset Upload Block, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_reset_upload_block(
     cubeacp_client_t *client,
@@ -410,7 +433,9 @@ static inline icd_status_t cubeacp_send_reset_upload_block(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_FILE_LIST_READ_POINTER)
 /** Sends Reset File List Read Pointer, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_reset_file_list_read_pointer(
     cubeacp_client_t *client,
@@ -428,7 +453,9 @@ static inline icd_status_t cubeacp_send_reset_file_list_read_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INITIATE_DOWNLOAD_BURST)
 /** Sends Initiate Download Burst, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_initiate_download_burst(
     cubeacp_client_t *client,
@@ -452,7 +479,9 @@ static inline icd_status_t cubeacp_send_initiate_download_burst(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CACHE_ENABLED_STATE)
 /** Sends Cache enabled state, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_cache_enabled_state(
     cubeacp_client_t *client,
@@ -476,7 +505,9 @@ static inline icd_status_t cubeacp_send_cache_enabled_state(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_SCRUB_PARAMETERS)
 /** Sends SRAM Scrub Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_sram_scrub_parameters(
     cubeacp_client_t *client,
@@ -500,7 +531,9 @@ static inline icd_status_t cubeacp_send_sram_scrub_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_UNIX_TIME)
 /** Sends Current Unix Time, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_current_unix_time(
     cubeacp_client_t *client,
@@ -524,7 +557,9 @@ static inline icd_status_t cubeacp_send_current_unix_time(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UNIX_TIME_SAVE_TO_FLASH)
 /** Sends Unix Time Save to Flash, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_unix_time_save_to_flash(
     cubeacp_client_t *client,
@@ -548,7 +583,9 @@ static inline icd_status_t cubeacp_send_unix_time_save_to_flash(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_1)
 /** Sends Hole Map 1, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_1(
     cubeacp_client_t *client,
@@ -572,7 +609,9 @@ static inline icd_status_t cubeacp_send_hole_map_1(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_2)
 /** Sends Hole Map 2, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_2(
     cubeacp_client_t *client,
@@ -596,7 +635,9 @@ static inline icd_status_t cubeacp_send_hole_map_2(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_3)
 /** Sends Hole Map 3, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_3(
     cubeacp_client_t *client,
@@ -620,7 +661,9 @@ static inline icd_status_t cubeacp_send_hole_map_3(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_4)
 /** Sends Hole Map 4, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_4(
     cubeacp_client_t *client,
@@ -644,7 +687,9 @@ static inline icd_status_t cubeacp_send_hole_map_4(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_5)
 /** Sends Hole Map 5, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_5(
     cubeacp_client_t *client,
@@ -668,7 +713,9 @@ static inline icd_status_t cubeacp_send_hole_map_5(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_6)
 /** Sends Hole Map 6, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_6(
     cubeacp_client_t *client,
@@ -692,7 +739,9 @@ static inline icd_status_t cubeacp_send_hole_map_6(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_7)
 /** Sends Hole Map 7, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_7(
     cubeacp_client_t *client,
@@ -716,7 +765,9 @@ static inline icd_status_t cubeacp_send_hole_map_7(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_8)
 /** Sends Hole Map 8, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_8(
     cubeacp_client_t *client,
@@ -740,7 +791,9 @@ static inline icd_status_t cubeacp_send_hole_map_8(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_DEPLOY_MAGNETOMETER_BOOM)
 /**
  * Sends Deploy Magnetometer Boom, as icd_client_send().
  * Dangerous: The boom stays deployed.
@@ -767,7 +820,9 @@ static inline icd_status_t cubeacp_send_deploy_magnetometer_boom(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_ADCS_RUN_MODE)
 /** Sends ADCS Run Mode, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_adcs_run_mode(
     cubeacp_client_t *client,
@@ -791,7 +846,9 @@ static inline icd_status_t cubeacp_send_set_adcs_run_mode(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CLEAR_ERRORS)
 /** Sends Clear Errors, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_clear_errors(
     cubeacp_client_t *client,
@@ -815,7 +872,9 @@ static inline icd_status_t cubeacp_send_clear_errors(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_ATTITUDE_CONTROL_MODE)
 /** Sends Set Attitude Control Mode, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_attitude_control_mode(
     cubeacp_client_t *client,
@@ -839,7 +898,9 @@ static inline icd_status_t cubeacp_send_set_attitude_control_mode(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_ATTITUDE_ESTIMATION_MODE)
 /** Sends Set Attitude Estimation Mode, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_attitude_estimation_mode(
     cubeacp_client_t *client,
@@ -863,7 +924,9 @@ static inline icd_status_t cubeacp_send_set_attitude_estimation_mode(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MAGNETORQUER_OUTPUT)
 /** Sends Set Magnetorquer Output, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_magnetorquer_output(
     cubeacp_client_t *client,
@@ -887,7 +950,9 @@ static inline icd_status_t cubeacp_send_set_magnetorquer_output(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_WHEEL_SPEED)
 /** Sends Set Wheel Speed, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_wheel_speed(
     cubeacp_client_t *client,
@@ -911,7 +976,9 @@ static inline icd_status_t cubeacp_send_set_wheel_speed(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRIGGER_ADCS_LOOP)
 /** Sends Trigger ADCS Loop, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_trigger_adcs_loop(
     cubeacp_client_t *client,
@@ -929,7 +996,9 @@ static inline icd_status_t cubeacp_send_trigger_adcs_loop(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRIGGER_SIMULATED_LOOP)
 /** Sends Trigger ADCS Loop with Simulated Sensor Data, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_trigger_simulated_loop(
     cubeacp_client_t *client,
@@ -953,7 +1022,9 @@ static inline icd_status_t cubeacp_send_trigger_simulated_loop(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_RUN_MODE)
 /** Sends ASGP4 Run Mode, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_asgp4_run_mode(
     cubeacp_client_t *client,
@@ -977,7 +1048,9 @@ static inline icd_status_t cubeacp_send_asgp4_run_mode(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_TRIGGER)
 /** Sends ASGP4 Trigger, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_asgp4_trigger(
     cubeacp_client_t *client,
@@ -995,7 +1068,9 @@ static inline icd_status_t cubeacp_send_asgp4_trigger(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MODE_OF_MAGNETOMETER_OPERATION)
 /** Sends Set Mode of Magnetometer Operation, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_mode_of_magnetometer_operation(
     cubeacp_client_t *client,
@@ -1019,7 +1094,9 @@ static inline icd_status_t cubeacp_send_set_mode_of_magnetometer_operation(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CONVERT_TO_JPG_FILE)
 /** Sends Convert to JPG file, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_convert_to_jpg_file(
     cubeacp_client_t *client,
@@ -1043,7 +1120,9 @@ static inline icd_status_t cubeacp_send_convert_to_jpg_file(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_CONFIGURATION)
 /** Sends Save Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_save_configuration(
     cubeacp_client_t *client,
@@ -1061,7 +1140,9 @@ static inline icd_status_t cubeacp_send_save_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_ORBIT_PARAMETERS)
 /** Sends Save Orbit Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_save_orbit_parameters(
     cubeacp_client_t *client,
@@ -1079,7 +1160,9 @@ static inline icd_status_t cubeacp_send_save_orbit_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_IMAGE)
 /** Sends Save Image, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_save_image(
     cubeacp_client_t *client,
@@ -1103,7 +1186,9 @@ static inline icd_status_t cubeacp_send_save_image(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MAGNETORQUER_CONFIGURATION)
 /** Sends Set Magnetorquer Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_magnetorquer_configuration(
     cubeacp_client_t *client,
@@ -1127,7 +1212,9 @@ static inline icd_status_t cubeacp_send_set_magnetorquer_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_WHEEL_CONFIGURATION)
 /** Sends Set Wheel Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_wheel_configuration(
     cubeacp_client_t *client,
@@ -1151,7 +1238,9 @@ static inline icd_status_t cubeacp_send_set_wheel_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_RATE_GYRO_CONFIGURATION)
 /** Sends Set Rate Gyro Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_rate_gyro_configuration(
     cubeacp_client_t *client,
@@ -1175,7 +1264,9 @@ static inline icd_status_t cubeacp_send_set_rate_gyro_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CSS_CONFIGURATION)
 /** Sends CSS Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_css_configuration(
     cubeacp_client_t *client,
@@ -1199,7 +1290,9 @@ static inline icd_status_t cubeacp_send_css_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_POWER_CONTROL)
 /** Sends ADCS Power Control, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_adcs_power_control(
     cubeacp_client_t *client,
@@ -1223,7 +1316,9 @@ static inline icd_status_t cubeacp_send_adcs_power_control(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMANDED_ATTITUDE_ANGLES)
 /** Sends Commanded Attitude Angles, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_commanded_attitude_angles(
     cubeacp_client_t *client,
@@ -1247,7 +1342,9 @@ static inline icd_status_t cubeacp_send_commanded_attitude_angles(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRACKING_CONTROLLER_TARGET_REFERENCE)
 /** Sends Tracking Controller Target Reference, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_tracking_controller_target_reference(
     cubeacp_client_t *client,
@@ -1271,7 +1368,9 @@ static inline icd_status_t cubeacp_send_tracking_controller_target_reference(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_STAR_TRACKER_CONFIGURATION)
 /** Sends Set Star Tracker Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_star_tracker_configuration(
     cubeacp_client_t *client,
@@ -1295,7 +1394,9 @@ static inline icd_status_t cubeacp_send_set_star_tracker_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE_CONFIGURATION)
 /** Sends CubeSense Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_cubesense_configuration(
     cubeacp_client_t *client,
@@ -1319,7 +1420,9 @@ static inline icd_status_t cubeacp_send_cubesense_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETOMETER_CONFIGURATION)
 /** Sends Magnetometer Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_magnetometer_configuration(
     cubeacp_client_t *client,
@@ -1343,7 +1446,9 @@ static inline icd_status_t cubeacp_send_magnetometer_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_REDUNDANT_MAG_CONFIGURATION)
 /** Sends Redundant Magnetometer Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_redundant_mag_configuration(
     cubeacp_client_t *client,
@@ -1367,7 +1472,9 @@ static inline icd_status_t cubeacp_send_redundant_mag_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_CONFIGURATION)
 /** Sends ADCS Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_adcs_configuration(
     cubeacp_client_t *client,
@@ -1391,7 +1498,9 @@ static inline icd_status_t cubeacp_send_adcs_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SGP4_ORBIT_PARAMETERS)
 /** Sends SGP4 Orbit Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_sgp4_orbit_parameters(
     cubeacp_client_t *client,
@@ -1415,7 +1524,9 @@ static inline icd_status_t cubeacp_send_sgp4_orbit_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_DETUMBLING_CONTROL_PARAMETERS)
 /** Sends Set Detumbling Control Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_detumbling_control_parameters(
     cubeacp_client_t *client,
@@ -1439,7 +1550,9 @@ static inline icd_status_t cubeacp_send_set_detumbling_control_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_Y_WHEEL_CONTROL_PARAMETERS)
 /** Sends Set Y-Wheel Control Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_y_wheel_control_parameters(
     cubeacp_client_t *client,
@@ -1463,7 +1576,9 @@ static inline icd_status_t cubeacp_send_set_y_wheel_control_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_REACTION_WHEEL_CONTROL_PARAMETERS)
 /** Sends Set Reaction Wheel Control Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_reaction_wheel_control_parameters(
     cubeacp_client_t *client,
@@ -1487,7 +1602,9 @@ static inline icd_status_t cubeacp_send_set_reaction_wheel_control_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS)
 /** Sends Set Tracking Controller Gain Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_tracking_controller_gain_parameters(
     cubeacp_client_t *client,
@@ -1511,7 +1628,9 @@ static inline icd_status_t cubeacp_send_set_tracking_controller_gain_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MOMENT_OF_INERTIA_MATRIX)
 /** Sends Moment of Inertia Matrix, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_moment_of_inertia_matrix(
     cubeacp_client_t *client,
@@ -1535,7 +1654,9 @@ static inline icd_status_t cubeacp_send_moment_of_inertia_matrix(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_PARAMETERS)
 /** Sends Estimation Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_estimation_parameters(
     cubeacp_client_t *client,
@@ -1559,7 +1680,9 @@ static inline icd_status_t cubeacp_send_estimation_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_SYSTEM_CONFIGURATION)
 /** Sends ADCS System Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_adcs_system_configuration(
     cubeacp_client_t *client,
@@ -1583,7 +1706,9 @@ static inline icd_status_t cubeacp_send_adcs_system_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS)
 /** Sends User-coded Controller and Estimator Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_user_coded_controller_and_estimator_parameters(
     cubeacp_client_t *client,
@@ -1610,7 +1735,9 @@ static inline icd_status_t cubeacp_send_user_coded_controller_and_estimator_para
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_AUGMENTED_SGP4_PARAMETERS)
 /** Sends Augmented-SGP4 Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_augmented_sgp4_parameters(
     cubeacp_client_t *client,
@@ -1634,7 +1761,9 @@ static inline icd_status_t cubeacp_send_augmented_sgp4_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG1_CONFIGURATION)
 /** Sends SD Log1 Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_sd_log1_configuration(
     cubeacp_client_t *client,
@@ -1658,7 +1787,9 @@ static inline icd_status_t cubeacp_send_sd_log1_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG2_CONFIGURATION)
 /** Sends SD Log2 Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_sd_log2_configuration(
     cubeacp_client_t *client,
@@ -1682,7 +1813,9 @@ static inline icd_status_t cubeacp_send_sd_log2_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UART_LOG_CONFIGURATION)
 /** Sends UART Log Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_uart_log_configuration(
     cubeacp_client_t *client,
@@ -1706,7 +1839,9 @@ static inline icd_status_t cubeacp_send_uart_log_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INERTIAL_POINTING_REFERENCE_VECTOR)
 /** Sends Inertial Pointing Reference Vector, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_inertial_pointing_reference_vector(
     cubeacp_client_t *client,
@@ -1730,8 +1865,10 @@ static inline icd_status_t cubeacp_send_inertial_pointing_reference_vector(
         on_event,
         context);
 }
+#endif
 
-/** Requests Identification. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_IDENTIFICATION)
+/** Requests Identification, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_identification(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
@@ -1745,8 +1882,10 @@ static inline icd_status_t cubeacp_receive_identification(common_identification_
     }
     return common_identification_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Boot And Running Program Status. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
+/** Requests Boot And Running Program Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_boot_and_running_program_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
@@ -1762,8 +1901,10 @@ static inline icd_status_t cubeacp_receive_boot_and_running_program_status(
     }
     return common_boot_and_running_program_status_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Boot Index and Status. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BOOT_INDEX_AND_STATUS)
+/** Requests Boot Index and Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_boot_index_and_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
@@ -1779,8 +1920,10 @@ static inline icd_status_t cubeacp_receive_boot_index_and_status(
     }
     return common_boot_index_and_status_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Last Logged Event. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_LAST_LOGGED_EVENT)
+/** Requests Last Logged Event, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_last_logged_event(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
@@ -1796,8 +1939,10 @@ static inline icd_status_t cubeacp_receive_last_logged_event(
     }
     return common_last_logged_event_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests SRAM Latchup counters. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_LATCHUP_COUNTERS)
+/** Requests SRAM Latchup counters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sram_latchup_counters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
@@ -1813,8 +1958,10 @@ static inline icd_status_t cubeacp_receive_sram_latchup_counters(
     }
     return common_sram_latchup_counters_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests EDAC Error Counters. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_EDAC_ERROR_COUNTERS)
+/** Requests EDAC Error Counters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_edac_error_counters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
@@ -1830,8 +1977,10 @@ static inline icd_status_t cubeacp_receive_edac_error_counters(
     }
     return common_edac_error_counters_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Communication Status. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMUNICATION_STATUS)
+/** Requests Communication Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_communication_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
@@ -1847,8 +1996,10 @@ static inline icd_status_t cubeacp_receive_communication_status(
     }
     return common_communication_status_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests SD card format/erase progress. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_CARD_FORMAT_ERASE_PROGRESS)
+/** Requests SD card format/erase progress, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_card_format_erase_progress(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
@@ -1864,8 +2015,10 @@ static inline icd_status_t cubeacp_receive_sd_card_format_erase_progress(
     }
     return common_sd_card_format_erase_progress_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Telecommand Acknowledge. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TELECOMMAND_ACKNOWLEDGE)
+/** Requests Telecommand Acknowledge, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_telecommand_acknowledge(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
@@ -1881,8 +2034,10 @@ static inline icd_status_t cubeacp_receive_telecommand_acknowledge(
     }
     return common_telecommand_acknowledge_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests File Download Buffer with File Contents. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
+/** Requests File Download Buffer with File Contents, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_file_download_buffer_with_file_contents(
     cubeacp_client_t *client,
     uint32_t now)
@@ -1903,8 +2058,10 @@ static inline icd_status_t cubeacp_receive_file_download_buffer_with_file_conten
     }
     return common_file_download_buffer_with_file_contents_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Download Block Ready. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_DOWNLOAD_BLOCK_READY)
+/** Requests Download Block Ready, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_download_block_ready(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
@@ -1920,8 +2077,10 @@ static inline icd_status_t cubeacp_receive_download_block_ready(
     }
     return common_download_block_ready_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests File Information. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_INFORMATION)
+/** Requests File Information, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_file_information(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
@@ -1937,8 +2096,10 @@ static inline icd_status_t cubeacp_receive_file_information(
     }
     return common_file_information_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Initialize Upload Complete. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INITIALIZE_UPLOAD_COMPLETE)
+/** Requests Initialize Upload Complete, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_initialize_upload_complete(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
@@ -1954,8 +2115,10 @@ static inline icd_status_t cubeacp_receive_initialize_upload_complete(
     }
     return common_initialize_upload_complete_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Upload Block Complete. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UPLOAD_BLOCK_COMPLETE)
+/** Requests Upload Block Complete, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_upload_block_complete(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
@@ -1971,8 +2134,10 @@ static inline icd_status_t cubeacp_receive_upload_block_complete(
     }
     return common_upload_block_complete_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Block Checksum. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BLOCK_CHECKSUM)
+/** Requests Block Checksum, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_block_checksum(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
@@ -1986,8 +2151,10 @@ static inline icd_status_t cubeacp_receive_block_checksum(common_block_checksum_
     }
     return common_block_checksum_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Cache enabled state. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CACHE_ENABLED_STATE)
+/** Requests Cache enabled state, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cache_enabled_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
@@ -2003,8 +2170,10 @@ static inline icd_status_t cubeacp_receive_cache_enabled_state(
     }
     return common_cache_enabled_state_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests SRAM Scrub Parameters. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_SCRUB_PARAMETERS)
+/** Requests SRAM Scrub Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sram_scrub_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
@@ -2020,8 +2189,10 @@ static inline icd_status_t cubeacp_receive_sram_scrub_parameters(
     }
     return common_sram_scrub_parameters_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Current Unix Time. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_UNIX_TIME)
+/** Requests Current Unix Time, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_unix_time(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
@@ -2037,8 +2208,10 @@ static inline icd_status_t cubeacp_receive_current_unix_time(
     }
     return common_current_unix_time_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Unix Time Save to Flash. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UNIX_TIME_SAVE_TO_FLASH)
+/** Requests Unix Time Save to Flash, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_unix_time_save_to_flash(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
@@ -2054,8 +2227,10 @@ static inline icd_status_t cubeacp_receive_unix_time_save_to_flash(
     }
     return common_unix_time_save_to_flash_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Hole Map 1. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_1)
+/** Requests Hole Map 1, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_1(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
@@ -2069,8 +2244,10 @@ static inline icd_status_t cubeacp_receive_hole_map_1(common_hole_map_1_t *messa
     }
     return common_hole_map_1_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Hole Map 2. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_2)
+/** Requests Hole Map 2, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_2(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
@@ -2084,8 +2261,10 @@ static inline icd_status_t cubeacp_receive_hole_map_2(common_hole_map_2_t *messa
     }
     return common_hole_map_2_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Hole Map 3. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_3)
+/** Requests Hole Map 3, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_3(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
@@ -2099,8 +2278,10 @@ static inline icd_status_t cubeacp_receive_hole_map_3(common_hole_map_3_t *messa
     }
     return common_hole_map_3_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Hole Map 4. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_4)
+/** Requests Hole Map 4, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_4(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
@@ -2114,8 +2295,10 @@ static inline icd_status_t cubeacp_receive_hole_map_4(common_hole_map_4_t *messa
     }
     return common_hole_map_4_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Hole Map 5. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_5)
+/** Requests Hole Map 5, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_5(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
@@ -2129,8 +2312,10 @@ static inline icd_status_t cubeacp_receive_hole_map_5(common_hole_map_5_t *messa
     }
     return common_hole_map_5_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Hole Map 6. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_6)
+/** Requests Hole Map 6, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_6(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
@@ -2144,8 +2329,10 @@ static inline icd_status_t cubeacp_receive_hole_map_6(common_hole_map_6_t *messa
     }
     return common_hole_map_6_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Hole Map 7. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_7)
+/** Requests Hole Map 7, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_7(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
@@ -2159,8 +2346,10 @@ static inline icd_status_t cubeacp_receive_hole_map_7(common_hole_map_7_t *messa
     }
     return common_hole_map_7_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Hole Map 8. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_8)
+/** Requests Hole Map 8, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_8(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);
@@ -2174,8 +2363,10 @@ static inline icd_status_t cubeacp_receive_hole_map_8(common_hole_map_8_t *messa
     }
     return common_hole_map_8_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Current ADCS State. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_ADCS_STATE)
+/** Requests Current ADCS State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_adcs_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CURRENT_ADCS_STATE_ID);
@@ -2191,8 +2382,10 @@ static inline icd_status_t cubeacp_receive_current_adcs_state(
     }
     return cubeacp_current_adcs_state_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests JPG Conversion Progress. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_JPG_CONVERSION_PROGRESS)
+/** Requests JPG Conversion Progress, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_jpg_conversion_progress(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_JPG_CONVERSION_PROGRESS_ID);
@@ -2208,8 +2401,10 @@ static inline icd_status_t cubeacp_receive_jpg_conversion_progress(
     }
     return cubeacp_jpg_conversion_progress_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests CubeACP State. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STATE)
+/** Requests CubeACP State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STATE_ID);
@@ -2223,8 +2418,10 @@ static inline icd_status_t cubeacp_receive_state(cubeacp_state_t *message, const
     }
     return cubeacp_state_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Estimated Attitude Angles. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_ATTITUDE_ANGLES)
+/** Requests Estimated Attitude Angles, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_attitude_angles(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID);
@@ -2240,8 +2437,10 @@ static inline icd_status_t cubeacp_receive_estimated_attitude_angles(
     }
     return cubeacp_estimated_attitude_angles_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Estimated Angular Rates. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_ANGULAR_RATES)
+/** Requests Estimated Angular Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_angular_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_ANGULAR_RATES_ID);
@@ -2257,8 +2456,10 @@ static inline icd_status_t cubeacp_receive_estimated_angular_rates(
     }
     return cubeacp_estimated_angular_rates_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Satellite Position (ECI). */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_POSITION_ECI)
+/** Requests Satellite Position (ECI), as icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_position_eci(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_POSITION_ECI_ID);
@@ -2274,8 +2475,10 @@ static inline icd_status_t cubeacp_receive_satellite_position_eci(
     }
     return cubeacp_satellite_position_eci_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Satellite Velocity (ECI). */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_VELOCITY_ECI)
+/** Requests Satellite Velocity (ECI), as icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_velocity_eci(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_VELOCITY_ECI_ID);
@@ -2291,8 +2494,10 @@ static inline icd_status_t cubeacp_receive_satellite_velocity_eci(
     }
     return cubeacp_satellite_velocity_eci_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Satellite Position (LLH). */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_POSITION_LLH)
+/** Requests Satellite Position (LLH), as icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_position_llh(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_POSITION_LLH_ID);
@@ -2308,8 +2513,10 @@ static inline icd_status_t cubeacp_receive_satellite_position_llh(
     }
     return cubeacp_satellite_position_llh_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Magnetic Field Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETIC_FIELD_VECTOR)
+/** Requests Magnetic Field Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetic_field_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MAGNETIC_FIELD_VECTOR_ID);
@@ -2325,8 +2532,10 @@ static inline icd_status_t cubeacp_receive_magnetic_field_vector(
     }
     return cubeacp_magnetic_field_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Coarse Sun Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COARSE_SUN_VECTOR)
+/** Requests Coarse Sun Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_coarse_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_COARSE_SUN_VECTOR_ID);
@@ -2342,8 +2551,10 @@ static inline icd_status_t cubeacp_receive_coarse_sun_vector(
     }
     return cubeacp_coarse_sun_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Fine Sun Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINE_SUN_VECTOR)
+/** Requests Fine Sun Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_fine_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_FINE_SUN_VECTOR_ID);
@@ -2357,8 +2568,10 @@ static inline icd_status_t cubeacp_receive_fine_sun_vector(cubeacp_fine_sun_vect
     }
     return cubeacp_fine_sun_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Nadir Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_NADIR_VECTOR)
+/** Requests Nadir Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_nadir_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_NADIR_VECTOR_ID);
@@ -2372,8 +2585,10 @@ static inline icd_status_t cubeacp_receive_nadir_vector(cubeacp_nadir_vector_t *
     }
     return cubeacp_nadir_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Rate Sensor Rates. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RATE_SENSOR_RATES)
+/** Requests Rate Sensor Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_rate_sensor_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RATE_SENSOR_RATES_ID);
@@ -2389,8 +2604,10 @@ static inline icd_status_t cubeacp_receive_rate_sensor_rates(
     }
     return cubeacp_rate_sensor_rates_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Wheel Speed. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_SPEED)
+/** Requests Wheel Speed, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_speed(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_SPEED_ID);
@@ -2404,8 +2621,10 @@ static inline icd_status_t cubeacp_receive_wheel_speed(cubeacp_wheel_speed_t *me
     }
     return cubeacp_wheel_speed_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Magnetorquer Command. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETORQUER_COMMAND)
+/** Requests Magnetorquer Command, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetorquer_command(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MAGNETORQUER_COMMAND_ID);
@@ -2421,8 +2640,10 @@ static inline icd_status_t cubeacp_receive_magnetorquer_command(
     }
     return cubeacp_magnetorquer_command_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Wheel Speed Commands. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_SPEED_COMMANDS)
+/** Requests Wheel Speed Commands, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_speed_commands(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_SPEED_COMMANDS_ID);
@@ -2438,8 +2659,10 @@ static inline icd_status_t cubeacp_receive_wheel_speed_commands(
     }
     return cubeacp_wheel_speed_commands_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests IGRF Modelled Magnetic Field Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR)
+/** Requests IGRF Modelled Magnetic Field Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_igrf_modelled_magnetic_field_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_ID);
@@ -2457,8 +2680,10 @@ static inline icd_status_t cubeacp_receive_igrf_modelled_magnetic_field_vector(
     }
     return cubeacp_igrf_modelled_magnetic_field_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Modelled Sun Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MODELLED_SUN_VECTOR)
+/** Requests Modelled Sun Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_modelled_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MODELLED_SUN_VECTOR_ID);
@@ -2474,8 +2699,10 @@ static inline icd_status_t cubeacp_receive_modelled_sun_vector(
     }
     return cubeacp_modelled_sun_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Estimated Gyro Bias. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_GYRO_BIAS)
+/** Requests Estimated Gyro Bias, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_gyro_bias(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_GYRO_BIAS_ID);
@@ -2491,8 +2718,10 @@ static inline icd_status_t cubeacp_receive_estimated_gyro_bias(
     }
     return cubeacp_estimated_gyro_bias_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Estimation Innovation Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_INNOVATION_VECTOR)
+/** Requests Estimation Innovation Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_innovation_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_INNOVATION_VECTOR_ID);
@@ -2508,8 +2737,10 @@ static inline icd_status_t cubeacp_receive_estimation_innovation_vector(
     }
     return cubeacp_estimation_innovation_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Quaternion Error Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_QUATERNION_ERROR_VECTOR)
+/** Requests Quaternion Error Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_quaternion_error_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_QUATERNION_ERROR_VECTOR_ID);
@@ -2525,8 +2756,10 @@ static inline icd_status_t cubeacp_receive_quaternion_error_vector(
     }
     return cubeacp_quaternion_error_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Quaternion Covariance. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_QUATERNION_COVARIANCE)
+/** Requests Quaternion Covariance, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_quaternion_covariance(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_QUATERNION_COVARIANCE_ID);
@@ -2542,8 +2775,10 @@ static inline icd_status_t cubeacp_receive_quaternion_covariance(
     }
     return cubeacp_quaternion_covariance_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Angular Rate Covariance. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ANGULAR_RATE_COVARIANCE)
+/** Requests Angular Rate Covariance, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_angular_rate_covariance(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ANGULAR_RATE_COVARIANCE_ID);
@@ -2559,8 +2794,10 @@ static inline icd_status_t cubeacp_receive_angular_rate_covariance(
     }
     return cubeacp_angular_rate_covariance_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw Cam2 Sensor. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CAM2_SENSOR)
+/** Requests Raw Cam2 Sensor, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_cam2_sensor(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CAM2_SENSOR_ID);
@@ -2574,8 +2811,10 @@ static inline icd_status_t cubeacp_receive_raw_cam2_sensor(cubeacp_raw_cam2_sens
     }
     return cubeacp_raw_cam2_sensor_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw Cam1 Sensor. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CAM1_SENSOR)
+/** Requests Raw Cam1 Sensor, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_cam1_sensor(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CAM1_SENSOR_ID);
@@ -2589,8 +2828,10 @@ static inline icd_status_t cubeacp_receive_raw_cam1_sensor(cubeacp_raw_cam1_sens
     }
     return cubeacp_raw_cam1_sensor_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw CSS 1 to 6. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CSS_1_TO_6)
+/** Requests Raw CSS 1 to 6, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_css_1_to_6(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CSS_1_TO_6_ID);
@@ -2604,8 +2845,10 @@ static inline icd_status_t cubeacp_receive_raw_css_1_to_6(cubeacp_raw_css_1_to_6
     }
     return cubeacp_raw_css_1_to_6_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw CSS 7 to 10. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CSS_7_TO_10)
+/** Requests Raw CSS 7 to 10, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_css_7_to_10(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CSS_7_TO_10_ID);
@@ -2619,8 +2862,10 @@ static inline icd_status_t cubeacp_receive_raw_css_7_to_10(cubeacp_raw_css_7_to_
     }
     return cubeacp_raw_css_7_to_10_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw Magnetometer. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_MAGNETOMETER)
+/** Requests Raw Magnetometer, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_magnetometer(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_MAGNETOMETER_ID);
@@ -2636,8 +2881,10 @@ static inline icd_status_t cubeacp_receive_raw_magnetometer(
     }
     return cubeacp_raw_magnetometer_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests CubeSense1 Current Measurements. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE1_CURRENTS)
+/** Requests CubeSense1 Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense1_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE1_CURRENTS_ID);
@@ -2653,8 +2900,10 @@ static inline icd_status_t cubeacp_receive_cubesense1_currents(
     }
     return cubeacp_cubesense1_currents_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests CubeControl Current Measurements. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBECONTROL_CURRENTS)
+/** Requests CubeControl Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubecontrol_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBECONTROL_CURRENTS_ID);
@@ -2672,8 +2921,10 @@ static inline icd_status_t cubeacp_receive_cubecontrol_currents(
     }
     return cubeacp_cubecontrol_currents_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Wheel Currents. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_CURRENTS)
+/** Requests Wheel Currents, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_CURRENTS_ID);
@@ -2687,8 +2938,10 @@ static inline icd_status_t cubeacp_receive_wheel_currents(cubeacp_wheel_currents
     }
     return cubeacp_wheel_currents_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests ADCS Temperatures. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_TEMPERATURES)
+/** Requests ADCS Temperatures, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_temperatures(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_TEMPERATURES_ID);
@@ -2704,8 +2957,10 @@ static inline icd_status_t cubeacp_receive_adcs_temperatures(
     }
     return cubeacp_adcs_temperatures_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Rate sensor temperatures. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RATE_SENSOR_TEMPERATURES)
+/** Requests Rate sensor temperatures, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_rate_sensor_temperatures(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RATE_SENSOR_TEMPERATURES_ID);
@@ -2721,8 +2976,10 @@ static inline icd_status_t cubeacp_receive_rate_sensor_temperatures(
     }
     return cubeacp_rate_sensor_temperatures_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw GPS Status. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_STATUS)
+/** Requests Raw GPS Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_STATUS_ID);
@@ -2736,8 +2993,10 @@ static inline icd_status_t cubeacp_receive_raw_gps_status(cubeacp_raw_gps_status
     }
     return cubeacp_raw_gps_status_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw GPS Time. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_TIME)
+/** Requests Raw GPS Time, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_time(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_TIME_ID);
@@ -2751,8 +3010,10 @@ static inline icd_status_t cubeacp_receive_raw_gps_time(cubeacp_raw_gps_time_t *
     }
     return cubeacp_raw_gps_time_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw GPS X. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_X)
+/** Requests Raw GPS X, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_x(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_X_ID);
@@ -2766,8 +3027,10 @@ static inline icd_status_t cubeacp_receive_raw_gps_x(cubeacp_raw_gps_x_t *messag
     }
     return cubeacp_raw_gps_x_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw GPS Y. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_Y)
+/** Requests Raw GPS Y, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_y(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_Y_ID);
@@ -2781,8 +3044,10 @@ static inline icd_status_t cubeacp_receive_raw_gps_y(cubeacp_raw_gps_y_t *messag
     }
     return cubeacp_raw_gps_y_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw GPS Z. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_Z)
+/** Requests Raw GPS Z, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_z(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_Z_ID);
@@ -2796,8 +3061,10 @@ static inline icd_status_t cubeacp_receive_raw_gps_z(cubeacp_raw_gps_z_t *messag
     }
     return cubeacp_raw_gps_z_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Star 1 Body Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_BODY_VECTOR)
+/** Requests Star 1 Body Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_body_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_BODY_VECTOR_ID);
@@ -2813,8 +3080,10 @@ static inline icd_status_t cubeacp_receive_star_1_body_vector(
     }
     return cubeacp_star_1_body_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Star 2 Body Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_BODY_VECTOR)
+/** Requests Star 2 Body Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_body_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_BODY_VECTOR_ID);
@@ -2830,8 +3099,10 @@ static inline icd_status_t cubeacp_receive_star_2_body_vector(
     }
     return cubeacp_star_2_body_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Star 3 Body Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_BODY_VECTOR)
+/** Requests Star 3 Body Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_body_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_BODY_VECTOR_ID);
@@ -2847,8 +3118,10 @@ static inline icd_status_t cubeacp_receive_star_3_body_vector(
     }
     return cubeacp_star_3_body_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Star 1 Orbit Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_ORBIT_VECTOR)
+/** Requests Star 1 Orbit Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_ORBIT_VECTOR_ID);
@@ -2864,8 +3137,10 @@ static inline icd_status_t cubeacp_receive_star_1_orbit_vector(
     }
     return cubeacp_star_1_orbit_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Star 2 Orbit Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_ORBIT_VECTOR)
+/** Requests Star 2 Orbit Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_ORBIT_VECTOR_ID);
@@ -2881,8 +3156,10 @@ static inline icd_status_t cubeacp_receive_star_2_orbit_vector(
     }
     return cubeacp_star_2_orbit_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Star 3 Orbit Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_ORBIT_VECTOR)
+/** Requests Star 3 Orbit Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_ORBIT_VECTOR_ID);
@@ -2898,8 +3175,10 @@ static inline icd_status_t cubeacp_receive_star_3_orbit_vector(
     }
     return cubeacp_star_3_orbit_vector_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Star Magnitude. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_MAGNITUDE)
+/** Requests Star Magnitude, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_magnitude(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_MAGNITUDE_ID);
@@ -2913,8 +3192,10 @@ static inline icd_status_t cubeacp_receive_star_magnitude(cubeacp_star_magnitude
     }
     return cubeacp_star_magnitude_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Star Performance1. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_PERFORMANCE1)
+/** Requests Star Performance1, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_performance1(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_PERFORMANCE1_ID);
@@ -2930,8 +3211,10 @@ static inline icd_status_t cubeacp_receive_star_performance1(
     }
     return cubeacp_star_performance1_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Star Timing. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_TIMING)
+/** Requests Star Timing, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_timing(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_TIMING_ID);
@@ -2945,8 +3228,10 @@ static inline icd_status_t cubeacp_receive_star_timing(cubeacp_star_timing_t *me
     }
     return cubeacp_star_timing_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests ADCS State. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_STATE)
+/** Requests ADCS State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_STATE_ID);
@@ -2960,8 +3245,10 @@ static inline icd_status_t cubeacp_receive_adcs_state(cubeacp_adcs_state_t *mess
     }
     return cubeacp_adcs_state_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests ADCS Measurements. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_MEASUREMENTS)
+/** Requests ADCS Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_measurements(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_MEASUREMENTS_ID);
@@ -2977,8 +3264,10 @@ static inline icd_status_t cubeacp_receive_adcs_measurements(
     }
     return cubeacp_adcs_measurements_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Actuator Commands. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ACTUATOR_COMMANDS)
+/** Requests Actuator Commands, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_actuator_commands(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ACTUATOR_COMMANDS_ID);
@@ -2994,8 +3283,10 @@ static inline icd_status_t cubeacp_receive_actuator_commands(
     }
     return cubeacp_actuator_commands_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Estimation Data. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_DATA)
+/** Requests Estimation Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_DATA_ID);
@@ -3009,8 +3300,10 @@ static inline icd_status_t cubeacp_receive_estimation_data(cubeacp_estimation_da
     }
     return cubeacp_estimation_data_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw Sensor Measurements. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_SENSOR_MEASUREMENTS)
+/** Requests Raw Sensor Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_sensor_measurements(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_SENSOR_MEASUREMENTS_ID);
@@ -3026,8 +3319,10 @@ static inline icd_status_t cubeacp_receive_raw_sensor_measurements(
     }
     return cubeacp_raw_sensor_measurements_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Power and Temperature Measurements. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_POWER_AND_TEMPERATURE)
+/** Requests Power and Temperature Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_power_and_temperature(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_POWER_AND_TEMPERATURE_ID);
@@ -3045,8 +3340,10 @@ static inline icd_status_t cubeacp_receive_power_and_temperature(
     }
     return cubeacp_power_and_temperature_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Adcs Execution Times. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_EXECUTION_TIMES)
+/** Requests Adcs Execution Times, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_execution_times(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_EXECUTION_TIMES_ID);
@@ -3062,8 +3359,10 @@ static inline icd_status_t cubeacp_receive_adcs_execution_times(
     }
     return cubeacp_adcs_execution_times_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests ADCS Misc Current Measurements. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_MISC_CURRENTS)
+/** Requests ADCS Misc Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_misc_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_MISC_CURRENTS_ID);
@@ -3079,8 +3378,10 @@ static inline icd_status_t cubeacp_receive_adcs_misc_currents(
     }
     return cubeacp_adcs_misc_currents_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Fine Estimated Angular Rates. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINE_ANGULAR_RATES)
+/** Requests Fine Estimated Angular Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_fine_angular_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_FINE_ANGULAR_RATES_ID);
@@ -3096,8 +3397,10 @@ static inline icd_status_t cubeacp_receive_fine_angular_rates(
     }
     return cubeacp_fine_angular_rates_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw GPS Measurements. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_MEASUREMENTS)
+/** Requests Raw GPS Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_measurements(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_MEASUREMENTS_ID);
@@ -3113,8 +3416,10 @@ static inline icd_status_t cubeacp_receive_raw_gps_measurements(
     }
     return cubeacp_raw_gps_measurements_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw Star Tracker. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_STAR_TRACKER)
+/** Requests Raw Star Tracker, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_star_tracker(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_STAR_TRACKER_ID);
@@ -3130,8 +3435,10 @@ static inline icd_status_t cubeacp_receive_raw_star_tracker(
     }
     return cubeacp_raw_star_tracker_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Star 1 Raw Data. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_RAW_DATA)
+/** Requests Star 1 Raw Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_raw_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_RAW_DATA_ID);
@@ -3145,8 +3452,10 @@ static inline icd_status_t cubeacp_receive_star_1_raw_data(cubeacp_star_1_raw_da
     }
     return cubeacp_star_1_raw_data_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Star 2 Raw Data. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_RAW_DATA)
+/** Requests Star 2 Raw Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_raw_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_RAW_DATA_ID);
@@ -3160,8 +3469,10 @@ static inline icd_status_t cubeacp_receive_star_2_raw_data(cubeacp_star_2_raw_da
     }
     return cubeacp_star_2_raw_data_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Star 3 Raw Data. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_RAW_DATA)
+/** Requests Star 3 Raw Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_raw_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_RAW_DATA_ID);
@@ -3175,8 +3486,10 @@ static inline icd_status_t cubeacp_receive_star_3_raw_data(cubeacp_star_3_raw_da
     }
     return cubeacp_star_3_raw_data_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Secondary Magnetometer Raw Measurements. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS)
+/** Requests Secondary Magnetometer Raw Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_secondary_magnetometer_raw_measurements(
     cubeacp_client_t *client,
     uint32_t now)
@@ -3197,8 +3510,10 @@ static inline icd_status_t cubeacp_receive_secondary_magnetometer_raw_measuremen
     }
     return cubeacp_secondary_magnetometer_raw_measurements_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Raw Rate Sensor. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_RATE_SENSOR)
+/** Requests Raw Rate Sensor, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_rate_sensor(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_RATE_SENSOR_ID);
@@ -3212,8 +3527,10 @@ static inline icd_status_t cubeacp_receive_raw_rate_sensor(cubeacp_raw_rate_sens
     }
     return cubeacp_raw_rate_sensor_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Estimated Quaternion. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_QUATERNION)
+/** Requests Estimated Quaternion, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_quaternion(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_QUATERNION_ID);
@@ -3229,8 +3546,10 @@ static inline icd_status_t cubeacp_receive_estimated_quaternion(
     }
     return cubeacp_estimated_quaternion_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests ECEF Position. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ECEF_POSITION)
+/** Requests ECEF Position, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_ecef_position(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ECEF_POSITION_ID);
@@ -3244,8 +3563,10 @@ static inline icd_status_t cubeacp_receive_ecef_position(cubeacp_ecef_position_t
     }
     return cubeacp_ecef_position_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests ACP Execution State. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ACP_EXECUTION_STATE)
+/** Requests ACP Execution State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_acp_execution_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ACP_EXECUTION_STATE_ID);
@@ -3261,8 +3582,10 @@ static inline icd_status_t cubeacp_receive_acp_execution_state(
     }
     return cubeacp_acp_execution_state_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Current ADCS State 2. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_ADCS_STATE_2)
+/** Requests Current ADCS State 2, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_adcs_state_2(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CURRENT_ADCS_STATE_2_ID);
@@ -3278,8 +3601,10 @@ static inline icd_status_t cubeacp_receive_current_adcs_state_2(
     }
     return cubeacp_current_adcs_state_2_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests ASGP4 TLEs. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_TLES)
+/** Requests ASGP4 TLEs, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_asgp4_tles(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ASGP4_TLES_ID);
@@ -3293,8 +3618,10 @@ static inline icd_status_t cubeacp_receive_asgp4_tles(cubeacp_asgp4_tles_t *mess
     }
     return cubeacp_asgp4_tles_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests CubeStar Estimated Rates. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESTAR_ESTIMATED_RATES)
+/** Requests CubeStar Estimated Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubestar_estimated_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESTAR_ESTIMATED_RATES_ID);
@@ -3310,8 +3637,10 @@ static inline icd_status_t cubeacp_receive_cubestar_estimated_rates(
     }
     return cubeacp_cubestar_estimated_rates_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests CubeStar Estimated Quaternion. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESTAR_ESTIMATED_QUATERNION)
+/** Requests CubeStar Estimated Quaternion, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubestar_estimated_quaternion(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_ID);
@@ -3327,8 +3656,10 @@ static inline icd_status_t cubeacp_receive_cubestar_estimated_quaternion(
     }
     return cubeacp_cubestar_estimated_quaternion_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Star Performance2. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_PERFORMANCE2)
+/** Requests Star Performance2, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_performance2(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_PERFORMANCE2_ID);
@@ -3344,8 +3675,10 @@ static inline icd_status_t cubeacp_receive_star_performance2(
     }
     return cubeacp_star_performance2_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests CubeSense2 Current Measurements. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE2_CURRENTS)
+/** Requests CubeSense2 Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense2_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE2_CURRENTS_ID);
@@ -3361,8 +3694,10 @@ static inline icd_status_t cubeacp_receive_cubesense2_currents(
     }
     return cubeacp_cubesense2_currents_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Status of Image Capture and Save Operation. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION)
+/** Requests Status of Image Capture and Save Operation, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_status_of_image_capture_and_save_operation(
     cubeacp_client_t *client,
     uint32_t now)
@@ -3383,8 +3718,10 @@ static inline icd_status_t cubeacp_receive_status_of_image_capture_and_save_oper
     }
     return cubeacp_status_of_image_capture_and_save_operation_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Set Magnetorquer Configuration. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MAGNETORQUER_CONFIGURATION)
+/** Requests Set Magnetorquer Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_magnetorquer_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_MAGNETORQUER_CONFIGURATION_GET_ID);
@@ -3400,8 +3737,10 @@ static inline icd_status_t cubeacp_receive_set_magnetorquer_configuration(
     }
     return cubeacp_set_magnetorquer_configuration_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Set Wheel Configuration. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_WHEEL_CONFIGURATION)
+/** Requests Set Wheel Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_wheel_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_WHEEL_CONFIGURATION_GET_ID);
@@ -3417,8 +3756,10 @@ static inline icd_status_t cubeacp_receive_set_wheel_configuration(
     }
     return cubeacp_set_wheel_configuration_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Set Rate Gyro Configuration. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_RATE_GYRO_CONFIGURATION)
+/** Requests Set Rate Gyro Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_rate_gyro_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_RATE_GYRO_CONFIGURATION_GET_ID);
@@ -3434,8 +3775,10 @@ static inline icd_status_t cubeacp_receive_set_rate_gyro_configuration(
     }
     return cubeacp_set_rate_gyro_configuration_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests CSS Configuration. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CSS_CONFIGURATION)
+/** Requests CSS Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_css_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CSS_CONFIGURATION_GET_ID);
@@ -3451,8 +3794,10 @@ static inline icd_status_t cubeacp_receive_css_configuration(
     }
     return cubeacp_css_configuration_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests ADCS Power Control. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_POWER_CONTROL)
+/** Requests ADCS Power Control, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_power_control(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_POWER_CONTROL_GET_ID);
@@ -3468,8 +3813,10 @@ static inline icd_status_t cubeacp_receive_adcs_power_control(
     }
     return cubeacp_adcs_power_control_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Commanded Attitude Angles. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMANDED_ATTITUDE_ANGLES)
+/** Requests Commanded Attitude Angles, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_commanded_attitude_angles(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_COMMANDED_ATTITUDE_ANGLES_GET_ID);
@@ -3485,8 +3832,10 @@ static inline icd_status_t cubeacp_receive_commanded_attitude_angles(
     }
     return cubeacp_commanded_attitude_angles_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Tracking Controller Target Reference. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRACKING_CONTROLLER_TARGET_REFERENCE)
+/** Requests Tracking Controller Target Reference, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_tracking_controller_target_reference(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_GET_ID);
@@ -3505,8 +3854,10 @@ static inline icd_status_t cubeacp_receive_tracking_controller_target_reference(
     }
     return cubeacp_tracking_controller_target_reference_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Set Star Tracker Configuration. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_STAR_TRACKER_CONFIGURATION)
+/** Requests Set Star Tracker Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_star_tracker_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_STAR_TRACKER_CONFIGURATION_GET_ID);
@@ -3522,8 +3873,10 @@ static inline icd_status_t cubeacp_receive_set_star_tracker_configuration(
     }
     return cubeacp_set_star_tracker_configuration_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests CubeSense Configuration. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE_CONFIGURATION)
+/** Requests CubeSense Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE_CONFIGURATION_GET_ID);
@@ -3539,8 +3892,10 @@ static inline icd_status_t cubeacp_receive_cubesense_configuration(
     }
     return cubeacp_cubesense_configuration_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Magnetometer Configuration. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETOMETER_CONFIGURATION)
+/** Requests Magnetometer Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetometer_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID);
@@ -3556,8 +3911,10 @@ static inline icd_status_t cubeacp_receive_magnetometer_configuration(
     }
     return cubeacp_magnetometer_configuration_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Redundant Magnetometer Configuration. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_REDUNDANT_MAG_CONFIGURATION)
+/** Requests Redundant Magnetometer Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_redundant_mag_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_REDUNDANT_MAG_CONFIGURATION_GET_ID);
@@ -3576,8 +3933,10 @@ static inline icd_status_t cubeacp_receive_redundant_mag_configuration(
     }
     return cubeacp_redundant_mag_configuration_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests ADCS Configuration. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_CONFIGURATION)
+/** Requests ADCS Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_CONFIGURATION_GET_ID);
@@ -3593,8 +3952,10 @@ static inline icd_status_t cubeacp_receive_adcs_configuration(
     }
     return cubeacp_adcs_configuration_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests SGP4 Orbit Parameters. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SGP4_ORBIT_PARAMETERS)
+/** Requests SGP4 Orbit Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sgp4_orbit_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SGP4_ORBIT_PARAMETERS_GET_ID);
@@ -3610,8 +3971,10 @@ static inline icd_status_t cubeacp_receive_sgp4_orbit_parameters(
     }
     return cubeacp_sgp4_orbit_parameters_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Set Detumbling Control Parameters. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_DETUMBLING_CONTROL_PARAMETERS)
+/** Requests Set Detumbling Control Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_detumbling_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_GET_ID);
@@ -3629,8 +3992,10 @@ static inline icd_status_t cubeacp_receive_set_detumbling_control_parameters(
     }
     return cubeacp_set_detumbling_control_parameters_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Set Y-Wheel Control Parameters. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_Y_WHEEL_CONTROL_PARAMETERS)
+/** Requests Set Y-Wheel Control Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_y_wheel_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_GET_ID);
@@ -3646,8 +4011,10 @@ static inline icd_status_t cubeacp_receive_set_y_wheel_control_parameters(
     }
     return cubeacp_set_y_wheel_control_parameters_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Set Reaction Wheel Control Parameters. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_REACTION_WHEEL_CONTROL_PARAMETERS)
+/** Requests Set Reaction Wheel Control Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_reaction_wheel_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_GET_ID);
@@ -3666,8 +4033,10 @@ static inline icd_status_t cubeacp_receive_set_reaction_wheel_control_parameters
     }
     return cubeacp_set_reaction_wheel_control_parameters_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Set Tracking Controller Gain Parameters. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS)
+/** Requests Set Tracking Controller Gain Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_tracking_controller_gain_parameters(
     cubeacp_client_t *client,
     uint32_t now)
@@ -3688,8 +4057,10 @@ static inline icd_status_t cubeacp_receive_set_tracking_controller_gain_paramete
     }
     return cubeacp_set_tracking_controller_gain_parameters_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Moment of Inertia Matrix. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MOMENT_OF_INERTIA_MATRIX)
+/** Requests Moment of Inertia Matrix, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_moment_of_inertia_matrix(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MOMENT_OF_INERTIA_MATRIX_GET_ID);
@@ -3705,8 +4076,10 @@ static inline icd_status_t cubeacp_receive_moment_of_inertia_matrix(
     }
     return cubeacp_moment_of_inertia_matrix_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Estimation Parameters. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_PARAMETERS)
+/** Requests Estimation Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_PARAMETERS_GET_ID);
@@ -3722,8 +4095,10 @@ static inline icd_status_t cubeacp_receive_estimation_parameters(
     }
     return cubeacp_estimation_parameters_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests ADCS System Configuration. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_SYSTEM_CONFIGURATION)
+/** Requests ADCS System Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_system_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_SYSTEM_CONFIGURATION_GET_ID);
@@ -3739,8 +4114,10 @@ static inline icd_status_t cubeacp_receive_adcs_system_configuration(
     }
     return cubeacp_adcs_system_configuration_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests User-coded Controller and Estimator Parameters. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS)
+/** Requests User-coded Controller and Estimator Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_user_coded_controller_and_estimator_parameters(
     cubeacp_client_t *client,
     uint32_t now)
@@ -3761,8 +4138,10 @@ static inline icd_status_t cubeacp_receive_user_coded_controller_and_estimator_p
     }
     return cubeacp_user_coded_controller_and_estimator_parameters_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Augmented-SGP4 Parameters. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_AUGMENTED_SGP4_PARAMETERS)
+/** Requests Augmented-SGP4 Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_augmented_sgp4_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_AUGMENTED_SGP4_PARAMETERS_GET_ID);
@@ -3778,8 +4157,10 @@ static inline icd_status_t cubeacp_receive_augmented_sgp4_parameters(
     }
     return cubeacp_augmented_sgp4_parameters_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests SD Log1 Configuration. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG1_CONFIGURATION)
+/** Requests SD Log1 Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_log1_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SD_LOG1_CONFIGURATION_GET_ID);
@@ -3795,8 +4176,10 @@ static inline icd_status_t cubeacp_receive_sd_log1_configuration(
     }
     return cubeacp_sd_log1_configuration_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests SD Log2 Configuration. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG2_CONFIGURATION)
+/** Requests SD Log2 Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_log2_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SD_LOG2_CONFIGURATION_GET_ID);
@@ -3812,8 +4195,10 @@ static inline icd_status_t cubeacp_receive_sd_log2_configuration(
     }
     return cubeacp_sd_log2_configuration_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests UART Log Configuration. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UART_LOG_CONFIGURATION)
+/** Requests UART Log Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_uart_log_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_UART_LOG_CONFIGURATION_GET_ID);
@@ -3829,8 +4214,10 @@ static inline icd_status_t cubeacp_receive_uart_log_configuration(
     }
     return cubeacp_uart_log_configuration_decode(message, event->data, event->length);
 }
+#endif
 
-/** Requests Inertial Pointing Reference Vector. */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INERTIAL_POINTING_REFERENCE_VECTOR)
+/** Requests Inertial Pointing Reference Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_inertial_pointing_reference_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_GET_ID);
@@ -3848,5 +4235,6 @@ static inline icd_status_t cubeacp_receive_inertial_pointing_reference_vector(
     }
     return cubeacp_inertial_pointing_reference_vector_decode(message, event->data, event->length);
 }
+#endif
 
 #endif /* CUBEACP_CLIENT_H */

@@ -13,6 +13,7 @@ __all__ = [
     "Buffer",
     "Callable",
     "FieldInfo",
+    "Frames",
     "Iterator",
     "Literal",
     "M",
@@ -33,13 +34,14 @@ if TYPE_CHECKING:
     from ._base import Message
     from ._enumeration import OpenEnum
     from ._fields import FieldInfo
-    from ._hints import Buffer, M, T
+    from ._hints import Buffer, Frames, M, T
 else:
     _NAMED = {
         "Any": "typing",
         "Buffer": "._hints",
         "Callable": "collections.abc",
         "FieldInfo": "._fields",
+        "Frames": "._hints",
         "Iterator": "collections.abc",
         "Literal": "typing",
         "M": "._hints",

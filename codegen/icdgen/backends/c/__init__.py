@@ -12,10 +12,11 @@ from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
 from icdgen.backends.c.statement import call, head
-from icdgen.backends.c.text import comment, described, literal, noted, prose
+from icdgen.backends.c.text import FILE, comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, text_comment, words
+from icdgen.describe.description import TailDescription
 from icdgen.describe.numbers import byte_count
 from icdgen.icd.model import Icd
 
@@ -77,7 +78,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
     enums = ("enums.h" if folder == message.node.name else f"../{folder}/enums.h" for folder in folders)
     about = message.comment
     return {
-        "about": comment(["@file", about.head, *about.rest, *noted(about)]),
+        "about": comment([FILE, about.head, *about.rest, *noted(about)]),
         "includes": ["../icdgen_wide.h" if message.has_wide_steps else "../icdgen.h", *enums, *parts.headers(message)],
         "constants": constants.of_fields(message),
         "initial": constants.initial(message),
@@ -87,11 +88,21 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "excess": bits.excess,
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message),
+        **(_tail(message, message.tail) if message.tail else {}),
         "views": [accessors.view(field) for field in message.views],
         "whole_accessors": accessors.whole_accessors(message),
         "accessors": accessors.accessors(message),
         "parts": parts.parts(message),
         "known": fields.fields(message),
+    }
+
+
+def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, object]:
+    """What the code of frames that differ in length needs."""
+    return {
+        "size": encoding.size(message),
+        "misfit_length": decoding.misfit_length(tail, names.constant(message, "length")),
+        "miscounted": decoding.miscounted(tail),
     }
 
 
@@ -111,7 +122,7 @@ def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
 
     return {
         "node": node.name,
-        "about": comment(["@file", f"{words(node.model.title)}: how its messages travel."]),
+        "about": comment([FILE, f"{words(node.model.title)}: how its messages travel."]),
         "sizes": links.sizes(link),
         "tables": links.tables(link),
     }
@@ -126,7 +137,7 @@ def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
     headers = sorted({*(f"../{name}.h" for name in node.model.includes), *(f"{one.name}.h" for one in node.messages)})
     return {
         "node": node.name,
-        "about": comment(["@file", f"{words(node.model.title)}: a client that takes its messages only."]),
+        "about": comment([FILE, f"{words(node.model.title)}: a client that takes its messages only."]),
         "includes": ["link.h", *headers],
         "buses": [bus for bus, is_known in buses if is_known],
         "telecommands": [(one, one.telecommand_id_name) for one in node.telecommands],
@@ -140,6 +151,6 @@ def _node(node: NodeDescription) -> dict[str, object]:
     headers += [f"{node.name}/{message.name}.h" for message in node.messages]
     headers += [f"{node.name}/link.h", f"{node.name}/client.h"] if node.is_linked else []
     return {
-        "about": comment(["@file", f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),
+        "about": comment([FILE, f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),
         "includes": ["icdgen.h", *headers],
     }
