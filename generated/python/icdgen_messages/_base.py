@@ -35,17 +35,38 @@ __all__ = [
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from inspect import Signature
-    from typing import Callable, ClassVar, Literal
+    from typing import Any, Callable, ClassVar, Generic, Literal
 
-    from typing_extensions import ParamSpec, dataclass_transform
+    from typing_extensions import ParamSpec, Self, TypeVar, dataclass_transform
 
     from ._hints import M
 
     P = ParamSpec("P")
+    N_contra = TypeVar("N_contra", contravariant=True, default=Any)
+
+    class Spoken(Generic[N_contra]):
+        """What type checkers are told of which node speaks a message."""
+
+        @classmethod
+        def _made(cls) -> Self: ...
+
+        @staticmethod
+        def _spoken_by(node: N_contra, /) -> None: ...
+
 else:
 
     def dataclass_transform(**_):
         return lambda cls: cls
+
+    N_contra = None
+
+    class Spoken:
+        """Nothing, when the program runs."""
+
+        __slots__ = ()
+
+        def __class_getitem__(cls, node):
+            return cls
 
 
 @dataclass_transform(
@@ -104,7 +125,7 @@ class _DataclassParams:
         return PARAMS
 
 
-class Message(metaclass=MessageType):
+class Message(Spoken[N_contra], metaclass=MessageType):
     """A message: its attributes hold raw values, just as they are on the wire.
 
     It is made with keywords, of raw or of physical values. Values are not checked when
