@@ -9,7 +9,7 @@ from functools import partial
 from itertools import chain
 from typing import TypeVar
 
-from icdgen.icd import division, formula, model, tails, wire_ids
+from icdgen.icd import curve, division, formula, model, tails, wire_ids
 from icdgen.icd.errata import Applied
 from icdgen.icd.located import Map, plain
 from icdgen.icd.units import STANDARD, Unit
@@ -190,6 +190,7 @@ class Builder:
             unit=self.scope.units.get(get("unit", "")),
             formula=get("formula", ""),
             scale=scale(get("formula")) if kind in ("uint", "int") else None,
+            curve=curve_of(item["formula"], kind) if "formula" in item else None,
             const=get("const"),
             special=tuple(self.each("special", special, item)) if "special" in item else (),
             limits=limits(item),
@@ -224,6 +225,16 @@ def scale(text: str | None) -> formula.Scale | None:
         return None
     try:
         return formula.parse_cached(text)
+    except formula.FormulaError:
+        return None
+
+
+def curve_of(text: str, kind: str) -> curve.Curve | None:
+    """The curve of a formula: on floats, and where it is no line; None where it is bad."""
+    if kind not in ("uint", "int", "float") or (kind != "float" and scale(text) is not None):
+        return None
+    try:
+        return curve.parse_cached(text)
     except formula.FormulaError:
         return None
 

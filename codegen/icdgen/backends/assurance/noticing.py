@@ -14,7 +14,6 @@ from operator import or_
 from typing import Any
 
 from icdgen import codec
-from icdgen.icd.formula import Scale
 from icdgen.icd.model import Field, Message, Node
 from icdgen.vectors.lines import MessageLines
 from icdgen.vectors.make import MessageVectors, Raw, Row, known_text
@@ -73,8 +72,8 @@ class MessageWatch:
         given = self.vectors.settings.get(old.name, [])
         if not given or old.type == "text":
             return any(_attempt(codec.raw_from_text, now, said) != _given(raw) for said, raw in given)
-        asked = [*given, *((bits, None) for bits in NEVER)]
-        return now.scale is None or any(
+        asked = [*given, *((bits, None) for bits in NEVER if old.type != "float")]
+        return not now.has_formula or any(
             _attempt(codec.raw_from_physical, now, float_of(bits)) != _given(raw) for bits, raw in asked
         )
 
@@ -106,7 +105,7 @@ def _notices(row: Row, old: Field, now: Field, node: Node, alone: Message, other
         return True
     if _shown(now, read) != _shown(old, raw) or _name(now, read) != _name(old, raw):
         return True
-    if now.type == "text" or now.type != old.type or now.scale is not old.scale or now.bits != old.bits:
+    if now.type == "text" or now.type != old.type or _formula(now) != _formula(old) or now.bits != old.bits:
         if _physical(now, read) != _physical(old, raw) or _set_back(now, read) != _set_back(old, raw):
             return True
     return _number(frame) | others != _number(row.encoded)
@@ -157,15 +156,15 @@ def _name(field: Field, raw: Any) -> object:
 def _physical(field: Field, raw: Any) -> object:
     if field.type == "text":
         return (known_text(raw),)
-    return None if field.scale is None else bits_of(_double(field.scale, raw))
+    double = codec.physical_double(field, raw)
+    return None if double is None else bits_of(double)
 
 
 def _set_back(field: Field, raw: Any) -> object:
     """What setting the physical value of the raw value gives."""
-    if field.scale is None or field.view:
-        return None
-    return _attempt(codec.raw_from_physical, field, _double(field.scale, raw))
+    double = None if field.view else codec.physical_double(field, raw)
+    return None if double is None else _attempt(codec.raw_from_physical, field, double)
 
 
-def _double(scale: Scale, raw: int) -> float:
-    return codec.to_double(scale.physical(raw))
+def _formula(field: Field) -> object:
+    return field.scale, field.curve

@@ -252,12 +252,12 @@ def _sweep(node: Any, words: Words) -> str:
     for raw in map(int, words):
         if not low <= raw <= high:
             raise Refusal(f"range field={_hex(one.name)}")
-        one.set(message, info.attribute, raw)
+        one.set(message, info.attribute, _raw(info, str(raw)))
         physical = one.get(message, info.physical)
         back: Optional[int] = None
         try:
             one.set(message, info.physical, physical)
-            back = one.get(message, info.attribute)
+            back = _shown(info, one.get(message, info.attribute))
         except RangeError:
             pass
         said.append(f"{_floats.float64_bits(physical)},{'' if back is None else back},")
