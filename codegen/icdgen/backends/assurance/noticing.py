@@ -108,7 +108,8 @@ def _notices(row: Row, old: Field, now: Field, node: Node, alone: Message, other
     if now.type == "text" or now.type != old.type or _formula(now) != _formula(old) or now.bits != old.bits:
         if _physical(now, read) != _physical(old, raw) or _set_back(now, read) != _set_back(old, raw):
             return True
-    return _number(frame) | others != _number(row.encoded)
+    there = (1 << 8 * len(row.encoded)) - 1  # of a frame that ends early, elements that are not there do not tell
+    return (_number(frame) | others) & there != _number(row.encoded)
 
 
 def _place(field: Field) -> tuple[object, ...]:
