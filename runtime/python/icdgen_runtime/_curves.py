@@ -8,10 +8,6 @@ import struct
 from . import _lazy
 from ._errors import RangeError
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from ._fields import FieldInfo
-
 
 def on_curve(coefficients: tuple[float, ...], raw: float) -> float:
     """The physical value of a raw one; the constant stands first.
@@ -25,7 +21,7 @@ def on_curve(coefficients: tuple[float, ...], raw: float) -> float:
     return math.nan if math.isnan(value) else value
 
 
-def from_curve(value: _lazy.Any, info: FieldInfo, field: str) -> _lazy.Any:
+def from_curve(value: _lazy.Any, info: _lazy.FieldInfo, field: str) -> _lazy.Any:
     """The nearest raw value, of two the even one. Raises `RangeError`."""
     try:
         top, bottom = value.as_integer_ratio()
@@ -41,7 +37,7 @@ def from_curve(value: _lazy.Any, info: FieldInfo, field: str) -> _lazy.Any:
     return _nearest(wanted, info, field)
 
 
-def _number(value: float, info: FieldInfo, field: str) -> float:
+def _number(value: float, info: _lazy.FieldInfo, field: str) -> float:
     constant, slope = info.curve
     inverse = (value - constant) / slope
     try:
@@ -54,7 +50,7 @@ def _number(value: float, info: FieldInfo, field: str) -> float:
     return float(narrow)
 
 
-def _nearest(value: float, info: FieldInfo, field: str) -> int:
+def _nearest(value: float, info: _lazy.FieldInfo, field: str) -> int:
     low, high = info.raw_range
     first, last = on_curve(info.curve, low), on_curve(info.curve, high)
     rises = first < last

@@ -60,7 +60,7 @@ class MessageWatch:
         return [self.lines.head, self.lines.lengths, *self.lines.rows]
 
     def _line_notices(self, old: Field, now: Field) -> bool:
-        if _shown(old, old.fresh) != _shown(now, now.fresh):
+        if self._is_fresh(old) and _shown(old, old.fresh) != _shown(now, now.fresh):
             return True
         if [one.value for one in old.special] != [one.value for one in now.special] or old.limits != now.limits:
             return True
@@ -76,6 +76,14 @@ class MessageWatch:
         return not now.has_formula or any(
             _attempt(codec.raw_from_physical, now, float_of(bits)) != _given(raw) for bits, raw in asked
         )
+
+    def _is_fresh(self, field: Field) -> bool:
+        """Whether a new message has it: of an open end it has no element."""
+        return field.implied or field.at < 8 * self._fresh_length
+
+    @cached_property
+    def _fresh_length(self) -> int:
+        return len(codec.encode(self.node, self.message, self.message.fresh))
 
     @cached_property
     def _of_others(self) -> list[list[int]]:
