@@ -73,7 +73,7 @@ class MessageWatch:
         if not given or old.type == "text":
             return any(_attempt(codec.raw_from_text, now, said) != _given(raw) for said, raw in given)
         asked = [*given, *((bits, None) for bits in NEVER if old.type != "float")]
-        return not now.has_formula or any(
+        return not (now.has_formula and now.leads_back) or any(
             _attempt(codec.raw_from_physical, now, float_of(bits)) != _given(raw) for bits, raw in asked
         )
 
@@ -114,8 +114,10 @@ def _notices(row: Row, old: Field, now: Field, node: Node, alone: Message, other
     if _shown(now, read) != _shown(old, raw) or _name(now, read) != _name(old, raw):
         return True
     if now.type == "text" or now.type != old.type or _formula(now) != _formula(old) or now.bits != old.bits:
-        if _physical(now, read) != _physical(old, raw) or _set_back(now, read) != _set_back(old, raw):
+        if _physical(now, read) != _physical(old, raw):
             return True
+        if old.leads_back and (not now.leads_back or _set_back(now, read) != _set_back(old, raw)):
+            return True  # what does not lead back is not asked to
     there = (1 << 8 * len(row.encoded)) - 1  # of a frame that ends early, elements that are not there do not tell
     return (_number(frame) | others) & there != _number(row.encoded)
 
