@@ -10,10 +10,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
 from icdgen import layout
-from icdgen.icd.build import curve_of
-from icdgen.icd.build import scale as scale_of
-from icdgen.icd.curve import Curve
-from icdgen.icd.formula import Scale
+from icdgen.icd.build import calibration
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Field, Limits, Message, Node
 
@@ -92,23 +89,16 @@ def _types(field: Field) -> Iterator[tuple[Change, Field]]:
     source = field.source
     for kind in OTHER_TYPES[field.type] if _is_plain(field) else ():
         if _can_be(field, kind):
-            scale, curve = _formula(field.formula, kind)
+            scale, curve = calibration(field.formula, kind)
             yield Change("type", source, "type", field.type, kind), replace(field, type=kind, scale=scale, curve=curve)
 
 
 def _formulas(field: Field) -> Iterator[tuple[Change, Field]]:
     for text in formulas(field.formula) if field.has_formula else ():
-        scale, curve = _formula(text, field.type)
+        scale, curve = calibration(text, field.type)
         if scale is not None or curve is not None:  # else its factor would be 0
             change = Change("formula", field.source, "formula", field.formula, text)
             yield change, replace(field, scale=scale, curve=curve)
-
-
-def _formula(text: str, kind: str) -> tuple[Scale | None, Curve | None]:
-    """What a field of a type makes of the text of a formula."""
-    if not text:
-        return None, None
-    return scale_of(text) if kind in ("uint", "int") else None, curve_of(text, kind)
 
 
 def _values(field: Field) -> Iterator[tuple[Change, Field]]:
