@@ -80,9 +80,7 @@ class MessageType(type):
     first used, and what `dataclasses` wants is made when it is asked for.
     """
 
-    def __new__(
-        mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _lazy.Any]
-    ) -> _lazy.Any:
+    def __new__(mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _lazy.Any]) -> _lazy.Any:
         """The class. Values of fields stand in slots, so their declarations go."""
         if "LENGTH" in namespace:
             infos: list[FieldInfo] = []
@@ -146,6 +144,8 @@ class Message(Spoken[N_contra], metaclass=MessageType):
         """Bytes of a frame, without the id; of the longest, where frames differ."""
         TAIL: ClassVar[Tail | None]
         """The end of frames that differ in length."""
+        ENDS_EARLY: ClassVar[bool]
+        """Whether frames may lack the zeros that they end with."""
         IDS: ClassVar[tuple[int, ...]]
         """Its ids: one, or the id to set it and the id to get it."""
         TABLE: ClassVar[int | None]
@@ -163,7 +163,7 @@ class Message(Spoken[N_contra], metaclass=MessageType):
     else:
         IDS = FIELDS = VIEWS = PARTS = ()
         TABLE = TAIL = None
-        ACKNOWLEDGED = True
+        ENDS_EARLY, ACKNOWLEDGED = False, True
         BYTE_ORDER, BIT_ORDER = "little", "lsb0"
         __dataclass_fields__ = _DataclassFields()
 
@@ -196,9 +196,7 @@ class Message(Spoken[N_contra], metaclass=MessageType):
             """
             for info in cls.FIELDS:
                 if info.physical and info.leads_back and info.attribute in values:
-                    raise TypeError(
-                        f"from_physical takes {info.physical}, not {info.attribute}"
-                    )
+                    raise TypeError(f"from_physical takes {info.physical}, not {info.attribute}")
             for info in cls.VIEWS:  # they follow from the fields
                 values.pop(info.attribute, None)
                 values.pop(info.physical, None)
@@ -273,14 +271,12 @@ class Message(Spoken[N_contra], metaclass=MessageType):
         return from_json(cls, data)
 
     @classmethod
-    def decode_many(
-        cls, frames: _lazy.Frames, physical: bool = False
-    ) -> dict[str, _lazy.Any]:
+    def decode_many(cls, frames: _lazy.Frames, physical: bool = False) -> dict[str, _lazy.Any]:
         """Frames that follow each other, as one numpy array a field.
 
         The names are those of `as_dict`. What stands on whole bytes is a view of the
         frames, or of a copy of them if they can change. Raises `LengthError` if they
-        are not whole frames. Frames that differ in length are given one by one, as a
+        are not whole frames. Frames that differ in length, or end early, are given one by one, as a
         list; what ends them is an array of arrays, or of bytes. Needs numpy.
         """
         from . import _columns

@@ -18,11 +18,23 @@ def decoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
         if tail.counter and getattr(self, tail.counter) != count:
             told = getattr(self, tail.counter)
             least = cls.LENGTH - tail.most * tail.step
-            raise LengthError(
-                cls.NAME, least + told * tail.step, memoryview(data).nbytes
-            )
+            raise LengthError(cls.NAME, least + told * tail.step, memoryview(data).nbytes)
         setattr(self, tail.part, getattr(self, tail.part)[:count])
         return self
+
+    return from_bytes
+
+
+def filling_decoder(owner: _lazy.Any, whole: _lazy.Any) -> _lazy.Any:
+    """``from_bytes`` of a class whose frames may lack the zeros that they end with; ``whole`` decodes those that do not."""
+
+    def from_bytes(cls: _lazy.Any, data: _lazy.Buffer) -> _lazy.Any:
+        actual = memoryview(data).nbytes
+        if actual == owner.LENGTH:
+            return whole(cls, data)
+        if not actual:
+            raise LengthError(cls.NAME, 1, actual)
+        return whole(cls, padded(cls, data))
 
     return from_bytes
 
