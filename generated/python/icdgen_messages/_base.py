@@ -80,7 +80,9 @@ class MessageType(type):
     first used, and what `dataclasses` wants is made when it is asked for.
     """
 
-    def __new__(mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _lazy.Any]) -> _lazy.Any:
+    def __new__(
+        mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _lazy.Any]
+    ) -> _lazy.Any:
         """The class. Values of fields stand in slots, so their declarations go."""
         if "LENGTH" in namespace:
             infos: list[FieldInfo] = []
@@ -196,7 +198,9 @@ class Message(Spoken[N_contra], metaclass=MessageType):
             """
             for info in cls.FIELDS:
                 if info.physical and info.leads_back and info.attribute in values:
-                    raise TypeError(f"from_physical takes {info.physical}, not {info.attribute}")
+                    raise TypeError(
+                        f"from_physical takes {info.physical}, not {info.attribute}"
+                    )
             for info in cls.VIEWS:  # they follow from the fields
                 values.pop(info.attribute, None)
                 values.pop(info.physical, None)
@@ -271,7 +275,9 @@ class Message(Spoken[N_contra], metaclass=MessageType):
         return from_json(cls, data)
 
     @classmethod
-    def decode_many(cls, frames: _lazy.Frames, physical: bool = False) -> dict[str, _lazy.Any]:
+    def decode_many(
+        cls, frames: _lazy.Frames, physical: bool = False
+    ) -> dict[str, _lazy.Any]:
         """Frames that follow each other, as one numpy array a field.
 
         The names are those of `as_dict`. What stands on whole bytes is a view of the

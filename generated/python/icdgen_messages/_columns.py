@@ -19,7 +19,9 @@ from ._tails import padded
 _EXACT = 1 << 53  # integers below this are exact as 64-bit floats
 
 
-def decode_many(message: type[Message], frames: Frames, physical: bool) -> dict[str, Any]:
+def decode_many(
+    message: type[Message], frames: Frames, physical: bool
+) -> dict[str, Any]:
     """See `Message.decode_many`."""
     numpy: Any = import_module("numpy")
     columns, counts = _columns(numpy, message, frames, physical)
@@ -32,7 +34,9 @@ def decode_many(message: type[Message], frames: Frames, physical: bool) -> dict[
     return columns
 
 
-def _columns(numpy: Any, message: type[Message], frames: Frames, physical: bool) -> tuple[dict[str, Any], Any]:
+def _columns(
+    numpy: Any, message: type[Message], frames: Frames, physical: bool
+) -> tuple[dict[str, Any], Any]:
     """Columns by name, and how many elements the end of each frame has; its others are 0."""
     joined, counts = _together(message, frames)
     decoder = _Decoder(numpy, message, joined)
@@ -65,7 +69,9 @@ def _together(message: type[Message], frames: Frames) -> tuple[Buffer, list[int]
     if message.TAIL is None:
         return (frames if is_one else b"".join(frames)), []  # type: ignore[return-value, arg-type]
     if is_one:
-        raise IcdError(f"frames of {message.NAME} differ in length: give them as a list")
+        raise IcdError(
+            f"frames of {message.NAME} differ in length: give them as a list"
+        )
     kept: list[Any] = list(frames)
     made = [message.from_bytes(frame) for frame in kept]  # if it is one
     counts = [len(getattr(one, message.TAIL.part)) for one in made]
@@ -241,7 +247,9 @@ class _Decoder:
         """What stands at a byte of every frame, as a view."""
         if not self.count:
             return self.numpy.empty(0, kind)
-        return self.numpy.ndarray(self.count, kind, self.rows, start, (self.message.LENGTH,))
+        return self.numpy.ndarray(
+            self.count, kind, self.rows, start, (self.message.LENGTH,)
+        )
 
     def _byte(self, byte: int) -> Any:
         return self.bytes[byte][: self.count]
@@ -267,7 +275,9 @@ class _Decoder:
         if not info.signed:
             return total.astype(f"u{size // 8}")
         spare = numpy.uint64(64 - info.bits)
-        return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(f"i{size // 8}")
+        return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(
+            f"i{size // 8}"
+        )
 
 
 class _Plan(NamedTuple):
@@ -288,7 +298,9 @@ def _plan(message: type[Message]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in (one for field in (*message.FIELDS, *message.VIEWS) for one in field.parts):
+    for info in (
+        one for field in (*message.FIELDS, *message.VIEWS) for one in field.parts
+    ):
         if _is_whole(info):
             continue
         for piece in pieces(info, message):

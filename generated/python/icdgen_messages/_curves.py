@@ -30,7 +30,9 @@ def from_curve(value: _lazy.Any, info: _lazy.FieldInfo, field: str) -> _lazy.Any
     except (ArithmeticError, AttributeError, TypeError, ValueError):
         raise RangeError(field, "a finite number", value) from None
     if not info.leads_back:
-        raise RangeError(field, "raw values only: its formula does not lead back", value)
+        raise RangeError(
+            field, "raw values only: its formula does not lead back", value
+        )
     if info.type == "float":
         return _number(wanted, info, field)
     return _nearest(wanted, info, field)

@@ -285,7 +285,8 @@ def _array_property(info: FieldInfo, form: Form) -> property:
     def set_nearest(self: Any, values: Any) -> None:
         _counted(info, values)
         found = (
-            nearest_raw(value, f"{attribute}[{index}]", terms, info.raw_range) for index, value in enumerate(values)
+            nearest_raw(value, f"{attribute}[{index}]", terms, info.raw_range)
+            for index, value in enumerate(values)
         )
         setattr(self, attribute, tuple(found))
 
@@ -309,7 +310,9 @@ def _text_property(info: FieldInfo) -> property:
     return property(get_text, set_text)
 
 
-def field(name: str, at: int, bits: int, type: str, *, default: _lazy.Any, **told: _lazy.Any) -> _lazy.Any:
+def field(
+    name: str, at: int, bits: int, type: str, *, default: _lazy.Any, **told: _lazy.Any
+) -> _lazy.Any:
     """A field: the manual's name, offset and width in bits, type, and its first value.
 
     What else is told of it goes by the names of `FieldInfo`; the enumeration is that of

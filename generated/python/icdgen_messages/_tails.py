@@ -18,7 +18,9 @@ def decoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
         if tail.counter and getattr(self, tail.counter) != count:
             told = getattr(self, tail.counter)
             least = cls.LENGTH - tail.most * tail.step
-            raise LengthError(cls.NAME, least + told * tail.step, memoryview(data).nbytes)
+            raise LengthError(
+                cls.NAME, least + told * tail.step, memoryview(data).nbytes
+            )
         setattr(self, tail.part, getattr(self, tail.part)[:count])
         return self
 

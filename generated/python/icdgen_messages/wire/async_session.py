@@ -48,7 +48,9 @@ class AsyncSession(Exchanges[N]):
         Raises `RefusedError`, `ReplyTimeoutError` and what `Client.request` does.
         """
         outcome = await self._run(self._exchange(self.client.request, message))
-        return class_of(message).from_bytes(executed(outcome, class_of(message).NAME).data)
+        return class_of(message).from_bytes(
+            executed(outcome, class_of(message).NAME).data
+        )
 
     async def ask(self, message: KindOf[N, M]) -> OutcomeOf[M]:
         """Requests telemetry, or reads a setting; its outcome.

@@ -12,7 +12,9 @@ from .._hints import N
 from .._lazy import Messages
 
 Bus = Literal["uart", "i2c", "can"]
-CanKind = Literal["telecommand", "acknowledge", "refusal", "request", "reply", "request_refusal"]
+CanKind = Literal[
+    "telecommand", "acknowledge", "refusal", "request", "reply", "request_refusal"
+]
 Number = Union[int, float]
 
 
