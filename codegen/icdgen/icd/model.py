@@ -143,9 +143,7 @@ class Field:
     unit: Unit | None = None
     formula: str = ""  # as held, for documentation
     scale: Scale | None = None  # of a number, where the formula is a line
-    curve: Curve | None = (
-        None  # of any other formula, and of one on floats; without either, the physical value is the raw one
-    )
+    curve: Curve | None = None  # of any other formula, and of one on floats; without either it is the raw value
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
