@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import lru_cache
 
-from icdgen.icd.model import Message
+from icdgen.icd.model import Message, Special
 
 MOST_DIGITS = 24  # of a decimal that is shown in full
 
@@ -39,6 +39,12 @@ def factor_text(factor: Fraction) -> str:
 def value_text(raw: int) -> str:
     """A raw value that means something by itself: ``90 (0x5A)``; small and negative ones only in decimal."""
     return f"{raw} (0x{raw:X})" if raw > 9 else str(raw)
+
+
+def special_text(special: Special) -> str:
+    """``65535 (0xFFFF)``; of floats ``NaN``, ``-infinity``, ``-99.9``."""
+    words = {"nan": "NaN", "inf": "infinity", "-inf": "-infinity"}
+    return words.get(special.number, special.number) or value_text(special.value)
 
 
 def bit_range(at: int, bits: int) -> str:

@@ -94,10 +94,11 @@ class Enum:
 
 @dataclass(frozen=True, slots=True)
 class Special:
-    """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out'."""
+    """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out', or NaN for 'not known'."""
 
-    value: int
+    value: int  # of a float its bits
     meaning: str
+    number: str = ""  # of a float: `nan`, `inf`, `-inf`, or the shortest decimal
 
 
 @dataclass(frozen=True, slots=True)

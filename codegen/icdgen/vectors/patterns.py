@@ -102,7 +102,7 @@ def values(field: Field) -> list[int | bytes]:
             )
         return [ascending, bytes(size), bytes(byte ^ 0xFF for byte in ascending)]
     if field.type == "float":
-        return list(_FLOATS[field.bits])
+        return list(dict.fromkeys((*_FLOATS[field.bits], *(special.value for special in field.special))))
     if field.type == "bool":
         return [0, 1]
     return list(dict.fromkeys(v for v in _numbers(field) if field.raw_min <= v <= field.raw_max))

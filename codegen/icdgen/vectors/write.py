@@ -113,7 +113,7 @@ def _field(vectors: MessageVectors, field: Field) -> str:
         row["view"] = True
     row["default"] = raw_json(field, vectors.default[field.name])
     if field.special:
-        row["special"] = [special.value for special in field.special]
+        row["special"] = [raw_json(field, special.value) for special in field.special]
     if field.limits:
         limits = {key: getattr(field.limits, key) for key in ("min", "max", "above", "below")}
         row["limits"] = {key: decimal(value) for key, value in limits.items() if value is not None}
