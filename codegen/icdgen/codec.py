@@ -28,7 +28,7 @@ class LengthError(CodecError):
 
 def decode(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]:
     """Raw value of every field by name; elements that are not in the frame are 0. Raises `LengthError`."""
-    bits, actual = int.from_bytes(frame, "little"), len(frame)
+    bits, actual = int.from_bytes(frame, "little"), len(frame)  # what a frame leaves out reads as 0
     if actual not in message.lengths:
         raise LengthError(message, _next_length(message, actual), actual)
     raw = {field.name: _read(node, field, bits) for field in message.fields}

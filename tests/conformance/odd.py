@@ -244,6 +244,8 @@ enums:
   - name: Gauge
     members: [{value: 1, name: First}, {value: 300, name: Last},
               {value: 2, to: 255, name: "Between \\" */"}, {value: 400, to: 401, name: Two}]
+  - name: Narrow Gauge
+    members: [{value: -1, name: Before}, {value: 1, name: After}]
 messages:
   - name: Counted
     id: 130
@@ -306,6 +308,29 @@ messages:
     fields:
       - {at: 0, bits: 8, name: One, type: uint, const: 9}
       - {at: 8, bits: 40, name: Fives, type: uint, count: rest, up_to: 2, min: 4, special: [{value: 1099511627775, meaning: none}]}
+  - name: Cut Off
+    id: 140
+    kind: telemetry
+    length: 23
+    may_end_early: zeros
+    reserved: 2
+    fields:
+      - {at: 0, bits: 12, name: Input, type: int, unit: V, formula: raw*0.01}
+      - {at: 12, bits: 4, name: Length, type: uint, const: 5}
+      - {at: 16, bits: 32, name: Value, type: float}
+      - {at: 48, bits: 8, name: Gauge, type: enum, enum: Narrow Gauge}
+      - {at: 56, bits: 40, name: Words, type: text}
+      - {at: 96, bits: 16, name: Buffer, type: int, count: 3, byte_order: little}
+      - {at: 144, bits: 1, name: Flag, type: bool, count: 8}
+      - {at: 152, bits: 16, name: Whole, type: bytes}
+      - {at: 88, bits: 24, name: Both, type: uint, view: true}
+  - name: Two
+    set_id: 8
+    get_id: 141
+    kind: configuration
+    length: 2
+    may_end_early: zeros
+    fields: [{at: 3, bits: 9, name: Whole, type: uint}]
 """
 
 EMPTY = """\

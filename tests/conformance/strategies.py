@@ -106,6 +106,8 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         elif draw(st.integers(0, 4)) == 0:
             message["reserved"] = draw(st.integers(1, 9))
             message["length"] += message["reserved"]
+        elif length > 1 and draw(st.integers(0, 4)) == 0:
+            message["may_end_early"] = "zeros"
         if fields:
             message["fields"] = fields
         messages.append(message)

@@ -73,6 +73,8 @@ def message_comment(message: Message, log_bit: int | None = None) -> Comment:
     if log_bit is not None:
         facts.append(f"Bit {log_bit} of the log mask.")
     facts += (f"Repeats {words(part.message)} from {_from(part.at)}." for part in message.contains)
+    if message.may_end_early:
+        facts.append("Zeros that a frame ends with may be left out.")
     if message.reserved:
         facts.append(f"The last {'byte is' if message.reserved == 1 else f'{message.reserved} bytes are'} reserved.")
     head = f"{words(message.name)}: {kind} {ids}, {length_text(message)}.{_table(message.table)}"

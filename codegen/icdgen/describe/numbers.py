@@ -64,7 +64,9 @@ def byte_range(first: int, count: int) -> str:
 
 def length_text(message: Message) -> str:
     """``6 bytes``; where frames differ ``4 to 28 bytes``."""
-    return byte_count(message.length) if message.tail is None else f"{message.least} to {byte_count(message.length)}"
+    return (
+        byte_count(message.length) if len(message.lengths) == 1 else f"{message.least} to {byte_count(message.length)}"
+    )
 
 
 def byte_count(count: int) -> str:

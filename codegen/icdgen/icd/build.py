@@ -134,6 +134,7 @@ class Builder:
             contains=tuple(self.each("contains", lambda p: model.Part(p["message"], p["at"]), item)),
             reserved=item.get("reserved", 0),
             tail=tail,
+            may_end_early=item.get("may_end_early", ""),
             node=self.name,
             errata=self.applied.about(item),
             source=item,

@@ -1,4 +1,4 @@
-"""What an ICD says of the manual it follows: decisions about faults, and notes."""
+"""A decision about a fault of a manual, as objects of the model carry it."""
 
 from __future__ import annotations
 

@@ -79,9 +79,7 @@ class Field:
     unit: Unit | None = None
     formula: str = ""  # as held, for documentation
     scale: Scale | None = None  # of a number, where the formula is a line
-    curve: Curve | None = (
-        None  # of any other formula, and of one on floats; without either, the physical value is the raw one
-    )
+    curve: Curve | None = None  # of any other formula, and of one on floats; without either it is the raw value
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
@@ -230,6 +228,7 @@ class Message:
     contains: tuple[Part, ...] = ()
     reserved: int = 0  # bytes at the end that are said to be reserved
     tail: Tail | None = None  # where frames differ in length
+    may_end_early: str = ""  # "zeros": frames may be sent without the zeros that they end with; else empty
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
@@ -237,6 +236,8 @@ class Message:
     @property
     def least(self) -> int:
         """Bytes of the shortest frame."""
+        if self.may_end_early:
+            return min(1, self.length)  # of zeros alone, one is sent
         return self.length - (self.tail.most * self.tail.step if self.tail else 0)
 
     @property

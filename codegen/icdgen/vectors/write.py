@@ -81,6 +81,8 @@ def _message(vectors: MessageVectors) -> str:
     ids = {"id": message.id, "set_id": message.set_id, "get_id": message.get_id}
     head.update((key, id) for key, id in ids.items() if id is not None)
     head["length"] = message.length
+    if message.may_end_early:
+        head["may_end_early"] = message.may_end_early
     if message.tail is not None:
         tail = message.tail
         head["tail"] = {

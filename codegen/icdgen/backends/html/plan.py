@@ -18,6 +18,8 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
         "length": message.length,
         "fields": [_field(field, node) for field in message.fields],
     }
+    if message.may_end_early:
+        plan["endsEarly"] = True
     if message.tail is not None:
         tail = message.tail
         plan["tail"] = {
