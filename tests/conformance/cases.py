@@ -230,11 +230,9 @@ def enum_cases(data: dict) -> Iterator[Case]:
     """The names of the members of the enumerations that a node declares."""
     node = data["node"]
     for enum in data["enums"]:
-        values = [
-            value
-            for first, _, *last in enum["members"]
-            for value in (first, *(near for n in last for near in (first + 1, n, n + 1)))
-        ]
+        ends = [(first, last) for first, _, last in (one for one in enum["members"] if len(one) == 3)]
+        near = [value for first, last in ends for value in (first - 1, first + 1, last, last + 1) if value < 1 << 64]
+        values = [*(first for first, *_ in enum["members"]), *near]
         for value in [*values, enum["unknown"]]:
             request = {"op": "enum", "node": node, "enum": enum["name"], "value": value}
             yield Case(f"{enum['name']} {value}", request, {"ok": True, "name": name_of(enum["members"], value)})

@@ -15,7 +15,9 @@ def test_every_member_has_the_value_and_the_name_of_the_manual(package):
         assert list(module.ENUMS) == [enum.name for enum in node.enums]
         for enum in node.enums:
             found = getattr(module, module.ENUMS[enum.name])
-            assert [(member.value, member.label) for member in found] == [(m.value, m.name) for m in enum.members]
+            assert [(member.value, member.label) for member in found] == [
+                (end.value, m.name) for m in enum.members for end in m.ends
+            ]
             assert all(member.is_known for member in found)
 
 
