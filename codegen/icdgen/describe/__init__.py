@@ -11,6 +11,7 @@ from icdgen.describe.description import (
     FieldDescription,
     MessageDescription,
     NodeDescription,
+    StructDescription,
     describe,
 )
 from icdgen.describe.enums import EnumDescription
@@ -21,5 +22,6 @@ __all__ = [
     "FieldDescription",
     "MessageDescription",
     "NodeDescription",
+    "StructDescription",
     "describe",
 ]

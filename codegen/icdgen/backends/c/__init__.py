@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import accessors, bits, constants, decoding, encoding, names, types
@@ -16,6 +16,7 @@ from icdgen.backends.c.text import comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, text_comment, words
+from icdgen.describe.description import Composite
 from icdgen.describe.numbers import byte_count
 from icdgen.icd.model import Icd
 
@@ -57,6 +58,8 @@ class CBackend:
             if node.enums:
                 enums = [(enum, *constants.of_enum(enum)) for enum in node.enums]
                 yield folder / "enums.h", render("enums.h.j2", node=node.name, enums=enums, **shared)
+            for struct in node.structs:
+                yield folder / f"{struct.name}.h", render("struct.h.j2", m=struct, **_composite(struct), **shared)
             for message in node.messages:
                 yield folder / f"{message.name}.h", render("message.h.j2", m=message, **_message(message), **shared)
             if node.name in links:
@@ -72,30 +75,38 @@ class CBackend:
         return declared_names(describe(icd))
 
 
-def _message(message: MessageDescription) -> dict[str, object]:
-    folders = sorted({field.enum.node.name for field in message.all_fields if field.enum is not None})
-    enums = ("enums.h" if folder == message.node.name else f"../{folder}/enums.h" for folder in folders)
-    about = message.comment
+def _composite(one: Composite[Any]) -> dict[str, object]:
+    """What is said of a struct, and of a message."""
+    folders = sorted({enum.node.name for enum in one.enums})
+    used = [(folder, "enums") for folder in folders] + [(struct.node.name, struct.name) for struct in one.structs]
+    headers = (f"{name}.h" if folder == one.node.name else f"../{folder}/{name}.h" for folder, name in used)
+    about = one.comment
     return {
         "about": comment(["@file", about.head, *about.rest, *noted(about)]),
-        "includes": ["../icdgen_wide.h" if message.has_wide_steps else "../icdgen.h", *enums],
-        "constants": constants.of_fields(message),
-        "initial": constants.initial(message),
+        "includes": ["../icdgen_wide.h" if one.has_wide_steps else "../icdgen.h", *headers],
+        "constants": constants.of_fields(one),
+        "initial": constants.initial(one),
         "declaration": types.declaration,
+        "whole_accessors": accessors.whole_accessors(one),
+        "accessors": accessors.accessors(one),
+    }
+
+
+def _message(message: MessageDescription) -> dict[str, object]:
+    return {
+        **_composite(message),
         "empty": decoding.EMPTY,
         "decode": decoding.statements(message),
         "excess": bits.excess,
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message),
         "views": [accessors.view(field) for field in message.views],
-        "whole_accessors": accessors.whole_accessors(message),
-        "accessors": accessors.accessors(message),
     }
 
 
 def _is_wide(description: Description) -> bool:
     """Whether a formula needs more than the support header computes with."""
-    return any(message.has_wide_steps for node in description.nodes for message in node.messages)
+    return any(one.has_wide_steps for node in description.nodes for one in (*node.structs, *node.messages))
 
 
 def _links(description: Description) -> dict[str, LinkDescription]:
@@ -135,7 +146,7 @@ def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
 def _node(node: NodeDescription) -> dict[str, object]:
     headers = [f"{name}.h" for name in node.model.includes]
     headers += [f"{node.name}/enums.h"] if node.enums else []
-    headers += [f"{node.name}/{message.name}.h" for message in node.messages]
+    headers += [f"{node.name}/{one.name}.h" for one in (*node.structs, *node.messages)]
     headers += [f"{node.name}/link.h", f"{node.name}/client.h"] if node.is_linked else []
     return {
         "about": comment(["@file", f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),

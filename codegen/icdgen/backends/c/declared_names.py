@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names, physical
-from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription
+from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription, StructDescription
+from icdgen.describe.description import Composite
 
 FILE = "C names at file scope"
 FILES = "C header files"
@@ -29,6 +31,8 @@ def declared_names(description: Description) -> Iterator[Identifier]:
         yield from _node(node)
         if node.is_linked:
             yield from _link(node)
+        for struct in node.structs:
+            yield from _struct(struct)
         for message in node.messages:
             yield from _message(message)
 
@@ -67,6 +71,15 @@ def _link(node: NodeDescription) -> Iterator[Identifier]:
         yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source)
 
 
+def _struct(struct: StructDescription) -> Iterator[Identifier]:
+    stem = names.stem(struct)
+    yield struct.identifier(FILES, f"{struct.node.name}/{struct.name}.h")
+    yield struct.identifier(FILE, names.constant(struct, "h"))
+    for end in ("t", "init"):
+        yield struct.identifier(FILE, f"{stem}_{end}")
+    yield from _fields(struct)
+
+
 def _message(message: MessageDescription) -> Iterator[Identifier]:
     stem = names.stem(message)
     yield message.identifier(FILES, f"{message.node.name}/{message.name}.h")
@@ -74,6 +87,11 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
         yield message.identifier(FILE, names.constant(message, end))
     for end in ("t", "init", "decode", "encode", *(("misfit",) if message.is_narrow else ())):
         yield message.identifier(FILE, f"{stem}_{end}")
+    yield from _fields(message)
+
+
+def _fields(message: Composite[Any]) -> Iterator[Identifier]:
+    stem = names.stem(message)
     members = f"members of {stem}_t"
     for field in message.all_members:
         is_view = field.model.view

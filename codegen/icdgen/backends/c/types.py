@@ -24,7 +24,7 @@ def declaration(field: FieldDescription) -> str:
     """The member of a message's struct."""
     if field.model.is_bytes:
         return f"uint8_t {field.name}[{field.model.bits // 8}]"
-    return f"{type_of(field)} {field.name}{f'[{field.count}]' if field.count else ''}"
+    return f"{f'{stem(field.struct)}_t' if field.struct else type_of(field)} {field.name}{f'[{field.count}]' if field.count else ''}"
 
 
 @cache

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.icd.division import obstacles
 from icdgen.icd.model import Field, Message, Node
-from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.context import Context, Owner
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, quote
@@ -27,11 +27,12 @@ _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 @rule("ICD020")
 def past_the_end(ctx: Context) -> Iterator[Fault]:
-    for field, message, _ in ctx.fields:
+    for field, message, _ in ctx.members:
         end, room = field.at + field.width, message.length * 8
         if end > room:
             source = field.source
-            key = "at" if field.at >= room else "count" if field.count else "bits"
+            whole = "struct" if field.struct else "bits"
+            key = "at" if field.at >= room else "count" if field.count else whole
             place = source.at(key)
             has = f"{quote(message.name)} has {count(room, 'bit')} ({count(message.length, 'byte')})"
             length = line_of(message.source.at("length"), place)
@@ -39,7 +40,7 @@ def past_the_end(ctx: Context) -> Iterator[Fault]:
                 source,
                 place,
                 f"{quote(field.name)} ends at bit {end:,}, but {has}",
-                f"correct `at`{', `count`' if field.count else ''} or `bits`, or the `length` in {length}",
+                f"correct `at`{', `count`' if field.count else ''} or `{whole}`, or the `length` in {length}",
             )
 
 
@@ -53,8 +54,8 @@ def overlap(ctx: Context) -> Iterator[Fault]:
 
 
 def _overlaps(ctx: Context) -> Iterator[Overlap]:
-    for message, node in ctx.messages:
-        fields = message.owners
+    for message, node in ctx.owners:
+        fields = _standing(message)
         if any(field.bit_order not in ("", node.bit_order) for field in fields):
             yield from _overlaps_among(message, node)
             continue
@@ -67,10 +68,18 @@ def _overlaps(ctx: Context) -> Iterator[Overlap]:
                 reached, widest = field.at + field.bits, index
 
 
-def _overlaps_among(message: Message, node: Node) -> Iterator[Overlap]:
+def _standing(owner: Owner) -> tuple[Field, ...]:
+    """What has bits: fields, elements of arrays, structs as wholes."""
+    members = owner.members
+    if members is owner.fields:
+        return owner.owners
+    return tuple(place for member in members if not member.view for place in member.places)
+
+
+def _overlaps_among(message: Owner, node: Node) -> Iterator[Overlap]:
     """`_overlaps` where fields count bits in different ways."""
     seen: list[tuple[Field, int]] = []
-    for field in message.owners:
+    for field in _standing(message):
         if field.at + field.bits > message.length * 8:
             continue  # a finding already
         mask = _mask(field, node)
@@ -104,7 +113,7 @@ def _overlap(first: Field, second: Field, bits: str = "") -> Overlap:
         second.source,
         place,
         f"{quote(second.name)} overlaps {other} in {bits}",
-        _OVERLAPPING if second.path else _VIEW,
+        "correct `at`, or the `length` of the struct" if second.struct else _OVERLAPPING if second.path else _VIEW,
     )
     return fault, (id(first.source), id(second.source))
 
@@ -157,7 +166,7 @@ def array_of_numbers(ctx: Context) -> Iterator[Fault]:
 @rule("ICD029")
 def view_of_fields(ctx: Context) -> Iterator[Fault]:
     for field, message, node in ctx.having["view"]:
-        if not field.view or "bitfields" in field.source or field.at + field.bits > message.length * 8:
+        if not field.view or not isinstance(message, Message) or "bitfields" in field.source or field.at + field.bits > message.length * 8:
             continue  # no view, or a finding already
         source, name = field.source, quote(field.name)
         if field.count:
@@ -180,7 +189,7 @@ def view_of_fields(ctx: Context) -> Iterator[Fault]:
 
 def covered_bytes(message: Message) -> int:
     """Bytes up to the end of the last field."""
-    return max((field.at + field.bits + 7 for field in message.fields), default=0) // 8
+    return max((field.at + field.width + 7 for field in message.members), default=0) // 8
 
 
 @rule("ICD027", whole=True)
