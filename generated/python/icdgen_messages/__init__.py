@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from . import cubewheel as cubewheel
     from ._base import FieldInfo as FieldInfo
     from ._base import Message as Message
+    from ._base import Struct as Struct
     from ._enumeration import OpenEnum as OpenEnum
 
 NODES = (
@@ -38,6 +39,7 @@ _HOMES = {
     "FieldInfo": "._base",
     "Message": "._base",
     "OpenEnum": "._enumeration",
+    "Struct": "._base",
 }
 
 

@@ -6,10 +6,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeVar, Union
 
 if TYPE_CHECKING:
-    from ._base import Message
+    from ._base import Message, Struct
 
 Buffer = Union[bytes, bytearray, memoryview]
 """What a frame may be given as."""
 
 M = TypeVar("M", bound="Message")
+S = TypeVar("S", bound="Struct")
 T = TypeVar("T")

@@ -24,7 +24,7 @@ def decode_many(
     numpy: Any = import_module("numpy")
     decoder = _Decoder(numpy, message, frames)
     columns = {}
-    for info in (*message.FIELDS, *message.VIEWS):
+    for info in _lines(message):
         if info.elements:
             found = [decoder.column(one) for one in info.parts]
             column = numpy.stack(found, axis=1)
@@ -47,7 +47,7 @@ def decode_table(message: type[Message], frames: Buffer, physical: bool) -> Any:
     pyarrow: Any = import_module("pyarrow")
     columns = decode_many(message, frames, physical)
     fields, arrays = [], []
-    for info, (name, column) in zip((*message.FIELDS, *message.VIEWS), columns.items()):
+    for info, (name, column) in zip(_lines(message), columns.items()):
         column = numpy.ascontiguousarray(column)
         if info.type in OCTETS and column.ndim == 2:
             kind = pyarrow.binary(info.bits // 8)
@@ -67,6 +67,12 @@ def decode_table(message: type[Message], frames: Buffer, physical: bool) -> Any:
     }
     schema = pyarrow.schema(fields, metadata=about)
     return pyarrow.Table.from_arrays(arrays, schema=schema)
+
+
+def _lines(message: type[Message]) -> list[FieldInfo]:
+    """What has a column: fields, views, arrays, and the fields of each struct."""
+    fields = [line for info in message.FIELDS for line in info.lines]
+    return [*fields, *message.VIEWS]
 
 
 def _metadata(info: FieldInfo) -> dict[str, str]:
@@ -235,9 +241,7 @@ def _plan(message: type[Message]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in (
-        one for field in (*message.FIELDS, *message.VIEWS) for one in field.parts
-    ):
+    for info in (one for field in _lines(message) for one in field.parts):
         if _is_whole(info):
             continue
         for piece in pieces(info, message):

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.python import names
 from icdgen.backends.python.fields import whole
-from icdgen.describe import Description, FieldDescription, MessageDescription
+from icdgen.describe import Description, FieldDescription
+from icdgen.describe.description import Composite
 from icdgen.naming import DEVICES
 
 
@@ -23,14 +25,17 @@ def declared_names(description: Description, package: str) -> Iterator[Identifie
         for owner in map(description.node, (*description.icd.included(node.model), node.model)):
             for one in owner.messages:
                 yield one.identifier(f"module {within}", names.class_name(one))
-            for enum in owner.enums:
-                yield enum.identifier(f"module {within}", names.class_name(enum))
+            for one in (*owner.enums, *owner.structs):
+                yield one.identifier(f"module {within}", names.class_name(one))
+        for struct in node.structs:
+            yield struct.identifier(f"files of {within}", names.module_name(struct))
+            yield from _fields(struct, f"members of {within}.{names.class_name(struct)}")
         for enum in node.enums:  # messages have files in every language
             yield enum.identifier(f"files of {within}", names.module_name(enum))
             for member in enum.members:
                 yield member.identifier(f"members of {within}.{names.class_name(enum)}", member.name.upper())
         for one in node.messages:
-            yield from _message(one, f"members of {within}.{names.class_name(one)}")
+            yield from _fields(one, f"members of {within}.{names.class_name(one)}")
 
 
 def _of_field(field: FieldDescription) -> Iterator[str]:
@@ -42,8 +47,8 @@ def _of_field(field: FieldDescription) -> Iterator[str]:
         yield field.whole_name(found.per)
 
 
-def _message(message: MessageDescription, scope: str) -> Iterator[Identifier]:
-    for field in message.all_members:
+def _fields(one: Composite[Any], scope: str) -> Iterator[Identifier]:
+    for field in one.all_members:
         for name in _of_field(field):
             yield field.identifier(scope, name)
             if name in names.IN_MESSAGE:
