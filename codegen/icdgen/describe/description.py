@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import Any, NamedTuple, TypeVar
 
@@ -88,9 +89,16 @@ class FieldDescription(Named[Field]):
         """What is read and written as one: itself, or of a struct what stands in it, arrays as one."""
         if self.struct is None:
             return (self,)
-        leaves = [one.model for one in self.struct.leaves]
-        places = (placed(self.model, place, leaves) for place in self.model.places)
-        return tuple(self.message.field(one) for row in places for one in row)
+        return tuple(leaf for row in self.instances for one in row for leaf in one.leaves)
+
+    @cached_property
+    def instances(self) -> tuple[tuple[FieldDescription, ...], ...]:
+        """The members of a struct wherever it stands: once, or as often as there are elements; else none."""
+        if self.struct is None:
+            return ()
+        members = [one.model for one in self.struct.members]
+        rows = (placed(self.model, place, members) for place in self.model.places)
+        return tuple(tuple(map(self.message.field, row)) for row in rows)
 
     @property
     def is_narrow(self) -> bool:
@@ -257,6 +265,15 @@ class Composite(Named[Whole]):
         return tellers((self.model, *self.model.members))
 
 
+def _wholes(fields: Iterable[FieldDescription]) -> Iterator[FieldDescription]:
+    """Those that are structs, and those in them."""
+    for field in fields:
+        if field.struct is not None:
+            yield field
+            for row in field.instances:
+                yield from _wholes(row)
+
+
 class StructDescription(Composite[Struct]):
     """A struct."""
 
@@ -265,8 +282,8 @@ class StructDescription(Composite[Struct]):
 
     @cached_property
     def known(self) -> dict[str, FieldDescription]:
-        """Fields by name, and arrays that stand as one."""
-        return {one.model.name: one for one in (*self.fields, *self.leaves)}
+        """Fields by name, and arrays and structs that stand as one."""
+        return {one.model.name: one for one in (*self.fields, *self.leaves, *_wholes(self.members))}
 
     @cached_property
     def comment(self) -> Comment:

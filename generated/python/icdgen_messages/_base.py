@@ -277,6 +277,7 @@ class Message(Struct):
 
         return _columns.decode_table(cls, frames, physical)
 
+
 def view(message: Message, attribute: str, kind: type[_lazy.T]) -> _lazy.T:
     """The value of a view, of the frame that the message makes. Raises `RangeError`."""
     from ._codec import seen

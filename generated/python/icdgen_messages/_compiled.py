@@ -104,9 +104,7 @@ class Codec:
         targets = "".join(f"{item.target}, " for item in self._items)
         unpack = f"({targets}) = unpack(data)" if targets else "unpack(data)"
         made = _lines(self._made, 4)
-        return _DECODER.format(
-            made=made, unpack=unpack, assign=_lines(self._assign, 4)
-        )
+        return _DECODER.format(made=made, unpack=unpack, assign=_lines(self._assign, 4))
 
     def encoder(self) -> str:
         """The source of ``to_bytes``."""

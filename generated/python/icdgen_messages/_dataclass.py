@@ -47,9 +47,7 @@ def signature(message: Any) -> Signature:
     for one in message.FIELDS:
         note = notes.get(one.attribute, Parameter.empty)
         kind = Parameter.KEYWORD_ONLY
-        found.append(
-            Parameter(one.attribute, kind, default=one.fresh, annotation=note)
-        )
+        found.append(Parameter(one.attribute, kind, default=one.fresh, annotation=note))
         if one.physical:
             type_name = "str" if one.type == "text" else "float"
             type_name = f"tuple[{type_name}, ...]" if one.elements else type_name

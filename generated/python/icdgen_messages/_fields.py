@@ -278,15 +278,10 @@ def part(
     bits: int,
     *,
     factory: _lazy.Any,
-    elements: int = 0,
-    byte_order: str = "",
-    bit_order: str = "",
+    **told: _lazy.Any,
 ) -> _lazy.Any:
     """A struct, or as many of them as there are elements: the class of one is ``factory``."""
-    orders = {"byte_order": byte_order, "bit_order": bit_order}
-    return FieldInfo(
-        "", name, at, bits, "struct", elements=elements, struct=factory, **orders
-    )
+    return FieldInfo("", name, at, bits, "struct", struct=factory, **told)
 
 
 def scaled(p: int, c: int, q: int, *, default: _lazy.Any) -> _lazy.Any:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from icdgen.backends.rust import bits, constants
-from icdgen.backends.rust.names import field_name
+from icdgen.backends.rust.names import field_name, struct_path
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
-from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe import FieldDescription, MessageDescription, StructDescription
+from icdgen.describe.description import Composite
 
 DERIVES_DEFAULT = 32  # elements of an array; longer ones do not
 
@@ -16,46 +19,65 @@ def values(message: MessageDescription) -> dict[str, object]:
     fields, tables = message.members, bits.flag_tables(message)
     readings = [bits.reading(field, tables) for field in fields]
     views = [(field, bits.reading(field, set(), depth=2)) for field in message.views]
-    writings = [line for field in fields for line in bits.writing(field)]
-    has_default = all(field.fresh == 0 and not _is_long(field) for field in fields)
-    derived = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
-    narrow = [field for field in fields if field.is_narrow]
-    scales = [field for field in message.all_members if has_constant(field)]
-    has_text = any(field.is_text for field in fields)
-    has_elements = any(field.count and field.steps is not None for field in fields)
-    is_usual = any(field.steps is None or not field.steps.is_wide for field in scales)
+    writings = [line for field in message.leaves for line in bits.writing(field)]
     imported = {
         "array": any("array(" in reading for reading in readings),
-        "element_of": has_elements,
         "flags": bool(tables),
         "message": True,
         "put": any("put!(" in line for line in writings),
         "put_array": any("put_array(" in line for line in writings),
-        "put_element": has_elements,
         "put_words": any("put_words(" in line for line in writings),
         "take": any("take!(" in reading for reading in (*readings, *(reading for _, reading in views))),
-        "text": has_text,
-        "text_array": has_text,
         "words": any("words(" in reading for reading in readings),
-        "Big": message.has_wide_steps,
         "Coded": any(field.enum for field in message.all_fields),
         "Error": True,
-        "Scale": is_usual,
-        "Wide": message.has_wide_steps,
     }
-    names = [name for name, is_used in imported.items() if is_used]
     return {
-        "constants": constants.of_fields(message),
+        **_shared(message, imported),
         "tables": sorted(tables),
         "literal": _literal(fields, readings),
         "views": views,
         "writings": writings,
+    }
+
+
+def of_struct(struct: StructDescription) -> dict[str, object]:
+    """What is derived and imported for a struct: messages read and write it."""
+    imported = {
+        "structure": True,
+        "Coded": any(field.enum for field in struct.members),
+        "Error": struct.is_narrow or any(field.has_physical for field in struct.members),
+    }
+    return _shared(struct, imported)
+
+
+def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]:
+    """What is said of a message and of a struct."""
+    fields = one.members
+    has_default = all(field.fresh == 0 and not _is_long(field) for field in fields)
+    derived = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
+    narrow = [field for field in fields if (field.struct or field).is_narrow]
+    scales = [field for field in one.all_members if has_constant(field)]
+    has_text = any(field.is_text for field in fields)
+    has_elements = any(field.count and field.steps is not None for field in fields)
+    imported |= {
+        "element_of": has_elements,
+        "put_element": has_elements,
+        "text": has_text,
+        "text_array": has_text,
+        "Big": one.has_wide_steps,
+        "Scale": any(field.steps is None or not field.steps.is_wide for field in scales),
+        "Wide": one.has_wide_steps,
+    }
+    names = sorted((name for name, is_used in imported.items() if is_used), key=lambda name: (name[0].isupper(), name))
+    return {
+        "constants": constants.of_fields(one),
         "fits": [line for field in narrow for line in bits.fitting(field)],
         "scales": scales,
         "default": None if has_default else _literal(fields, [_fresh(field) for field in fields]),
-        "derives": ", ".join(derived + ([] if message.has_floats else ["Eq", "Hash"])),
+        "derives": ", ".join(derived + ([] if one.has_floats else ["Eq", "Hash"])),
         "imports": f"{{{', '.join(names)}}}" if len(names) > 1 else names[0],
-        "uses_enums": any(field.enum is not None and field.enum.node is message.node for field in message.all_fields),
+        "uses_enums": any(enum.node is one.node for enum in one.enums),
     }
 
 
@@ -72,6 +94,8 @@ def _fresh(field: FieldDescription) -> str:
 
 def _one_fresh(field: FieldDescription) -> str:
     kind = field.model.type
+    if field.struct is not None:
+        return f"{struct_path(field.struct, field.message.node)}::default()"
     if field.model.is_bytes:
         return f"[0; {field.model.bits // 8}]"
     if kind == "enum":

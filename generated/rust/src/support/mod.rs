@@ -20,8 +20,8 @@ pub(crate) use self::bytes::{
     array, element_of, flags, put, put_array, put_element, put_words, take, words, write_to,
 };
 pub use self::field::Field;
-pub(crate) use self::field::Row;
-pub(crate) use self::message::{enumeration, message};
+pub(crate) use self::field::{Row, Value};
+pub(crate) use self::message::{enumeration, message, structure};
 pub use self::message::{Message, Telecommand, Telemetry};
 pub(crate) use self::scale::Scale;
 pub(crate) use self::text::{text, text_array};
