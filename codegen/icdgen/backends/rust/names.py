@@ -41,7 +41,12 @@ def type_name(one: Composite[Any] | EnumDescription | MemberDescription) -> str:
 
 def field_name(field: FieldDescription) -> str:
     """``estimated_roll_angle``; ``r#type`` where the name is a keyword; ``temperatures[3]``; ``satellites[2].gnss``."""
-    return ".".join(f"r#{part}" if part.partition("[")[0] in _RAW else part for part in field.member.split("."))
+    return raw_words(field.member)
+
+
+def raw_words(expression: str) -> str:
+    """An expression of members, keywords among them as names."""
+    return ".".join(f"r#{part}" if part.partition("[")[0] in _RAW else part for part in expression.split("."))
 
 
 def own_name(field: FieldDescription) -> str:
