@@ -130,7 +130,7 @@ class Struct(metaclass=MessageType):
 
         @classmethod  # pyright: ignore[reportArgumentType]
         def from_physical(cls: Callable[P, S], *args: P.args, **values: P.kwargs) -> S:
-            """From physical values, raw ones where there is no scale or text.
+            """From physical values, raw ones where there is no scale or text; those of views are not looked at.
 
             Raises `RangeError`, and `TypeError` for a raw value that has a physical one.
             """
@@ -140,7 +140,7 @@ class Struct(metaclass=MessageType):
 
         @classmethod
         def from_physical(cls, /, **values):
-            """From physical values, raw ones where there is no scale or text.
+            """From physical values, raw ones where there is no scale or text; those of views are not looked at.
 
             Raises `RangeError`, and `TypeError` for a raw value that has a physical one.
             """
@@ -149,6 +149,9 @@ class Struct(metaclass=MessageType):
                     raise TypeError(
                         f"from_physical takes {info.physical}, not {info.attribute}"
                     )
+            for info in cls.VIEWS:  # they follow from the fields
+                values.pop(info.attribute, None)
+                values.pop(info.physical, None)
             return cls(**values)
 
     def as_dict(self, physical: bool = False) -> dict[str, _lazy.Any]:
@@ -227,10 +230,12 @@ class Message(Struct):
         """The manual's table."""
         ACKNOWLEDGED: ClassVar[bool]
         """Whether the node acknowledges it, where it is a telecommand."""
+        PARTS: ClassVar[tuple[tuple[str, str, int], ...]]
+        """The messages that it repeats: their nodes, their classes, and from which bit."""
         BYTE_ORDER: ClassVar[Literal["little", "big"]]
         BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
     else:
-        IDS = ()
+        IDS = PARTS = ()
         TABLE = None
         ACKNOWLEDGED = True
         BYTE_ORDER, BIT_ORDER = "little", "lsb0"
@@ -242,6 +247,22 @@ class Message(Struct):
 
         made: _lazy.M = compiled(cls, "from_bytes")(cls, data)
         return made
+
+    @classmethod
+    def from_part(cls: type[_lazy.M], message: Message, index: int = 0) -> _lazy.M:
+        """The message as another one repeats it, of several times the one with this index.
+
+        Raises `IcdError` if it does not.
+        """
+        from ._parts import part
+
+        return part(cls, message, index)
+
+    def iter_parts(self) -> _lazy.Iterator[Message]:
+        """The messages that it repeats, one after the other, each of its own class."""
+        from ._parts import parts
+
+        return parts(self)
 
     def to_bytes(self) -> bytes:
         """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""

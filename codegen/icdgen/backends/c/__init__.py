@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from icdgen.backends import Identifier
-from icdgen.backends.c import accessors, bits, constants, decoding, encoding, names, types
+from icdgen.backends.c import accessors, bits, constants, decoding, encoding, names, parts, types
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
@@ -75,15 +75,15 @@ class CBackend:
         return declared_names(describe(icd))
 
 
-def _composite(one: Composite[Any]) -> dict[str, object]:
-    """What is said of a struct, and of a message."""
+def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, object]:
+    """What is said of a struct, and of a message, which needs ``more`` headers."""
     folders = sorted({enum.node.name for enum in one.enums})
     used = [(folder, "enums") for folder in folders] + [(struct.node.name, struct.name) for struct in one.structs]
     headers = (f"{name}.h" if folder == one.node.name else f"../{folder}/{name}.h" for folder, name in used)
     about = one.comment
     return {
         "about": comment(["@file", about.head, *about.rest, *noted(about)]),
-        "includes": ["../icdgen_wide.h" if one.has_wide_steps else "../icdgen.h", *headers],
+        "includes": ["../icdgen_wide.h" if one.has_wide_steps else "../icdgen.h", *dict.fromkeys((*headers, *more))],
         "constants": constants.of_fields(one),
         "initial": constants.initial(one),
         "declaration": types.declaration,
@@ -94,13 +94,14 @@ def _composite(one: Composite[Any]) -> dict[str, object]:
 
 def _message(message: MessageDescription) -> dict[str, object]:
     return {
-        **_composite(message),
+        **_composite(message, parts.headers(message)),
         "empty": decoding.EMPTY,
         "decode": decoding.statements(message),
         "excess": bits.excess,
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message),
         "views": [accessors.view(field) for field in message.views],
+        "parts": parts.parts(message),
     }
 
 

@@ -7,8 +7,10 @@ from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names, physical
+from icdgen.backends.c.parts import part_name
 from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription, StructDescription
 from icdgen.describe.description import Composite
+from icdgen.describe.parts import parts_of
 
 FILE = "C names at file scope"
 FILES = "C header files"
@@ -87,6 +89,8 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
         yield message.identifier(FILE, names.constant(message, end))
     for end in ("t", "init", "decode", "encode", *(("misfit",) if message.is_narrow else ())):
         yield message.identifier(FILE, f"{stem}_{end}")
+    for part in parts_of(message):
+        yield message.identifier(FILE, f"{stem}_{part_name(part.message)}")
     yield from _fields(message)
 
 

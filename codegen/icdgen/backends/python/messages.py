@@ -5,13 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.backends.python import names
-from icdgen.describe import EnumDescription, StructDescription
+from icdgen.describe import EnumDescription, MessageDescription, StructDescription
 from icdgen.describe.description import Composite
+from icdgen.describe.parts import parts_of
 
 
-def values(one: Composite[Any]) -> dict[str, object]:
+def values(message: MessageDescription) -> dict[str, object]:
+    """What is imported for it. And the messages that it repeats, in the order of the frame."""
+    parts = [(begin, part.message) for part in parts_of(message) for begin in part.begins]
+    return {"imports": imports(message), "parts": sorted(parts, key=lambda one: one[0])}
+
+
+def imports(one: Composite[Any]) -> list[str]:
     """What is imported for a message or a struct: enumerations and structs."""
-    return {"imports": sorted(_import(used, one) for used in (*one.enums, *one.structs))}
+    return sorted(_import(used, one) for used in (*one.enums, *one.structs))
 
 
 def _import(used: EnumDescription | StructDescription, by: Composite[Any]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from icdgen.backends.lines import exploded
@@ -12,6 +12,13 @@ from icdgen.describe import Description, EnumDescription, NodeDescription
 from icdgen.describe.comments import sentence
 from icdgen.describe.description import Composite
 from icdgen.icd.model import Node
+
+_OF_NODE = (
+    "DIGEST", "ENUMS", "NAME", "TELECOMMANDS", "TELEMETRY", "TITLE", "decode_telecommand", "decode_telemetry",
+)  # fmt: skip
+_OF_PACKAGE = (
+    "NODES", "FieldInfo", "IcdError", "LengthError", "Message", "OpenEnum", "RangeError", "Struct", "UnknownIdError",
+)  # fmt: skip
 
 
 def values(node: NodeDescription, description: Description) -> dict[str, object]:
@@ -24,11 +31,28 @@ def values(node: NodeDescription, description: Description) -> dict[str, object]
     return {
         "doc": docstring(0, _documentation(node.model)),
         "imports": sorted(f"from {home} import {name} as {name}" for home, name in declared),
+        "public": sorted({*_OF_NODE, *_facts(node.model), *(name for _, name in declared)}),
         "homes": [(name, home) for home, name in sorted(declared)],
         "telecommands": sorted((one.model.telecommand_id or 0, names.class_name(one)) for one in node.telecommands),
         "enums": [(one.model.name, names.class_name(one)) for one in node.enums],
         "telemetry": sorted((one.model.telemetry_id or 0, names.class_name(one)) for one in node.telemetry),
     }
+
+
+def _facts(node: Node) -> list[str]:
+    """The constants that not every node has."""
+    known = {"NODE_TYPE": node.node_type, "INTERFACE_VERSION": node.interface_version}
+    return [name for name, value in known.items() if value is not None]
+
+
+def public(nodes: Iterable[NodeDescription]) -> list[str]:
+    """What can be imported from the package."""
+    return sorted({*_OF_PACKAGE, *(node.name for node in nodes)})
+
+
+def listing(names: Iterable[str]) -> str:
+    """A list of names."""
+    return exploded("[", [literal(name) for name in names], "]")
 
 
 def mapping(pairs: Sequence[tuple[str | int, str]]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from icdgen.backends.rust import bits, constants
+from icdgen.backends.rust import bits, constants, parts
 from icdgen.backends.rust.names import field_name, struct_path
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
@@ -38,6 +38,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "literal": _literal(fields, readings),
         "views": views,
         "writings": writings,
+        "parts": parts.parts(message),
     }
 
 

@@ -10,6 +10,72 @@ from __future__ import annotations
 
 from importlib import import_module
 
+__all__ = [
+    "AsyncSession",
+    "BusyError",
+    "CanEvent",
+    "CanJoiner",
+    "CanMessage",
+    "CanPacket",
+    "ChecksumError",
+    "Client",
+    "Crc",
+    "Done",
+    "DosTime",
+    "Download",
+    "Erase",
+    "Event",
+    "FailedError",
+    "FileEntry",
+    "FileList",
+    "Format",
+    "HoleMap",
+    "I2cTransfer",
+    "Identity",
+    "IndexEntry",
+    "LineError",
+    "Link",
+    "Log",
+    "LogEntry",
+    "LogFrame",
+    "LogMessage",
+    "LogReader",
+    "LogWriter",
+    "Malformed",
+    "OutcomeOf",
+    "Packet",
+    "Procedure",
+    "ProgramCopy",
+    "ProgramInformation",
+    "Refused",
+    "RefusedError",
+    "ReplyTimeoutError",
+    "Request",
+    "Session",
+    "Settings",
+    "Stray",
+    "Timeout",
+    "TooLongError",
+    "UartDecoder",
+    "UartEvent",
+    "UnsupportedError",
+    "Upload",
+    "can_split",
+    "crc8",
+    "crc16",
+    "dos_time_pack",
+    "dos_time_unpack",
+    "i2c_read_length",
+    "i2c_reply",
+    "i2c_write",
+    "identify",
+    "read_index",
+    "serial_port",
+    "uart_encode",
+    "uart_kind",
+    "write_index",
+]
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from .async_session import AsyncSession as AsyncSession
@@ -58,6 +124,7 @@ if TYPE_CHECKING:
     from .logs import LogReader as LogReader
     from .logs import LogWriter as LogWriter
     from .ports import serial_port as serial_port
+    from .ports import socket_port as socket_port
     from .procedures import Procedure as Procedure
     from .programs import ProgramCopy as ProgramCopy
     from .programs import ProgramInformation as ProgramInformation
@@ -105,7 +172,7 @@ _HOMES = {
     "identity": ("Identity", "identify"),
     "link": ("Link", "Settings"),
     "logs": ("LogEntry", "LogFrame", "LogMessage", "LogReader", "LogWriter"),
-    "ports": ("serial_port",),
+    "ports": ("serial_port", "socket_port"),
     "procedures": ("Procedure",),
     "programs": ("ProgramCopy", "ProgramInformation"),
     "session": ("Session",),
@@ -126,4 +193,4 @@ if not TYPE_CHECKING:
         return value
 
     def __dir__():
-        return sorted({*globals(), *_HOME})
+        return sorted({*globals(), *__all__})

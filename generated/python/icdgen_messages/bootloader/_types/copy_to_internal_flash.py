@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .programs_list import ProgramsList
 
+__all__ = ["CopyToInternalFlash"]
+
 
 class CopyToInternalFlash(_base.Message):
     """Copy Program to Internal Flash: telecommand 103, 2 bytes. Table 67.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["FormatSdCard"]
+
 
 class FormatSdCard(_base.Message):
     """Format SD card: telecommand 33, 1 byte. Table 14.

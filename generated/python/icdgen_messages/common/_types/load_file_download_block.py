@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .file_type import FileType
 
+__all__ = ["LoadFileDownloadBlock"]
+
 
 class LoadFileDownloadBlock(_base.Message):
     """Load File Download Block: telecommand 112, 8 bytes. Table 17.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Reset"]
+
 
 class Reset(_base.Message):
     """Reset: telecommand 1, 1 byte. Table 10.

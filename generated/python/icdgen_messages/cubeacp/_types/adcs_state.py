@@ -12,6 +12,8 @@ from .con_mode_select import ConModeSelect
 from .estim_mode_select import EstimModeSelect
 from .mag_mode_val import MagModeVal
 
+__all__ = ["AdcsState"]
+
 
 class AdcsState(_base.Message):
     """ADCS State: telemetry 190, 54 bytes. Table 149.
@@ -40,6 +42,17 @@ class AdcsState(_base.Message):
     IDS = (ID,)
     LENGTH = 54
     TABLE = 149
+    PARTS = (
+        ("cubeacp", "CurrentAdcsState", 0),
+        ("cubeacp", "CurrentAdcsState2", 48),
+        ("cubeacp", "EstimatedAttitudeAngles", 96),
+        ("cubeacp", "EstimatedQuaternion", 144),
+        ("cubeacp", "EstimatedAngularRates", 192),
+        ("cubeacp", "SatellitePositionEci", 240),
+        ("cubeacp", "SatelliteVelocityEci", 288),
+        ("cubeacp", "SatellitePositionLlh", 336),
+        ("cubeacp", "EcefPosition", 384),
+    )
 
     attitude_estimation_mode: EstimModeSelect = _base.field(
         "Attitude Estimation Mode", 0, 4, "enum", default=EstimModeSelect.NO_ATTITUDE_ESTIMATION

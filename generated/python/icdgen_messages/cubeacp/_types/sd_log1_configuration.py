@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .sd_log_select import SdLogSelect
 
+__all__ = ["SdLog1Configuration"]
+
 
 class SdLog1Configuration(_base.Message):
     """SD Log1 Configuration: configuration, set by telecommand 104, got by telemetry

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .sd_log_select import SdLogSelect
 
+__all__ = ["SdLog2Configuration"]
+
 
 class SdLog2Configuration(_base.Message):
     """SD Log2 Configuration: configuration, set by telecommand 105, got by telemetry

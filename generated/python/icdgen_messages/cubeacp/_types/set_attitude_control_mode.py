@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .con_mode_select import ConModeSelect
 
+__all__ = ["SetAttitudeControlMode"]
+
 
 class SetAttitudeControlMode(_base.Message):
     """Set Attitude Control Mode: telecommand 13, 3 bytes. Table 77."""

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SetDetumblingControlParameters"]
+
 
 class SetDetumblingControlParameters(_base.Message):
     """Set Detumbling Control Parameters: configuration, set by telecommand 38, got by

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SetYWheelControlParameters"]
+
 
 class SetYWheelControlParameters(_base.Message):
     """Set Y-Wheel Control Parameters: configuration, set by telecommand 39, got by

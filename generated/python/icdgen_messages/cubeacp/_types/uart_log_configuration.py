@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["UartLogConfiguration"]
+
 
 class UartLogConfiguration(_base.Message):
     """UART Log Configuration: configuration, set by telecommand 106, got by telemetry
