@@ -26,7 +26,10 @@ def difference(expected: dict, line: bytes | None) -> str | None:
     if expected.get("ok") is False:
         answer.pop("detail", None)
         if expected.get("field") != answer.get("field") and _is_array_of(answer.get("field"), expected.get("field")):
-            expected = {**expected, "field": answer["field"]}  # which element, and of which struct, not every language says
+            expected = {
+                **expected,
+                "field": answer["field"],
+            }  # which element, and of which struct, not every language says
     return _difference(expected, answer, "")
 
 

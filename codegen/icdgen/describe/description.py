@@ -17,7 +17,7 @@ from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node, Struct
+from icdgen.icd.model import Enum, Field, Icd, Message, Node, Struct
 from icdgen.icd.paths import Step, placed
 
 

@@ -100,3 +100,16 @@ def _line(field: Field) -> Field:
     text = [f"{step.name}[]" if step.count else step.name for step in path]
     count = prod(step.count for step in path if step.count) if any(step.count for step in path) else 0
     return replace(field, name=".".join((*text[:-1], path[-1].name)), path=path, count=count)
+
+
+def arrays_of(fields: tuple[Field, ...]) -> tuple[Field, ...]:
+    """The arrays among fields, each as one, those in each struct by themselves: ``Satellites[2].Angles``."""
+    firsts = (one for one in fields if one.path and one.path[-1].count and not one.path[-1].index)
+    return tuple(_array(one) for one in firsts)
+
+
+def _array(field: Field) -> Field:
+    if len(field.path) == 1:
+        return _declared(field)
+    path = (*field.path[:-1], replace(field.path[-1], index=None))
+    return replace(field, name=name_of(path), path=path, count=path[-1].count)

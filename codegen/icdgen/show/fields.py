@@ -8,7 +8,7 @@ from fractions import Fraction
 from icdgen import layout
 from icdgen.describe.bounds import allowed_ends, bounds
 from icdgen.describe.comments import orders_text
-from icdgen.describe.numbers import exact_text, factor_text, value_text
+from icdgen.describe.numbers import byte_count, exact_text, factor_text, value_text
 from icdgen.icd.model import Field, Message, Node
 from icdgen.tables import Column, render
 
@@ -27,7 +27,7 @@ _COLUMNS = [
 
 def field_table(message: Message, node: Node, width: int | None = None) -> str:
     """Fields and reserved bits in the order of the frame; empty for a message without any."""
-    rows: list[tuple[int, tuple[str, ...]]] = [(field.at, _row(field)) for field in message.members]
+    rows: list[tuple[int, tuple[str, ...]]] = [(field.at, _row(field)) for field in message.lines]
     reserved = ("reserved", "", "", "", "", "", "")
     rows += [(gap.at, (str(gap.at), str(gap.bits), *reserved)) for gap in layout.gaps(message, node)]
     return render(_COLUMNS, [row for _, row in sorted(rows, key=lambda r: r[0])], width)
@@ -48,6 +48,9 @@ def remarks(field: Field, number: Callable[[Fraction], str] = exact_text) -> Ite
         yield "a view of bits that other fields have"
     if told := orders_text(field):
         yield told
+    for step in field.path:
+        if step.struct is not None and step.is_open:
+            yield f"{step.count} times, every {byte_count(step.struct.length)}" if step.count > 1 else "once"
     if field.const is not None:
         yield f"always {value_text(field.const)}"
     for bound in bounds(field.limits):

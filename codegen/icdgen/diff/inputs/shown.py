@@ -116,6 +116,7 @@ class _Reader:
     def __init__(self, before: list[model.Node]) -> None:
         self.before = before
         self.enums: dict[str, model.Enum] = {}
+        self.structs: dict[str, model.Struct] = {}
         self.units: dict[str, Unit] = dict(STANDARD)
         self.errata: dict[str, model.Erratum] = {}
 
@@ -123,16 +124,22 @@ class _Reader:
         get = item.get
         for node in model.closure(self.before, item["includes"]):
             self.enums.update((enum.name, enum) for enum in node.enums)
+            self.structs.update((one.name, one) for one in node.structs)
             self.units.update((unit.symbol, unit) for unit in node.units)
         units = tuple(Unit(u["symbol"], u["identifier"], u["quantity"], u.get("summary", "")) for u in get("units", ()))
         self.units.update((unit.symbol, unit) for unit in units)
         self.errata = {entry["id"]: _erratum(entry) for key in ("errata", "notes") for entry in get(key, ())}
         enums = tuple(self.enum(enum, item["name"]) for enum in item["enums"])
         self.enums.update((enum.name, enum) for enum in enums)
+        structs = []
+        for one in get("structs", ()):  # each stands after those that it has in it
+            structs.append(self.struct(one, item["name"]))
+            self.structs[structs[-1].name] = structs[-1]
         return model.Node(
             **{"summary": "", **_as_it_is(model.Node, item)},
             messages=tuple(self.message(m, item["name"]) for m in item["messages"]),
             enums=enums,
+            structs=tuple(structs),
             document=tuple(get("document", {}).items()),
             includes=tuple(item["includes"]),
             vocabulary=tuple(get("vocabulary", ())),
@@ -160,12 +167,18 @@ class _Reader:
         return self.row(
             model.Message,
             item,
-            fields=tuple(element for field in item["fields"] for element in self.field(field).elements),
+            fields=self.fields(item),
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
             contains=tuple(model.Part(part["message"], part["offset"]) for part in item.get("contains", ())),
             node=node,
         )
+
+    def struct(self, item: Map, node: str) -> model.Struct:
+        return self.row(model.Struct, item, fields=self.fields(item), node=node)
+
+    def fields(self, item: Map) -> tuple[model.Field, ...]:
+        return tuple(element for field in item["fields"] for element in self.field(field).elements)
 
     def field(self, item: Map) -> model.Field:
         limits = {key: Fraction(value) for key, value in item.get("limits", {}).items()}
@@ -174,6 +187,7 @@ class _Reader:
             item,
             at=item["offset"],
             enum=self.enums.get(item.get("enum", "")),
+            struct=self.structs.get(item.get("struct", "")),
             unit=self.units.get(item.get("unit", "")),
             formula=item.get("formula", ""),
             scale=_scale(item),

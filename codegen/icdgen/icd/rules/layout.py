@@ -166,7 +166,9 @@ def array_of_numbers(ctx: Context) -> Iterator[Fault]:
 @rule("ICD029")
 def view_of_fields(ctx: Context) -> Iterator[Fault]:
     for field, message, node in ctx.having["view"]:
-        if not field.view or not isinstance(message, Message) or "bitfields" in field.source or field.at + field.bits > message.length * 8:
+        if not isinstance(message, Message):
+            continue  # a struct has none
+        if not field.view or "bitfields" in field.source or field.at + field.bits > message.length * 8:
             continue  # no view, or a finding already
         source, name = field.source, quote(field.name)
         if field.count:

@@ -56,7 +56,9 @@ def struct_in_itself(ctx: Context) -> Iterator[Fault]:
                 if way is not None:
                     there = " -> ".join((name, *way))
                     message = f"the struct {quote(name)} would have itself in it: {there}"
-                    yield Fault(row, row.at("struct"), message, "a struct has an end: write what it holds in fields of its own")
+                    yield Fault(
+                        row, row.at("struct"), message, "a struct has an end: write what it holds in fields of its own"
+                    )
 
 
 def _way(first: str, last: str, within: dict[str, list[Map]]) -> list[str] | None:
@@ -131,4 +133,6 @@ def struct_divided(ctx: Context) -> Iterator[Fault]:
 
 
 def _divided(struct: Map) -> Iterator[Map]:
-    return (row for row in mappings(struct.get("fields")) if division.parts_of(row) and isinstance(row.get("name"), str))
+    return (
+        row for row in mappings(struct.get("fields")) if division.parts_of(row) and isinstance(row.get("name"), str)
+    )
