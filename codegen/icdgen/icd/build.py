@@ -114,7 +114,8 @@ class Builder:
 
     def structs(self) -> tuple[model.Struct, ...]:
         """Those of the node, each after what it has in it. Of a circle, none has the next in it: it is a finding."""
-        items = {item["name"]: item for item in self.each("structs", lambda item: item)}
+        listed = list(self.each("structs", lambda item: item))
+        items = {item["name"]: item for item in reversed(listed)}
         made: list[model.Struct] = []
         begun: set[str] = set()
 
@@ -129,6 +130,7 @@ class Builder:
         for name in items:
             if name not in begun:
                 make(name)
+        made += (self.struct(item) for item in listed if item is not items[item["name"]])  # names that are there twice
         return tuple(made)
 
     def struct(self, item: Map) -> model.Struct:

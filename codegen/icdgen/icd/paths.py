@@ -76,7 +76,10 @@ def members_of(fields: tuple[Field, ...]) -> tuple[Field, ...]:
 def _is_first(field: Field) -> bool:
     """Whether it is the first field of the member in which it stands."""
     step = field.path[0]
-    return not step.index and (step.struct is None or field.name == f"{step.text}.{step.struct.fields[0].name}")
+    if step.member is None or step.struct is None:
+        return not step.index
+    first = step.struct.fields[0]
+    return field.name == f"{step.text}.{first.name}" and field.at == step.member.at + first.at
 
 
 def _declared(field: Field) -> Field:

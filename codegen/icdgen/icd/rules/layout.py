@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 
 from icdgen.icd.division import obstacles
 from icdgen.icd.model import Field, Message, Node
+from icdgen.icd.paths import placed
 from icdgen.icd.rules.context import Context, Owner
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
@@ -47,7 +49,7 @@ def past_the_end(ctx: Context) -> Iterator[Fault]:
 @rule("ICD021")
 def overlap(ctx: Context) -> Iterator[Fault]:
     told = set()
-    for fault, pair in _overlaps(ctx):
+    for fault, pair in chain(_overlaps(ctx), _overlaps_within(ctx)):
         if pair not in told:  # of arrays, each element may overlap
             told.add(pair)
             yield fault
@@ -57,7 +59,7 @@ def _overlaps(ctx: Context) -> Iterator[Overlap]:
     for message, node in ctx.owners:
         fields = _standing(message)
         if any(field.bit_order not in ("", node.bit_order) for field in fields):
-            yield from _overlaps_among(message, node)
+            yield from _overlaps_among(message, node, fields)
             continue
         reached, widest = -1, -1
         for index in sorted(range(len(fields)), key=lambda i: fields[i].at):
@@ -68,6 +70,16 @@ def _overlaps(ctx: Context) -> Iterator[Overlap]:
                 reached, widest = field.at + field.bits, index
 
 
+def _overlaps_within(ctx: Context) -> Iterator[Overlap]:
+    """Those within structs that stand where bits are counted in another way than where they are declared."""
+    homes = {id(struct): node for struct, node in ctx.structs}
+    for member, owner, node in ctx.members:
+        if member.struct is None or id(member.struct) not in homes:
+            continue
+        if member.orders(node)[1] != homes[id(member.struct)].bit_order:
+            yield from _overlaps_among(owner, node, placed(member, member.places[0], member.struct.fields))
+
+
 def _standing(owner: Owner) -> tuple[Field, ...]:
     """What has bits: fields, elements of arrays, structs as wholes."""
     members = owner.members
@@ -76,10 +88,10 @@ def _standing(owner: Owner) -> tuple[Field, ...]:
     return tuple(place for member in members if not member.view for place in member.places)
 
 
-def _overlaps_among(message: Owner, node: Node) -> Iterator[Overlap]:
+def _overlaps_among(message: Owner, node: Node, fields: tuple[Field, ...]) -> Iterator[Overlap]:
     """`_overlaps` where fields count bits in different ways."""
     seen: list[tuple[Field, int]] = []
-    for field in _standing(message):
+    for field in fields:
         if field.at + field.bits > message.length * 8:
             continue  # a finding already
         mask = _mask(field, node)

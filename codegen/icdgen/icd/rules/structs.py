@@ -98,21 +98,21 @@ def struct_says(ctx: Context) -> Iterator[Fault]:
                 yield Fault(field.source, field.source.at("view"), message, "write the view in the message")
 
 
-@rule("ICD144")
+@rule("ICD049")
 def struct_names(ctx: Context) -> Iterator[Fault]:
     yield from names_twice(ctx, "a struct", lambda n: n.structs, "rename one, or use the other")
 
 
-@rule("ICD145", severity="warning", whole=True)
+@rule("ICD144", severity="warning", whole=True)
 def struct_used(ctx: Context) -> Iterator[Fault]:
-    used = {id(field.struct) for field, _, _ in ctx.members}
+    used, names = {id(field.struct) for field, _, _ in ctx.members}, [struct.name for struct, _ in ctx.structs]
     for struct, _ in ctx.structs:
-        if id(struct) not in used:
+        if id(struct) not in used and names.count(struct.name) == 1:
             message = f"no message uses the struct {quote(struct.name)}"
             yield Fault(struct.source, struct.source.at("name"), message, "use or remove it")
 
 
-@rule("ICD146")
+@rule("ICD145")
 def struct_divided(ctx: Context) -> Iterator[Fault]:
     homes = {id(struct): node for struct, node in ctx.structs}
     for member, _, node in ctx.members:
