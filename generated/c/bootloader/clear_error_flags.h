@@ -66,4 +66,11 @@ static inline icd_status_t bootloader_clear_error_flags_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *bootloader_clear_error_flags_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
+}
+
 #endif /* BOOTLOADER_CLEAR_ERROR_FLAGS_H */

@@ -72,4 +72,15 @@ static inline icd_status_t bootloader_copy_to_internal_flash_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *bootloader_copy_to_internal_flash_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Source Program Index", "", 0u, 8u, 1u, NULL, 0u},
+        {"Bootloader overwrite flag", "", 8u, 8u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* BOOTLOADER_COPY_TO_INTERNAL_FLASH_H */

@@ -62,4 +62,15 @@ static inline icd_status_t bootloader_copy_to_internal_flash_progress_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *bootloader_copy_to_internal_flash_progress_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Busy", "", 0u, 1u, 1u, NULL, 0u},
+        {"Error", "", 1u, 1u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_H */

@@ -84,4 +84,17 @@ static inline icd_status_t bootloader_program_information_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *bootloader_program_information_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Program Index", "", 0u, 8u, 1u, NULL, 0u},
+        {"Busy", "", 8u, 1u, 1u, NULL, 0u},
+        {"File Size", "byte", 16u, 32u, 1u, NULL, 0u},
+        {"Checksum", "", 48u, 16u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
+}
+
 #endif /* BOOTLOADER_PROGRAM_INFORMATION_H */

@@ -58,4 +58,11 @@ static inline icd_status_t bootloader_run_selected_program_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *bootloader_run_selected_program_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
+}
+
 #endif /* BOOTLOADER_RUN_SELECTED_PROGRAM_H */

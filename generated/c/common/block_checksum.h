@@ -62,4 +62,14 @@ static inline icd_status_t common_block_checksum_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_block_checksum_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Checksum", "", 0u, 16u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
+}
+
 #endif /* COMMON_BLOCK_CHECKSUM_H */

@@ -118,4 +118,19 @@ static inline icd_status_t common_boot_and_running_program_status_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_boot_and_running_program_status_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Cause of MCU Reset", "", 0u, 4u, 1u, NULL, 0u},
+        {"Boot Cause", "", 4u, 4u, 1u, NULL, 0u},
+        {"Boot Counter", "", 8u, 16u, 1u, NULL, 0u},
+        {"Boot Program Index", "", 24u, 8u, 1u, NULL, 0u},
+        {"Firmware version (Major)", "", 32u, 8u, 1u, NULL, 0u},
+        {"Firmware version (Minor)", "", 40u, 8u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
+}
+
 #endif /* COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_H */

@@ -63,4 +63,15 @@ static inline icd_status_t common_boot_index_and_status_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_boot_index_and_status_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Program Index", "", 0u, 8u, 1u, NULL, 0u},
+        {"Boot Status", "", 8u, 8u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* COMMON_BOOT_INDEX_AND_STATUS_H */

@@ -135,4 +135,21 @@ static inline icd_status_t common_communication_status_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_communication_status_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Telecommand counter", "", 0u, 16u, 1u, NULL, 0u},
+        {"Telemetry request counter", "", 16u, 16u, 1u, NULL, 0u},
+        {"Telecommand buffer overrun", "", 32u, 1u, 1u, NULL, 0u},
+        {"UART protocol error", "", 33u, 1u, 1u, NULL, 0u},
+        {"UART incomplete message", "", 34u, 1u, 1u, NULL, 0u},
+        {"I2C telemetry error", "", 35u, 1u, 1u, NULL, 0u},
+        {"I2C telecommand buffer error", "", 36u, 1u, 1u, NULL, 0u},
+        {"CAN telecommand buffer error", "", 37u, 1u, 1u, NULL, 0u},
+    };
+    *count = 8u;
+    return fields;
+}
+
 #endif /* COMMON_COMMUNICATION_STATUS_H */

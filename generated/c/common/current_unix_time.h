@@ -67,4 +67,15 @@ static inline icd_status_t common_current_unix_time_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_current_unix_time_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Current Unix Time", "s", 0u, 32u, 1u, NULL, 0u},
+        {"Milliseconds", "ms", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* COMMON_CURRENT_UNIX_TIME_H */

@@ -76,4 +76,17 @@ static inline icd_status_t common_download_block_ready_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_download_block_ready_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Ready", "", 0u, 1u, 1u, NULL, 0u},
+        {"ParameterError", "", 1u, 1u, 1u, NULL, 0u},
+        {"Block CRC16 Checksum", "", 8u, 16u, 1u, NULL, 0u},
+        {"Block Length", "byte", 24u, 16u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
+}
+
 #endif /* COMMON_DOWNLOAD_BLOCK_READY_H */

@@ -70,4 +70,16 @@ static inline icd_status_t common_edac_error_counters_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_edac_error_counters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Single SRAM upsets", "", 0u, 16u, 1u, NULL, 0u},
+        {"Double SRAM upsets", "", 16u, 16u, 1u, NULL, 0u},
+        {"Multiple SRAM upsets", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* COMMON_EDAC_ERROR_COUNTERS_H */

@@ -70,4 +70,16 @@ static inline icd_status_t common_erase_file_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_erase_file_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"File Type", "", 0u, 8u, 1u, NULL, 0u},
+        {"File Counter", "", 8u, 8u, 1u, NULL, 0u},
+        {"Erase All", "", 16u, 1u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* COMMON_ERASE_FILE_H */

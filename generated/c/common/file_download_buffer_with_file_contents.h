@@ -76,4 +76,15 @@ static inline icd_status_t common_file_download_buffer_with_file_contents_encode
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_file_download_buffer_with_file_contents_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Packet counter", "", 0u, 16u, 1u, NULL, 0u},
+        {"File bytes", "", 16u, 160u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_H */

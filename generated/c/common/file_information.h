@@ -117,4 +117,19 @@ static inline icd_status_t common_file_information_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_file_information_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"File Type", "", 0u, 4u, 1u, NULL, 0u},
+        {"Busy Updating", "", 4u, 1u, 1u, NULL, 0u},
+        {"File Ctr", "", 8u, 8u, 1u, NULL, 0u},
+        {"File Size", "byte", 16u, 32u, 1u, NULL, 0u},
+        {"File Date and Time", "MS-DOS time", 48u, 32u, 1u, NULL, 0u},
+        {"File CRC16 Checksum", "", 80u, 16u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
+}
+
 #endif /* COMMON_FILE_INFORMATION_H */

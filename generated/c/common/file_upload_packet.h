@@ -76,4 +76,15 @@ static inline icd_status_t common_file_upload_packet_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_file_upload_packet_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Packet Number", "", 0u, 16u, 1u, NULL, 0u},
+        {"File Bytes", "", 16u, 160u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* COMMON_FILE_UPLOAD_PACKET_H */

@@ -76,4 +76,16 @@ static inline icd_status_t common_finalize_upload_block_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_finalize_upload_block_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Destination", "", 0u, 8u, 1u, NULL, 0u},
+        {"Offset", "byte", 8u, 32u, 1u, NULL, 0u},
+        {"Block Length", "byte", 40u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* COMMON_FINALIZE_UPLOAD_BLOCK_H */

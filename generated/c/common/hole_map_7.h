@@ -65,4 +65,14 @@ static inline icd_status_t common_hole_map_7_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_hole_map_7_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Hole Map", "", 0u, 128u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
+}
+
 #endif /* COMMON_HOLE_MAP_7_H */

@@ -91,4 +91,19 @@ static inline icd_status_t common_identification_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_identification_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Node type", "", 0u, 8u, 1u, NULL, 0u},
+        {"Interface version", "", 8u, 8u, 1u, NULL, 0u},
+        {"Firmware version (Major)", "", 16u, 8u, 1u, NULL, 0u},
+        {"Firmware version (Minor)", "", 24u, 8u, 1u, NULL, 0u},
+        {"Runtime (seconds)", "s", 32u, 16u, 1u, NULL, 0u},
+        {"Runtime (milliseconds)", "ms", 48u, 16u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
+}
+
 #endif /* COMMON_IDENTIFICATION_H */

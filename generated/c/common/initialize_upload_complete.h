@@ -66,4 +66,14 @@ static inline icd_status_t common_initialize_upload_complete_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_initialize_upload_complete_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Busy", "", 0u, 1u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
+}
+
 #endif /* COMMON_INITIALIZE_UPLOAD_COMPLETE_H */

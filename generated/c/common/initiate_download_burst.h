@@ -71,4 +71,15 @@ static inline icd_status_t common_initiate_download_burst_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_initiate_download_burst_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Message Length", "", 0u, 8u, 1u, NULL, 0u},
+        {"Ignore Hole Map", "", 8u, 1u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* COMMON_INITIATE_DOWNLOAD_BURST_H */

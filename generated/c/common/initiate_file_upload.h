@@ -67,4 +67,15 @@ static inline icd_status_t common_initiate_file_upload_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_initiate_file_upload_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Destination", "", 0u, 8u, 1u, NULL, 0u},
+        {"BlockSize", "", 8u, 8u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* COMMON_INITIATE_FILE_UPLOAD_H */

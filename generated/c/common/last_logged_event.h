@@ -74,4 +74,16 @@ static inline icd_status_t common_last_logged_event_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_last_logged_event_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Time of Event", "", 0u, 32u, 1u, NULL, 0u},
+        {"Event ID", "", 32u, 8u, 1u, NULL, 0u},
+        {"Event Parameter", "", 40u, 8u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* COMMON_LAST_LOGGED_EVENT_H */

@@ -84,4 +84,20 @@ static inline icd_status_t common_load_file_download_block_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_load_file_download_block_fields(size_t *count)
+{
+    static const icd_limit_t limits[] = {
+        {ICD_LIMIT_MAX, 20480.0},
+    };
+    static const icd_field_t fields[] = {
+        {"File Type", "", 0u, 8u, 1u, NULL, 0u},
+        {"Counter", "", 8u, 8u, 1u, NULL, 0u},
+        {"Offset", "byte", 16u, 32u, 1u, NULL, 0u},
+        {"BlockLength", "byte", 48u, 16u, 1u, &limits[0], 1u},
+    };
+    *count = 4u;
+    return fields;
+}
+
 #endif /* COMMON_LOAD_FILE_DOWNLOAD_BLOCK_H */

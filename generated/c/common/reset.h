@@ -66,4 +66,14 @@ static inline icd_status_t common_reset_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_reset_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Magic number", "", 0u, 8u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
+}
+
 #endif /* COMMON_RESET_H */

@@ -57,4 +57,11 @@ static inline icd_status_t common_reset_boot_registers_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_reset_boot_registers_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
+}
+
 #endif /* COMMON_RESET_BOOT_REGISTERS_H */

@@ -60,4 +60,11 @@ static inline icd_status_t common_reset_upload_block_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_reset_upload_block_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
+}
+
 #endif /* COMMON_RESET_UPLOAD_BLOCK_H */

@@ -63,4 +63,15 @@ static inline icd_status_t common_sd_card_format_erase_progress_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_sd_card_format_erase_progress_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Format Busy", "", 0u, 1u, 1u, NULL, 0u},
+        {"Erase All Busy", "", 1u, 1u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_H */

@@ -59,4 +59,14 @@ static inline icd_status_t common_sram_scrub_parameters_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_sram_scrub_parameters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Scrub Size", "", 0u, 16u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
+}
+
 #endif /* COMMON_SRAM_SCRUB_PARAMETERS_H */

@@ -93,4 +93,17 @@ static inline icd_status_t common_telecommand_acknowledge_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_telecommand_acknowledge_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Last TC ID", "", 0u, 8u, 1u, NULL, 0u},
+        {"Processed flag", "", 8u, 1u, 1u, NULL, 0u},
+        {"TC error status", "", 16u, 8u, 1u, NULL, 0u},
+        {"TC parameter error index", "", 24u, 8u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
+}
+
 #endif /* COMMON_TELECOMMAND_ACKNOWLEDGE_H */

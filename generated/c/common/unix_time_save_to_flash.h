@@ -76,4 +76,17 @@ static inline icd_status_t common_unix_time_save_to_flash_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_unix_time_save_to_flash_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Save Now", "", 0u, 1u, 1u, NULL, 0u},
+        {"Save On Update", "", 1u, 1u, 1u, NULL, 0u},
+        {"Save Periodic", "", 2u, 1u, 1u, NULL, 0u},
+        {"Period", "s", 8u, 8u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
+}
+
 #endif /* COMMON_UNIX_TIME_SAVE_TO_FLASH_H */

@@ -101,6 +101,21 @@ static inline icd_status_t cubeacp_actuator_commands_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_actuator_commands_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"X Magnetorquer Command", "10ms units", 0u, 16u, 1u, NULL, 0u},
+        {"Y Magnetorquer Command", "10ms units", 16u, 16u, 1u, NULL, 0u},
+        {"Z Magnetorquer Command", "10ms units", 32u, 16u, 1u, NULL, 0u},
+        {"Commanded X Wheel Speed", "rpm", 48u, 16u, 1u, NULL, 0u},
+        {"Commanded Y Wheel Speed", "rpm", 64u, 16u, 1u, NULL, 0u},
+        {"Commanded Z Wheel Speed", "rpm", 80u, 16u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
+}
+
 /** Magnetorquer Command, as it is repeated from byte 0. */
 static inline void cubeacp_actuator_commands_part_magnetorquer_command(
     const cubeacp_actuator_commands_t *ICDGEN_RESTRICT message,

@@ -68,4 +68,17 @@ static inline icd_status_t cubeacp_adcs_execution_times_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_adcs_execution_times_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Time to Perform ADCS Update", "ms", 0u, 16u, 1u, NULL, 0u},
+        {"Time to Perform Sensor/Actuator Communications", "ms", 16u, 16u, 1u, NULL, 0u},
+        {"Time to Execute SGP4 Propagator", "ms", 32u, 16u, 1u, NULL, 0u},
+        {"Time to Execute IGRF Model", "ms", 48u, 16u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
+}
+
 #endif /* CUBEACP_ADCS_EXECUTION_TIMES_H */

@@ -74,6 +74,18 @@ static inline icd_status_t cubeacp_adcs_misc_currents_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_adcs_misc_currents_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CubeStarCurrent", "mA", 0u, 16u, 1u, NULL, 0u},
+        {"Magnetorquer Current", "mA", 16u, 16u, 1u, NULL, 0u},
+        {"CubeStar MCU temperature", "C", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** CubeStarCurrent in uA, exact: 0 to 655350. */
 static inline int32_t cubeacp_adcs_misc_currents_cubestar_current_ua(const cubeacp_adcs_misc_currents_t *message)
 {

@@ -78,6 +78,18 @@ static inline icd_status_t cubeacp_adcs_temperatures_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_adcs_temperatures_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"MCU Temperature", "C", 0u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Temperature", "C", 16u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Temperature", "C", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Magnetometer Temperature in thousandths of C, exact: -3276800 to 3276700. */
 static inline int32_t cubeacp_adcs_temperatures_magnetometer_temperature_mc(const cubeacp_adcs_temperatures_t *message)
 {

@@ -72,6 +72,18 @@ static inline icd_status_t cubeacp_angular_rate_covariance_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_angular_rate_covariance_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"X Angular Rate Covariance", "", 0u, 16u, 1u, NULL, 0u},
+        {"Y Angular Rate Covariance", "", 16u, 16u, 1u, NULL, 0u},
+        {"Z Angular Rate Covariance", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** X Angular Rate Covariance in thousandths, exact: -32768 to 32767. */
 static inline int32_t cubeacp_angular_rate_covariance_x_angular_rate_covariance_milli(
     const cubeacp_angular_rate_covariance_t *message)

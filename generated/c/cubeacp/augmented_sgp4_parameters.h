@@ -182,6 +182,32 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_augmented_sgp4_parameters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Incl. coefficient", "", 0u, 16u, 1u, NULL, 0u},
+        {"Raan coefficient", "", 16u, 16u, 1u, NULL, 0u},
+        {"Ecc coefficient", "", 32u, 16u, 1u, NULL, 0u},
+        {"Aop coefficient", "", 48u, 16u, 1u, NULL, 0u},
+        {"Time coefficient", "", 64u, 16u, 1u, NULL, 0u},
+        {"Pos coefficient", "", 80u, 16u, 1u, NULL, 0u},
+        {"Maximum position error", "", 96u, 8u, 1u, NULL, 0u},
+        {"ASGP4 filter", "", 104u, 8u, 1u, NULL, 0u},
+        {"xp coefficient", "", 112u, 32u, 1u, NULL, 0u},
+        {"yp coefficient", "", 144u, 32u, 1u, NULL, 0u},
+        {"GPS roll over", "", 176u, 8u, 1u, NULL, 0u},
+        {"Position sd", "", 184u, 8u, 1u, NULL, 0u},
+        {"Velocity sd", "", 192u, 8u, 1u, NULL, 0u},
+        {"Min. satellites", "", 200u, 8u, 1u, NULL, 0u},
+        {"Time gain", "", 208u, 8u, 1u, NULL, 0u},
+        {"Max. lag", "", 216u, 8u, 1u, NULL, 0u},
+        {"Min. samples", "", 224u, 16u, 1u, NULL, 0u},
+    };
+    *count = 17u;
+    return fields;
+}
+
 /** Incl. coefficient in thousandths, exact: 0 to 65535. */
 static inline int32_t cubeacp_augmented_sgp4_parameters_incl_coefficient_milli(
     const cubeacp_augmented_sgp4_parameters_t *message)

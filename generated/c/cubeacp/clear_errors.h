@@ -67,4 +67,15 @@ static inline icd_status_t cubeacp_clear_errors_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_clear_errors_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"ADCS Error Flags", "", 0u, 1u, 1u, NULL, 0u},
+        {"HK Error Flags", "", 1u, 1u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* CUBEACP_CLEAR_ERRORS_H */

@@ -73,4 +73,16 @@ static inline icd_status_t cubeacp_convert_to_jpg_file_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_convert_to_jpg_file_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Source File Counter", "", 0u, 8u, 1u, NULL, 0u},
+        {"Quality Factor", "", 8u, 8u, 1u, NULL, 0u},
+        {"White Balance", "", 16u, 8u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_CONVERT_TO_JPG_FILE_H */

@@ -62,6 +62,17 @@ static inline icd_status_t cubeacp_cubesense2_currents_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_cubesense2_currents_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CubeSense2 3V3 Current", "mA", 0u, 16u, 1u, NULL, 0u},
+        {"CubeSense2 Cam SRAM Current", "mA", 16u, 16u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 /** CubeSense2 3V3 Current in uA, exact: 0 to 6553500. */
 static inline int32_t cubeacp_cubesense2_currents_cubesense2_3v3_current_ua(
     const cubeacp_cubesense2_currents_t *message)

@@ -415,6 +415,75 @@ static inline icd_status_t cubeacp_cubesense_configuration_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_cubesense_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Cam1 Sensor Mounting Transform Alpha Angle", "deg", 0u, 16u, 1u, NULL, 0u},
+        {"Cam1 Sensor Mounting Transform Beta Angle", "deg", 16u, 16u, 1u, NULL, 0u},
+        {"Cam1 Sensor Mounting Transform Gamma Angle", "deg", 32u, 16u, 1u, NULL, 0u},
+        {"Cam1 detection threshold", "", 48u, 8u, 1u, NULL, 0u},
+        {"Cam1 sensor auto adjust mode", "", 56u, 1u, 1u, NULL, 0u},
+        {"Cam1 sensor exposure time", "", 64u, 16u, 1u, NULL, 0u},
+        {"Cam1 Boresight X", "pixels", 80u, 16u, 1u, NULL, 0u},
+        {"Cam1 Boresight Y", "pixels", 96u, 16u, 1u, NULL, 0u},
+        {"Cam2 Sensor Mounting Transform Alpha Angle", "deg", 112u, 16u, 1u, NULL, 0u},
+        {"Cam2 Sensor Mounting Transform Beta Angle", "deg", 128u, 16u, 1u, NULL, 0u},
+        {"Cam2 Sensor Mounting Transform Gamma Angle", "deg", 144u, 16u, 1u, NULL, 0u},
+        {"Cam2 detection threshold", "", 160u, 8u, 1u, NULL, 0u},
+        {"Cam2 sensor auto adjust mode", "", 168u, 1u, 1u, NULL, 0u},
+        {"Cam2 sensor exposure time", "", 176u, 16u, 1u, NULL, 0u},
+        {"Cam2 Boresight X", "pixels", 192u, 16u, 1u, NULL, 0u},
+        {"Cam2 Boresight Y", "pixels", 208u, 16u, 1u, NULL, 0u},
+        {"Nadir Max Deviation Percentage", "%", 224u, 8u, 1u, NULL, 0u},
+        {"Nadir Max Bad Edges", "", 232u, 8u, 1u, NULL, 0u},
+        {"Nadir Max Radius", "deg", 240u, 8u, 1u, NULL, 0u},
+        {"Nadir Min Radius", "deg", 248u, 8u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 1", "", 256u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 1", "", 272u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 1", "", 288u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 1", "", 304u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 2", "", 320u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 2", "", 336u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 2", "", 352u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 2", "", 368u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 3", "", 384u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 3", "", 400u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 3", "", 416u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 3", "", 432u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 4", "", 448u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 4", "", 464u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 4", "", 480u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 4", "", 496u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 5", "", 512u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 5", "", 528u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 5", "", 544u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 5", "", 560u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 1", "", 576u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 1", "", 592u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 1", "", 608u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 1", "", 624u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 2", "", 640u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 2", "", 656u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 2", "", 672u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 2", "", 688u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 3", "", 704u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 3", "", 720u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 3", "", 736u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 3", "", 752u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 4", "", 768u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 4", "", 784u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 4", "", 800u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 4", "", 816u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 5", "", 832u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 5", "", 848u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 5", "", 864u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 5", "", 880u, 16u, 1u, NULL, 0u},
+    };
+    *count = 60u;
+    return fields;
+}
+
 /** Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */
 static inline int32_t cubeacp_cubesense_configuration_cam1_mounting_alpha_mdeg(
     const cubeacp_cubesense_configuration_t *message)

@@ -78,6 +78,18 @@ static inline icd_status_t cubeacp_cubestar_estimated_quaternion_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_cubestar_estimated_quaternion_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Q0", "", 0u, 16u, 1u, NULL, 0u},
+        {"Q1", "", 16u, 16u, 1u, NULL, 0u},
+        {"Q2", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Q0 in millionths, exact: -3276800 to 3276700. */
 static inline int32_t cubeacp_cubestar_estimated_quaternion_q0_micro(
     const cubeacp_cubestar_estimated_quaternion_t *message)

@@ -75,6 +75,18 @@ static inline icd_status_t cubeacp_cubestar_estimated_rates_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_cubestar_estimated_rates_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"x-Axis rate", "", 0u, 16u, 1u, NULL, 0u},
+        {"y-Axis rate", "", 16u, 16u, 1u, NULL, 0u},
+        {"z-Axis rate", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** x-Axis rate in millionths, exact: -3276800 to 3276700. */
 static inline int32_t cubeacp_cubestar_estimated_rates_x_axis_rate_micro(
     const cubeacp_cubestar_estimated_rates_t *message)

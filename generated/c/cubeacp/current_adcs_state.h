@@ -319,4 +319,53 @@ static inline icd_status_t cubeacp_current_adcs_state_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_current_adcs_state_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Attitude Estimation Mode", "", 0u, 4u, 1u, NULL, 0u},
+        {"Control Mode", "", 4u, 4u, 1u, NULL, 0u},
+        {"ADCS Run Mode", "", 8u, 2u, 1u, NULL, 0u},
+        {"ASGP4 Mode", "", 10u, 2u, 1u, NULL, 0u},
+        {"CubeControl Signal Enabled", "", 12u, 1u, 1u, NULL, 0u},
+        {"CubeControl Motor Enabled", "", 13u, 1u, 1u, NULL, 0u},
+        {"CubeSense1 Enabled", "", 14u, 1u, 1u, NULL, 0u},
+        {"CubeSense2 Enabled", "", 15u, 1u, 1u, NULL, 0u},
+        {"CubeWheel1 Enabled", "", 16u, 1u, 1u, NULL, 0u},
+        {"CubeWheel2 Enabled", "", 17u, 1u, 1u, NULL, 0u},
+        {"CubeWheel3 Enabled", "", 18u, 1u, 1u, NULL, 0u},
+        {"CubeStar Enabled", "", 19u, 1u, 1u, NULL, 0u},
+        {"GPS Receiver Enabled", "", 20u, 1u, 1u, NULL, 0u},
+        {"GPS LNA Power Enabled", "", 21u, 1u, 1u, NULL, 0u},
+        {"Motor Driver Enabled", "", 22u, 1u, 1u, NULL, 0u},
+        {"Sun is Above Local Horizon", "", 23u, 1u, 1u, NULL, 0u},
+        {"CubeSense1 Communications Error", "", 24u, 1u, 1u, NULL, 0u},
+        {"CubeSense2 Communications Error", "", 25u, 1u, 1u, NULL, 0u},
+        {"CubeControl Signal Communications Error", "", 26u, 1u, 1u, NULL, 0u},
+        {"CubeControl Motor Communications Error", "", 27u, 1u, 1u, NULL, 0u},
+        {"CubeWheel1 Communications Error", "", 28u, 1u, 1u, NULL, 0u},
+        {"CubeWheel2 Communications Error", "", 29u, 1u, 1u, NULL, 0u},
+        {"CubeWheel3 Communications Error", "", 30u, 1u, 1u, NULL, 0u},
+        {"CubeStar Communications Error", "", 31u, 1u, 1u, NULL, 0u},
+        {"Magnetometer Range Error", "", 32u, 1u, 1u, NULL, 0u},
+        {"Cam1 SRAM Overcurrent Detected", "", 33u, 1u, 1u, NULL, 0u},
+        {"Cam1 3V3 Overcurrent Detected", "", 34u, 1u, 1u, NULL, 0u},
+        {"Cam1 Sensor Busy Error", "", 35u, 1u, 1u, NULL, 0u},
+        {"Cam1 Sensor Detection Error", "", 36u, 1u, 1u, NULL, 0u},
+        {"Sun Sensor Range Error", "", 37u, 1u, 1u, NULL, 0u},
+        {"Cam2 SRAM Overcurrent Detected", "", 38u, 1u, 1u, NULL, 0u},
+        {"Cam2 3V3 Overcurrent Detected", "", 39u, 1u, 1u, NULL, 0u},
+        {"Cam2 Sensor Busy Error", "", 40u, 1u, 1u, NULL, 0u},
+        {"Cam2 Sensor Detection Error", "", 41u, 1u, 1u, NULL, 0u},
+        {"Nadir Sensor Range Error", "", 42u, 1u, 1u, NULL, 0u},
+        {"Rate Sensor Range Error", "", 43u, 1u, 1u, NULL, 0u},
+        {"Wheel Speed Range Error", "", 44u, 1u, 1u, NULL, 0u},
+        {"Coarse Sun Sensor Error", "", 45u, 1u, 1u, NULL, 0u},
+        {"StarTracker Match Error", "", 46u, 1u, 1u, NULL, 0u},
+        {"Star Tracker Overcurrent Detected", "", 47u, 1u, 1u, NULL, 0u},
+    };
+    *count = 40u;
+    return fields;
+}
+
 #endif /* CUBEACP_CURRENT_ADCS_STATE_H */

@@ -172,4 +172,30 @@ static inline icd_status_t cubeacp_current_adcs_state_2_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_current_adcs_state_2_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Orbit Parameters are Invalid", "", 0u, 1u, 1u, NULL, 0u},
+        {"Configuration is Invalid", "", 1u, 1u, 1u, NULL, 0u},
+        {"Control Mode Change is not allowed", "", 2u, 1u, 1u, NULL, 0u},
+        {"Estimator Change is not allowed", "", 3u, 1u, 1u, NULL, 0u},
+        {"Current Magnetometer Sampling Mode", "", 4u, 2u, 1u, NULL, 0u},
+        {"Modelled and measured magnetic field differs in size", "", 6u, 1u, 1u, NULL, 0u},
+        {"Node Recovery Error", "", 7u, 1u, 1u, NULL, 0u},
+        {"CubeSense1 Runtime Error", "", 8u, 1u, 1u, NULL, 0u},
+        {"CubeSense2 Runtime Error", "", 9u, 1u, 1u, NULL, 0u},
+        {"CubeControl Signal Runtime Error", "", 10u, 1u, 1u, NULL, 0u},
+        {"CubeControl Motor Runtime Error", "", 11u, 1u, 1u, NULL, 0u},
+        {"CubeWheel1 Runtime Error", "", 12u, 1u, 1u, NULL, 0u},
+        {"CubeWheel2 Runtime Error", "", 13u, 1u, 1u, NULL, 0u},
+        {"CubeWheel3 Runtime Error", "", 14u, 1u, 1u, NULL, 0u},
+        {"CubeStar Runtime Error", "", 15u, 1u, 1u, NULL, 0u},
+        {"Magnetometer Error", "", 16u, 1u, 1u, NULL, 0u},
+        {"Rate Sensor Failure", "", 17u, 1u, 1u, NULL, 0u},
+    };
+    *count = 17u;
+    return fields;
+}
+
 #endif /* CUBEACP_CURRENT_ADCS_STATE_2_H */

@@ -60,4 +60,14 @@ static inline icd_status_t cubeacp_deploy_magnetometer_boom_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_deploy_magnetometer_boom_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Timeout", "s", 0u, 8u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
+}
+
 #endif /* CUBEACP_DEPLOY_MAGNETOMETER_BOOM_H */

@@ -77,4 +77,16 @@ static inline icd_status_t cubeacp_ecef_position_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_ecef_position_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"ECEF Position X", "", 0u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Y", "", 16u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Z", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_ECEF_POSITION_H */

@@ -64,6 +64,18 @@ static inline icd_status_t cubeacp_estimated_attitude_angles_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_estimated_attitude_angles_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Estimated Roll Angle", "deg", 0u, 16u, 1u, NULL, 0u},
+        {"Estimated Pitch Angle", "deg", 16u, 16u, 1u, NULL, 0u},
+        {"Estimated Yaw Angle", "deg", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Estimated Roll Angle in thousandths of deg, exact: -327680 to 327670. */
 static inline int32_t cubeacp_estimated_attitude_angles_estimated_roll_angle_mdeg(
     const cubeacp_estimated_attitude_angles_t *message)

@@ -75,4 +75,16 @@ static inline icd_status_t cubeacp_estimated_quaternion_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_estimated_quaternion_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Estimated q1", "", 0u, 16u, 1u, NULL, 0u},
+        {"Estimated q2", "", 16u, 16u, 1u, NULL, 0u},
+        {"Estimated q3", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_ESTIMATED_QUATERNION_H */

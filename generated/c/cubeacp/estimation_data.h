@@ -150,6 +150,36 @@ static inline icd_status_t cubeacp_estimation_data_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_estimation_data_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"IGRF Modelled Magnetic Field X", "uT", 0u, 16u, 1u, NULL, 0u},
+        {"IGRF Modelled Magnetic Field Y", "uT", 16u, 16u, 1u, NULL, 0u},
+        {"IGRF Modelled Magnetic Field Z", "uT", 32u, 16u, 1u, NULL, 0u},
+        {"Modelled Sun Vector X", "", 48u, 16u, 1u, NULL, 0u},
+        {"Modelled Sun Vector Y", "", 64u, 16u, 1u, NULL, 0u},
+        {"Modelled Sun Vector Z", "", 80u, 16u, 1u, NULL, 0u},
+        {"Estimated X-gyro Bias", "deg/s", 96u, 16u, 1u, NULL, 0u},
+        {"Estimated Y-gyro Bias", "deg/s", 112u, 16u, 1u, NULL, 0u},
+        {"Estimated Z-gyro Bias", "deg/s", 128u, 16u, 1u, NULL, 0u},
+        {"Innovation Vector X", "", 144u, 16u, 1u, NULL, 0u},
+        {"Innovation Vector Y", "", 160u, 16u, 1u, NULL, 0u},
+        {"Innovation Vector Z", "", 176u, 16u, 1u, NULL, 0u},
+        {"Quaternion Error - Q1", "", 192u, 16u, 1u, NULL, 0u},
+        {"Quaternion Error - Q2", "", 208u, 16u, 1u, NULL, 0u},
+        {"Quaternion Error - Q3", "", 224u, 16u, 1u, NULL, 0u},
+        {"Quaternion Covariance - Q1 RMS", "", 240u, 16u, 1u, NULL, 0u},
+        {"Quaternion Covariance - Q2 RMS", "", 256u, 16u, 1u, NULL, 0u},
+        {"Quaternion Covariance - Q3 RMS", "", 272u, 16u, 1u, NULL, 0u},
+        {"X Angular Rate Covariance", "", 288u, 16u, 1u, NULL, 0u},
+        {"Y Angular Rate Covariance", "", 304u, 16u, 1u, NULL, 0u},
+        {"Z Angular Rate Covariance", "", 320u, 16u, 1u, NULL, 0u},
+    };
+    *count = 21u;
+    return fields;
+}
+
 /** IGRF Modelled Magnetic Field Vector, as it is repeated from byte 0. */
 static inline void cubeacp_estimation_data_part_igrf_modelled_magnetic_field_vector(
     const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,

@@ -213,4 +213,31 @@ static inline icd_status_t cubeacp_estimation_parameters_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_estimation_parameters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Magnetometer Rate Filter System Noise", "", 0u, 32u, 1u, NULL, 0u},
+        {"EKF System Noise", "", 32u, 32u, 1u, NULL, 0u},
+        {"CSS Measurement Noise", "", 64u, 32u, 1u, NULL, 0u},
+        {"Sun Sensor Measurement Noise", "", 96u, 32u, 1u, NULL, 0u},
+        {"Nadir Sensor Measurement Noise", "", 128u, 32u, 1u, NULL, 0u},
+        {"Magnetometer Measurement Noise", "", 160u, 32u, 1u, NULL, 0u},
+        {"Star Tracker Measurement Noise", "", 192u, 32u, 1u, NULL, 0u},
+        {"Use Sun Sensor", "", 224u, 1u, 1u, NULL, 0u},
+        {"Use Nadir Sensor", "", 225u, 1u, 1u, NULL, 0u},
+        {"Use CSS", "", 226u, 1u, 1u, NULL, 0u},
+        {"Use Star Tracker", "", 227u, 1u, 1u, NULL, 0u},
+        {"Nadir sensor terminator test", "", 228u, 1u, 1u, NULL, 0u},
+        {"Automatic Magnetometer Recovery", "", 229u, 1u, 1u, NULL, 0u},
+        {"Magnetometer Mode", "", 230u, 2u, 1u, NULL, 0u},
+        {"Magnetometer Selection for RAW MTM TLM", "", 232u, 2u, 1u, NULL, 0u},
+        {"Automatic Estimation Transition due to Rate Sensor Errors", "", 234u, 1u, 1u, NULL, 0u},
+        {"Cam1 period", "s", 240u, 4u, 1u, NULL, 0u},
+        {"Cam2 period", "s", 244u, 4u, 1u, NULL, 0u},
+    };
+    *count = 18u;
+    return fields;
+}
+
 #endif /* CUBEACP_ESTIMATION_PARAMETERS_H */

@@ -78,6 +78,18 @@ static inline icd_status_t cubeacp_inertial_pointing_reference_vector_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_inertial_pointing_reference_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Inertial Reference X", "", 0u, 16u, 1u, NULL, 0u},
+        {"Inertial Reference Y", "", 16u, 16u, 1u, NULL, 0u},
+        {"Inertial Reference Z", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Inertial Reference X in millionths, exact: -3276800 to 3276700. */
 static inline int32_t cubeacp_inertial_pointing_reference_vector_reference_x_micro(
     const cubeacp_inertial_pointing_reference_vector_t *message)

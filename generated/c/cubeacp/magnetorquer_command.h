@@ -77,4 +77,16 @@ static inline icd_status_t cubeacp_magnetorquer_command_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_magnetorquer_command_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"X Magnetorquer Command", "10ms units", 0u, 16u, 1u, NULL, 0u},
+        {"Y Magnetorquer Command", "10ms units", 16u, 16u, 1u, NULL, 0u},
+        {"Z Magnetorquer Command", "10ms units", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_MAGNETORQUER_COMMAND_H */

@@ -87,4 +87,19 @@ static inline icd_status_t cubeacp_moment_of_inertia_matrix_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_moment_of_inertia_matrix_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Moment Of Inertia - Ixx", "kg.m^2", 0u, 32u, 1u, NULL, 0u},
+        {"Moment Of Inertia - Iyy", "kg.m^2", 32u, 32u, 1u, NULL, 0u},
+        {"Moment Of Inertia - Izz", "kg.m^2", 64u, 32u, 1u, NULL, 0u},
+        {"Product Of Inertia - Ixy", "kg.m^2", 96u, 32u, 1u, NULL, 0u},
+        {"Product Of Inertia - Ixz", "kg.m^2", 128u, 32u, 1u, NULL, 0u},
+        {"Product Of Inertia - Iyz", "kg.m^2", 160u, 32u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
+}
+
 #endif /* CUBEACP_MOMENT_OF_INERTIA_MATRIX_H */

@@ -158,6 +158,34 @@ static inline icd_status_t cubeacp_power_and_temperature_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_power_and_temperature_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CubeSense1 3V3 Current", "mA", 0u, 16u, 1u, NULL, 0u},
+        {"CubeSense1 Cam SRAM Current", "mA", 16u, 16u, 1u, NULL, 0u},
+        {"CubeSense2 3V3 Current", "mA", 32u, 16u, 1u, NULL, 0u},
+        {"CubeSense2 Cam SRAM Current", "mA", 48u, 16u, 1u, NULL, 0u},
+        {"CubeControl 3V3 Current", "mA", 64u, 16u, 1u, NULL, 0u},
+        {"CubeControl 5V Current", "mA", 80u, 16u, 1u, NULL, 0u},
+        {"CubeControl Vbat Current", "mA", 96u, 16u, 1u, NULL, 0u},
+        {"Wheel1Current", "mA", 112u, 16u, 1u, NULL, 0u},
+        {"Wheel2Current", "mA", 128u, 16u, 1u, NULL, 0u},
+        {"Wheel3Current", "mA", 144u, 16u, 1u, NULL, 0u},
+        {"CubeStarCurrent", "mA", 160u, 16u, 1u, NULL, 0u},
+        {"Magnetorquer Current", "mA", 176u, 16u, 1u, NULL, 0u},
+        {"CubeStar MCU temperature", "C", 192u, 16u, 1u, NULL, 0u},
+        {"MCU Temperature", "C", 208u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Temperature", "C", 224u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Temperature", "C", 240u, 16u, 1u, NULL, 0u},
+        {"X-Rate Sensor Temperature", "C", 256u, 16u, 1u, NULL, 0u},
+        {"Y-Rate Sensor Temperature", "C", 272u, 16u, 1u, NULL, 0u},
+        {"Z-Rate Sensor Temperature", "C", 288u, 16u, 1u, NULL, 0u},
+    };
+    *count = 19u;
+    return fields;
+}
+
 /** CubeSense1 Current Measurements, as it is repeated from byte 0. */
 static inline void cubeacp_power_and_temperature_part_cubesense1_currents(
     const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,

@@ -72,6 +72,18 @@ static inline icd_status_t cubeacp_quaternion_covariance_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_quaternion_covariance_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Quaternion Covariance - Q1 RMS", "", 0u, 16u, 1u, NULL, 0u},
+        {"Quaternion Covariance - Q2 RMS", "", 16u, 16u, 1u, NULL, 0u},
+        {"Quaternion Covariance - Q3 RMS", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Quaternion Covariance - Q1 RMS in thousandths, exact: -32768 to 32767. */
 static inline int32_t cubeacp_quaternion_covariance_q1_rms_milli(const cubeacp_quaternion_covariance_t *message)
 {

@@ -64,6 +64,18 @@ static inline icd_status_t cubeacp_quaternion_error_vector_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_quaternion_error_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Quaternion Error - Q1", "", 0u, 16u, 1u, NULL, 0u},
+        {"Quaternion Error - Q2", "", 16u, 16u, 1u, NULL, 0u},
+        {"Quaternion Error - Q3", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Quaternion Error - Q1 in millionths, exact: -3276800 to 3276700. */
 static inline int32_t cubeacp_quaternion_error_vector_quaternion_error_q1_micro(
     const cubeacp_quaternion_error_vector_t *message)

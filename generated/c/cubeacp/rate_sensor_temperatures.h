@@ -77,4 +77,16 @@ static inline icd_status_t cubeacp_rate_sensor_temperatures_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_rate_sensor_temperatures_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"X-Rate Sensor Temperature", "C", 0u, 16u, 1u, NULL, 0u},
+        {"Y-Rate Sensor Temperature", "C", 16u, 16u, 1u, NULL, 0u},
+        {"Z-Rate Sensor Temperature", "C", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_RATE_SENSOR_TEMPERATURES_H */

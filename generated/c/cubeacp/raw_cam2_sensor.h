@@ -77,4 +77,17 @@ static inline icd_status_t cubeacp_raw_cam2_sensor_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_cam2_sensor_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Cam2 centroid X", "", 0u, 16u, 1u, NULL, 0u},
+        {"Cam2 centroid Y", "", 16u, 16u, 1u, NULL, 0u},
+        {"Cam2 Capture status", "", 32u, 8u, 1u, NULL, 0u},
+        {"Cam2 Detection result", "", 40u, 8u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
+}
+
 #endif /* CUBEACP_RAW_CAM2_SENSOR_H */

@@ -94,4 +94,19 @@ static inline icd_status_t cubeacp_raw_css_1_to_6_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_css_1_to_6_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CSS1", "", 0u, 8u, 1u, NULL, 0u},
+        {"CSS2", "", 8u, 8u, 1u, NULL, 0u},
+        {"CSS3", "", 16u, 8u, 1u, NULL, 0u},
+        {"CSS4", "", 24u, 8u, 1u, NULL, 0u},
+        {"CSS5", "", 32u, 8u, 1u, NULL, 0u},
+        {"CSS6", "", 40u, 8u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
+}
+
 #endif /* CUBEACP_RAW_CSS_1_TO_6_H */

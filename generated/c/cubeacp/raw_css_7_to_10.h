@@ -83,4 +83,17 @@ static inline icd_status_t cubeacp_raw_css_7_to_10_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_css_7_to_10_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CSS7", "", 0u, 8u, 1u, NULL, 0u},
+        {"CSS8", "", 8u, 8u, 1u, NULL, 0u},
+        {"CSS9", "", 16u, 8u, 1u, NULL, 0u},
+        {"CSS10", "", 24u, 8u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
+}
+
 #endif /* CUBEACP_RAW_CSS_7_TO_10_H */

@@ -185,6 +185,35 @@ static inline icd_status_t cubeacp_raw_gps_measurements_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_gps_measurements_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Gps Solution Status", "", 0u, 8u, 1u, NULL, 0u},
+        {"Number of tracked GPS satellites", "", 8u, 8u, 1u, NULL, 0u},
+        {"Number of GPS satellites used in solution", "", 16u, 8u, 1u, NULL, 0u},
+        {"Counter for XYZ Lof from GPS", "", 24u, 8u, 1u, NULL, 0u},
+        {"Counter for RANGE log from GPS", "", 32u, 8u, 1u, NULL, 0u},
+        {"Response Message for GPS log setup", "", 40u, 8u, 1u, NULL, 0u},
+        {"GPS Reference Week", "", 48u, 16u, 1u, NULL, 0u},
+        {"GPS Time Milliseconds", "ms", 64u, 32u, 1u, NULL, 0u},
+        {"ECEF Position X", "m", 96u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity X", "m/s", 128u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Y", "m", 144u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity Y", "m/s", 176u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Z", "m", 192u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity Z", "m/s", 224u, 16u, 1u, NULL, 0u},
+        {"X-pos Standard Deviation", "m", 240u, 8u, 1u, NULL, 0u},
+        {"Y-pos Standard Deviation", "m", 248u, 8u, 1u, NULL, 0u},
+        {"Z-pos Standard Deviation", "m", 256u, 8u, 1u, NULL, 0u},
+        {"X-vel Standard Deviation", "m/s", 264u, 8u, 1u, NULL, 0u},
+        {"Y-vel Standard Deviation", "m/s", 272u, 8u, 1u, NULL, 0u},
+        {"Z-vel Standard Deviation", "m/s", 280u, 8u, 1u, NULL, 0u},
+    };
+    *count = 20u;
+    return fields;
+}
+
 /** Raw GPS Status, as it is repeated from byte 0. */
 static inline void cubeacp_raw_gps_measurements_part_raw_gps_status(
     const cubeacp_raw_gps_measurements_t *ICDGEN_RESTRICT message,

@@ -88,4 +88,19 @@ static inline icd_status_t cubeacp_raw_gps_status_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_gps_status_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Gps Solution Status", "", 0u, 8u, 1u, NULL, 0u},
+        {"Number of tracked GPS satellites", "", 8u, 8u, 1u, NULL, 0u},
+        {"Number of GPS satellites used in solution", "", 16u, 8u, 1u, NULL, 0u},
+        {"Counter for XYZ Lof from GPS", "", 24u, 8u, 1u, NULL, 0u},
+        {"Counter for RANGE log from GPS", "", 32u, 8u, 1u, NULL, 0u},
+        {"Response Message for GPS log setup", "", 40u, 8u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
+}
+
 #endif /* CUBEACP_RAW_GPS_STATUS_H */

@@ -62,4 +62,15 @@ static inline icd_status_t cubeacp_raw_gps_time_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_gps_time_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"GPS Reference Week", "", 0u, 16u, 1u, NULL, 0u},
+        {"GPS Time Milliseconds", "ms", 16u, 32u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* CUBEACP_RAW_GPS_TIME_H */

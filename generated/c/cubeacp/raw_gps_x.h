@@ -68,4 +68,15 @@ static inline icd_status_t cubeacp_raw_gps_x_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_gps_x_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"ECEF Position X", "m", 0u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity X", "m/s", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* CUBEACP_RAW_GPS_X_H */

@@ -72,4 +72,16 @@ static inline icd_status_t cubeacp_raw_magnetometer_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_magnetometer_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"MagX", "", 0u, 16u, 1u, NULL, 0u},
+        {"MagY", "", 16u, 16u, 1u, NULL, 0u},
+        {"MagZ", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_RAW_MAGNETOMETER_H */

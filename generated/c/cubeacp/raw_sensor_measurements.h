@@ -169,6 +169,39 @@ static inline icd_status_t cubeacp_raw_sensor_measurements_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_sensor_measurements_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Cam2 centroid X", "", 0u, 16u, 1u, NULL, 0u},
+        {"Cam2 centroid Y", "", 16u, 16u, 1u, NULL, 0u},
+        {"Cam2 Capture status", "", 32u, 8u, 1u, NULL, 0u},
+        {"Cam2 Detection result", "", 40u, 8u, 1u, NULL, 0u},
+        {"Cam1 centroid X", "", 48u, 16u, 1u, NULL, 0u},
+        {"Cam1 centroid Y", "", 64u, 16u, 1u, NULL, 0u},
+        {"Cam1 Capture status", "", 80u, 8u, 1u, NULL, 0u},
+        {"Cam1 Detection result", "", 88u, 8u, 1u, NULL, 0u},
+        {"CSS1", "", 96u, 8u, 1u, NULL, 0u},
+        {"CSS2", "", 104u, 8u, 1u, NULL, 0u},
+        {"CSS3", "", 112u, 8u, 1u, NULL, 0u},
+        {"CSS4", "", 120u, 8u, 1u, NULL, 0u},
+        {"CSS5", "", 128u, 8u, 1u, NULL, 0u},
+        {"CSS6", "", 136u, 8u, 1u, NULL, 0u},
+        {"CSS7", "", 144u, 8u, 1u, NULL, 0u},
+        {"CSS8", "", 152u, 8u, 1u, NULL, 0u},
+        {"CSS9", "", 160u, 8u, 1u, NULL, 0u},
+        {"CSS10", "", 168u, 8u, 1u, NULL, 0u},
+        {"MagX", "", 176u, 16u, 1u, NULL, 0u},
+        {"MagY", "", 192u, 16u, 1u, NULL, 0u},
+        {"MagZ", "", 208u, 16u, 1u, NULL, 0u},
+        {"RateX", "", 224u, 16u, 1u, NULL, 0u},
+        {"RateY", "", 240u, 16u, 1u, NULL, 0u},
+        {"RateZ", "", 256u, 16u, 1u, NULL, 0u},
+    };
+    *count = 24u;
+    return fields;
+}
+
 /** Raw Cam2 Sensor, as it is repeated from byte 0. */
 static inline void cubeacp_raw_sensor_measurements_part_raw_cam2_sensor(
     const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,

@@ -256,6 +256,54 @@ static inline icd_status_t cubeacp_raw_star_tracker_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_star_tracker_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Number of stars detected", "stars", 0u, 8u, 1u, NULL, 0u},
+        {"Star image noise", "noise", 8u, 8u, 1u, NULL, 0u},
+        {"Invalid Stars", "Invalid stars", 16u, 8u, 1u, NULL, 0u},
+        {"Number of stars identified", "stars", 24u, 8u, 1u, NULL, 0u},
+        {"Identification mode", "", 32u, 8u, 1u, NULL, 0u},
+        {"Image dark value", "8-bit pixel value", 40u, 8u, 1u, NULL, 0u},
+        {"Image Capture Success", "", 48u, 1u, 1u, NULL, 0u},
+        {"Detection Success", "", 49u, 1u, 1u, NULL, 0u},
+        {"Identification Success", "", 50u, 1u, 1u, NULL, 0u},
+        {"AttitudeSuccess", "", 51u, 1u, 1u, NULL, 0u},
+        {"Processing Time Error", "", 52u, 1u, 1u, NULL, 0u},
+        {"Tracking Module Enabled", "", 53u, 1u, 1u, NULL, 0u},
+        {"Prediction Enabled", "", 54u, 1u, 1u, NULL, 0u},
+        {"Comms error", "", 55u, 1u, 1u, NULL, 0u},
+        {"Sample Period", "", 56u, 16u, 1u, NULL, 0u},
+        {"Star 1 confidence", "%", 72u, 8u, 1u, NULL, 0u},
+        {"Star 2 confidence", "%", 80u, 8u, 1u, NULL, 0u},
+        {"Star 3 confidence", "%", 88u, 8u, 1u, NULL, 0u},
+        {"Magnitude Star 1", "", 96u, 16u, 1u, NULL, 0u},
+        {"Magnitude Star 2", "", 112u, 16u, 1u, NULL, 0u},
+        {"Magnitude Star 3", "", 128u, 16u, 1u, NULL, 0u},
+        {"Catalogue Star 1", "", 144u, 16u, 1u, NULL, 0u},
+        {"Centroid X Star 1", "", 160u, 16u, 1u, NULL, 0u},
+        {"Centroid Y Star 1", "", 176u, 16u, 1u, NULL, 0u},
+        {"Catalogue Star 2", "", 192u, 16u, 1u, NULL, 0u},
+        {"Centroid X Star 2", "", 208u, 16u, 1u, NULL, 0u},
+        {"Centroid Y Star 2", "", 224u, 16u, 1u, NULL, 0u},
+        {"Catalogue Star 3", "", 240u, 16u, 1u, NULL, 0u},
+        {"Centroid X Star 3", "", 256u, 16u, 1u, NULL, 0u},
+        {"Centroid Y Star 3", "", 272u, 16u, 1u, NULL, 0u},
+        {"Capture", "ms", 288u, 16u, 1u, NULL, 0u},
+        {"Detection", "ms", 304u, 16u, 1u, NULL, 0u},
+        {"Identification", "ms", 320u, 16u, 1u, NULL, 0u},
+        {"x-Axis rate", "", 336u, 16u, 1u, NULL, 0u},
+        {"y-Axis rate", "", 352u, 16u, 1u, NULL, 0u},
+        {"z-Axis rate", "", 368u, 16u, 1u, NULL, 0u},
+        {"Q0", "", 384u, 16u, 1u, NULL, 0u},
+        {"Q1", "", 400u, 16u, 1u, NULL, 0u},
+        {"Q2", "", 416u, 16u, 1u, NULL, 0u},
+    };
+    *count = 39u;
+    return fields;
+}
+
 /** Star Performance1, as it is repeated from byte 0. */
 static inline void cubeacp_raw_star_tracker_part_star_performance1(
     const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,

@@ -71,6 +71,18 @@ static inline icd_status_t cubeacp_satellite_position_llh_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_satellite_position_llh_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Latitude", "deg", 0u, 16u, 1u, NULL, 0u},
+        {"Longitude", "deg", 16u, 16u, 1u, NULL, 0u},
+        {"Altitude", "km", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Latitude in thousandths of deg, exact: -327680 to 327670. */
 static inline int32_t cubeacp_satellite_position_llh_latitude_mdeg(const cubeacp_satellite_position_llh_t *message)
 {

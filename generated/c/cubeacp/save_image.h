@@ -60,4 +60,15 @@ static inline icd_status_t cubeacp_save_image_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_save_image_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Camera Select", "", 0u, 8u, 1u, NULL, 0u},
+        {"Image Size", "", 8u, 8u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* CUBEACP_SAVE_IMAGE_H */

@@ -78,4 +78,16 @@ static inline icd_status_t cubeacp_sd_log1_configuration_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_sd_log1_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Log Selection", "", 0u, 80u, 1u, NULL, 0u},
+        {"Log Period", "", 80u, 16u, 1u, NULL, 0u},
+        {"Log Destination", "", 96u, 8u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_SD_LOG1_CONFIGURATION_H */

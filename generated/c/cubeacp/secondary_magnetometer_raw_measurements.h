@@ -77,4 +77,16 @@ static inline icd_status_t cubeacp_secondary_magnetometer_raw_measurements_encod
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_secondary_magnetometer_raw_measurements_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"MagX", "", 0u, 16u, 1u, NULL, 0u},
+        {"MagY", "", 16u, 16u, 1u, NULL, 0u},
+        {"MagZ", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_H */

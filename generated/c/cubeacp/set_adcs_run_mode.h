@@ -59,4 +59,14 @@ static inline icd_status_t cubeacp_set_adcs_run_mode_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_adcs_run_mode_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Enabled", "", 0u, 8u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
+}
+
 #endif /* CUBEACP_SET_ADCS_RUN_MODE_H */

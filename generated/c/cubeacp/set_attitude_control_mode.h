@@ -67,4 +67,15 @@ static inline icd_status_t cubeacp_set_attitude_control_mode_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_attitude_control_mode_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Control Mode", "", 0u, 8u, 1u, NULL, 0u},
+        {"Timeout", "s", 8u, 16u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* CUBEACP_SET_ATTITUDE_CONTROL_MODE_H */

@@ -87,6 +87,22 @@ static inline icd_status_t cubeacp_set_detumbling_control_parameters_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_detumbling_control_parameters_fields(size_t *count)
+{
+    static const icd_limit_t limits[] = {
+        {ICD_LIMIT_BELOW, 0.0},
+    };
+    static const icd_field_t fields[] = {
+        {"Detumbling Spin Gain", "", 0u, 32u, 1u, NULL, 0u},
+        {"Detumbling Damping Gain", "", 32u, 32u, 1u, NULL, 0u},
+        {"Reference spin rate", "deg/s", 64u, 16u, 1u, &limits[0], 1u},
+        {"Fast BDot Detumbling Gain", "", 80u, 32u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
+}
+
 /** Reference spin rate in thousandths of deg/s, exact: -32768 to 32767. */
 static inline int32_t cubeacp_set_detumbling_control_parameters_spin_rate_mdeg_per_s(
     const cubeacp_set_detumbling_control_parameters_t *message)

@@ -77,4 +77,16 @@ static inline icd_status_t cubeacp_set_magnetorquer_configuration_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_magnetorquer_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Magnetorquer 1 Configuration", "", 0u, 8u, 1u, NULL, 0u},
+        {"Magnetorquer 2 Configuration", "", 8u, 8u, 1u, NULL, 0u},
+        {"Magnetorquer 3 Configuration", "", 16u, 8u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_SET_MAGNETORQUER_CONFIGURATION_H */

@@ -81,6 +81,18 @@ static inline icd_status_t cubeacp_set_magnetorquer_output_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_magnetorquer_output_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Commanded X Magnetorquer duty cycle", "", 0u, 16u, 1u, NULL, 0u},
+        {"Commanded Y Magnetorquer duty cycle", "", 16u, 16u, 1u, NULL, 0u},
+        {"Commanded Z Magnetorquer duty cycle", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Commanded X Magnetorquer duty cycle in thousandths, exact: -32768 to 32767. */
 static inline int32_t cubeacp_set_magnetorquer_output_x_duty_cycle_milli(
     const cubeacp_set_magnetorquer_output_t *message)

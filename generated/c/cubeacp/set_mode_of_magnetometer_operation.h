@@ -61,4 +61,14 @@ static inline icd_status_t cubeacp_set_mode_of_magnetometer_operation_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_mode_of_magnetometer_operation_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Magnetometer Mode", "", 0u, 8u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
+}
+
 #endif /* CUBEACP_SET_MODE_OF_MAGNETOMETER_OPERATION_H */

@@ -97,6 +97,22 @@ static inline icd_status_t cubeacp_set_rate_gyro_configuration_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_rate_gyro_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Gyro1 Configuration", "", 0u, 8u, 1u, NULL, 0u},
+        {"Gyro2 Configuration", "", 8u, 8u, 1u, NULL, 0u},
+        {"Gyro3 Configuration", "", 16u, 8u, 1u, NULL, 0u},
+        {"X-Rate Sensor Offset", "deg/s", 24u, 16u, 1u, NULL, 0u},
+        {"Y-Rate Sensor Offset", "deg/s", 40u, 16u, 1u, NULL, 0u},
+        {"Z-Rate Sensor Offset", "deg/s", 56u, 16u, 1u, NULL, 0u},
+        {"RateSensorMult", "", 72u, 8u, 1u, NULL, 0u},
+    };
+    *count = 7u;
+    return fields;
+}
+
 /** X-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767. */
 static inline int32_t cubeacp_set_rate_gyro_configuration_x_rate_sensor_offset_mdeg_per_s(
     const cubeacp_set_rate_gyro_configuration_t *message)

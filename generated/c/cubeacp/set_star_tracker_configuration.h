@@ -245,6 +245,41 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_star_tracker_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"StarTracker Mounting Transform Alpha Angle", "deg", 0u, 16u, 1u, NULL, 0u},
+        {"StarTracker Mounting Transform Beta Angle", "deg", 16u, 16u, 1u, NULL, 0u},
+        {"StarTracker Mounting Transform Gamma Angle", "deg", 32u, 16u, 1u, NULL, 0u},
+        {"StarTracker exposure time", "", 48u, 16u, 1u, NULL, 0u},
+        {"StarTracker analog gain", "", 64u, 16u, 1u, NULL, 0u},
+        {"StarTracker detection threshold", "", 80u, 8u, 1u, NULL, 0u},
+        {"StarTracker star threshold", "", 88u, 8u, 1u, NULL, 0u},
+        {"Maximum Star Matched", "", 96u, 8u, 1u, NULL, 0u},
+        {"Detection Timeout duration", "", 104u, 16u, 1u, NULL, 0u},
+        {"Maximum Star Pixel", "", 120u, 8u, 1u, NULL, 0u},
+        {"Minimum Star Pixel", "", 128u, 8u, 1u, NULL, 0u},
+        {"Star Tracker Error Margin", "%", 136u, 8u, 1u, NULL, 0u},
+        {"Star Tracker Delay Time", "ms", 144u, 16u, 1u, NULL, 0u},
+        {"Star Tracker Centroid X", "pixels", 160u, 32u, 1u, NULL, 0u},
+        {"Star Tracker Centroid Y", "pixels", 192u, 32u, 1u, NULL, 0u},
+        {"Star Tracker Focal Length", "mm", 224u, 32u, 1u, NULL, 0u},
+        {"K1 radial distortion coefficient", "gain", 256u, 32u, 1u, NULL, 0u},
+        {"K2 radial distortion coefficient", "gain", 288u, 32u, 1u, NULL, 0u},
+        {"P1 tangential distortion coefficient", "gain", 320u, 32u, 1u, NULL, 0u},
+        {"P2 tangential distortion coefficient", "gain", 352u, 32u, 1u, NULL, 0u},
+        {"Star tracking window width", "", 384u, 8u, 1u, NULL, 0u},
+        {"Star Tracking Margin", "", 392u, 8u, 1u, NULL, 0u},
+        {"Star Validation Margin", "", 400u, 8u, 1u, NULL, 0u},
+        {"Star Tracking Module Enable", "", 408u, 1u, 1u, NULL, 0u},
+        {"Star Tracking Location Prediction Enable", "", 409u, 1u, 1u, NULL, 0u},
+        {"Star Tracking Search Width", "", 416u, 8u, 1u, NULL, 0u},
+    };
+    *count = 26u;
+    return fields;
+}
+
 /** StarTracker Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */
 static inline int32_t cubeacp_set_star_tracker_configuration_mounting_alpha_mdeg(
     const cubeacp_set_star_tracker_configuration_t *message)

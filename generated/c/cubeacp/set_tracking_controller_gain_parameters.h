@@ -88,4 +88,17 @@ static inline icd_status_t cubeacp_set_tracking_controller_gain_parameters_encod
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_tracking_controller_gain_parameters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Tracking Proportional Gain", "", 0u, 32u, 1u, NULL, 0u},
+        {"Tracking Derivative Gain", "", 32u, 32u, 1u, NULL, 0u},
+        {"Tracking Integral Gain", "", 64u, 32u, 1u, NULL, 0u},
+        {"Target-tracking Facet", "", 96u, 8u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
+}
+
 #endif /* CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_H */

@@ -86,4 +86,17 @@ static inline icd_status_t cubeacp_set_wheel_configuration_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_wheel_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"RW1 Configuration", "", 0u, 8u, 1u, NULL, 0u},
+        {"RW2 Configuration", "", 8u, 8u, 1u, NULL, 0u},
+        {"RW3 Configuration", "", 16u, 8u, 1u, NULL, 0u},
+        {"RW4 Configuration", "", 24u, 8u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
+}
+
 #endif /* CUBEACP_SET_WHEEL_CONFIGURATION_H */

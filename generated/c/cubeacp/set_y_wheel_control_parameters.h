@@ -96,4 +96,21 @@ static inline icd_status_t cubeacp_set_y_wheel_control_parameters_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_y_wheel_control_parameters_fields(size_t *count)
+{
+    static const icd_limit_t limits[] = {
+        {ICD_LIMIT_BELOW, 0.0},
+    };
+    static const icd_field_t fields[] = {
+        {"Y-Momentum Control Gain", "", 0u, 32u, 1u, NULL, 0u},
+        {"Y-momentum Nutation Damping Gain", "", 32u, 32u, 1u, NULL, 0u},
+        {"Y-momentum Proportional Gain", "", 64u, 32u, 1u, NULL, 0u},
+        {"Y-momentum Derivative Gain", "", 96u, 32u, 1u, NULL, 0u},
+        {"Reference Wheel Momentum", "Nms", 128u, 32u, 1u, &limits[0], 1u},
+    };
+    *count = 5u;
+    return fields;
+}
+
 #endif /* CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_H */

@@ -77,4 +77,21 @@ static inline icd_status_t cubeacp_sgp4_orbit_parameters_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_sgp4_orbit_parameters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Inclination", "deg", 0u, 64u, 1u, NULL, 0u},
+        {"Eccentricity", "", 64u, 64u, 1u, NULL, 0u},
+        {"Right-ascension of the Ascending Node", "deg", 128u, 64u, 1u, NULL, 0u},
+        {"Argument of Perigee", "deg", 192u, 64u, 1u, NULL, 0u},
+        {"B-Star drag term", "", 256u, 64u, 1u, NULL, 0u},
+        {"Mean Motion", "orbits/day", 320u, 64u, 1u, NULL, 0u},
+        {"Mean Anomaly", "deg", 384u, 64u, 1u, NULL, 0u},
+        {"Epoch", "year.day", 448u, 64u, 1u, NULL, 0u},
+    };
+    *count = 8u;
+    return fields;
+}
+
 #endif /* CUBEACP_SGP4_ORBIT_PARAMETERS_H */

@@ -72,6 +72,18 @@ static inline icd_status_t cubeacp_star_1_body_vector_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_1_body_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Star1BX", "", 0u, 16u, 1u, NULL, 0u},
+        {"Star1BY", "", 16u, 16u, 1u, NULL, 0u},
+        {"Star1BZ", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Star1BX in millionths, exact: -3276800 to 3276700. */
 static inline int32_t cubeacp_star_1_body_vector_star1_body_x_micro(const cubeacp_star_1_body_vector_t *message)
 {

@@ -74,6 +74,18 @@ static inline icd_status_t cubeacp_star_1_orbit_vector_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_1_orbit_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Star1OX", "", 0u, 16u, 1u, NULL, 0u},
+        {"Star1OY", "", 16u, 16u, 1u, NULL, 0u},
+        {"Star1OZ", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Star1OX in millionths, exact: -3276800 to 3276700. */
 static inline int32_t cubeacp_star_1_orbit_vector_star1_orbit_x_micro(const cubeacp_star_1_orbit_vector_t *message)
 {

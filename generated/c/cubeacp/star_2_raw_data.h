@@ -74,4 +74,16 @@ static inline icd_status_t cubeacp_star_2_raw_data_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_2_raw_data_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Catalogue Star 2", "", 0u, 16u, 1u, NULL, 0u},
+        {"Centroid X Star 2", "", 16u, 16u, 1u, NULL, 0u},
+        {"Centroid Y Star 2", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_STAR_2_RAW_DATA_H */

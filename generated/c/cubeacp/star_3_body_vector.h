@@ -72,6 +72,18 @@ static inline icd_status_t cubeacp_star_3_body_vector_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_3_body_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Star3BX", "", 0u, 16u, 1u, NULL, 0u},
+        {"Star3BY", "", 16u, 16u, 1u, NULL, 0u},
+        {"Star3BZ", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Star3BX in millionths, exact: -3276800 to 3276700. */
 static inline int32_t cubeacp_star_3_body_vector_star3_body_x_micro(const cubeacp_star_3_body_vector_t *message)
 {

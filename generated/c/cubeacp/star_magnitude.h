@@ -73,4 +73,16 @@ static inline icd_status_t cubeacp_star_magnitude_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_magnitude_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Magnitude Star 1", "", 0u, 16u, 1u, NULL, 0u},
+        {"Magnitude Star 2", "", 16u, 16u, 1u, NULL, 0u},
+        {"Magnitude Star 3", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_STAR_MAGNITUDE_H */

@@ -93,4 +93,19 @@ static inline icd_status_t cubeacp_state_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_state_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"ADCS Config Load Error", "", 0u, 1u, 1u, NULL, 0u},
+        {"Orbit Parameter Load Error", "", 1u, 1u, 1u, NULL, 0u},
+        {"System Configuration Load Error", "", 2u, 1u, 1u, NULL, 0u},
+        {"SD card initialisation error", "", 3u, 1u, 1u, NULL, 0u},
+        {"SD card read error", "", 4u, 1u, 1u, NULL, 0u},
+        {"SD card write error", "", 5u, 1u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
+}
+
 #endif /* CUBEACP_STATE_H */

@@ -65,4 +65,15 @@ static inline icd_status_t cubeacp_status_of_image_capture_and_save_operation_en
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_status_of_image_capture_and_save_operation_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Percentage Complete", "%", 0u, 8u, 1u, NULL, 0u},
+        {"Status", "", 8u, 8u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_H */

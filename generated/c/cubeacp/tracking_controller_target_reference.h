@@ -78,4 +78,16 @@ static inline icd_status_t cubeacp_tracking_controller_target_reference_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_tracking_controller_target_reference_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Geocentric longitude of target", "deg", 0u, 32u, 1u, NULL, 0u},
+        {"Geocentric latitude of target", "deg", 32u, 32u, 1u, NULL, 0u},
+        {"Geocentric altitude of target", "m", 64u, 32u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_H */

@@ -432,6 +432,76 @@ static inline icd_status_t cubeacp_trigger_simulated_loop_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_trigger_simulated_loop_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Unix Time", "s", 0u, 32u, 1u, NULL, 0u},
+        {"Css Raw 1", "", 32u, 16u, 1u, NULL, 0u},
+        {"Css Raw 2", "", 48u, 16u, 1u, NULL, 0u},
+        {"Css Raw 3", "", 64u, 16u, 1u, NULL, 0u},
+        {"Css Raw 4", "", 80u, 16u, 1u, NULL, 0u},
+        {"Css Raw 5", "", 96u, 16u, 1u, NULL, 0u},
+        {"Css Raw 6", "", 112u, 16u, 1u, NULL, 0u},
+        {"Css Raw 7", "", 128u, 16u, 1u, NULL, 0u},
+        {"Css Raw 8", "", 144u, 16u, 1u, NULL, 0u},
+        {"Css Raw 9", "", 160u, 16u, 1u, NULL, 0u},
+        {"Css Raw 10", "", 176u, 16u, 1u, NULL, 0u},
+        {"Cam1 Raw X", "", 192u, 16u, 1u, NULL, 0u},
+        {"Cam1 Raw Y", "", 208u, 16u, 1u, NULL, 0u},
+        {"Cam1 Busy", "", 224u, 8u, 1u, NULL, 0u},
+        {"Cam1 Result", "", 232u, 8u, 1u, NULL, 0u},
+        {"Cam2 Raw X", "", 240u, 16u, 1u, NULL, 0u},
+        {"Cam2 Raw Y", "", 256u, 16u, 1u, NULL, 0u},
+        {"Cam2 Busy", "", 272u, 8u, 1u, NULL, 0u},
+        {"Cam2 Result", "", 280u, 8u, 1u, NULL, 0u},
+        {"Mag Raw X", "", 288u, 16u, 1u, NULL, 0u},
+        {"Mag Raw Y", "", 304u, 16u, 1u, NULL, 0u},
+        {"Mag Raw Z", "", 320u, 16u, 1u, NULL, 0u},
+        {"Rate Raw X", "", 336u, 32u, 1u, NULL, 0u},
+        {"Rate Raw Y", "", 368u, 32u, 1u, NULL, 0u},
+        {"Rate Raw Z", "", 400u, 32u, 1u, NULL, 0u},
+        {"Wheel Raw X", "rpm", 432u, 16u, 1u, NULL, 0u},
+        {"Wheel Raw Y", "rpm", 448u, 16u, 1u, NULL, 0u},
+        {"Wheel Raw Z", "rpm", 464u, 16u, 1u, NULL, 0u},
+        {"Star1CameraX", "", 480u, 16u, 1u, NULL, 0u},
+        {"Star1CameraY", "", 496u, 16u, 1u, NULL, 0u},
+        {"Star1CameraZ", "", 512u, 16u, 1u, NULL, 0u},
+        {"Star1InertialX", "", 528u, 16u, 1u, NULL, 0u},
+        {"Star1InertialY", "", 544u, 16u, 1u, NULL, 0u},
+        {"Star1InertialZ", "", 560u, 16u, 1u, NULL, 0u},
+        {"Star2CameraX", "", 576u, 16u, 1u, NULL, 0u},
+        {"Star2CameraY", "", 592u, 16u, 1u, NULL, 0u},
+        {"Star2CameraZ", "", 608u, 16u, 1u, NULL, 0u},
+        {"Star2InertialX", "", 624u, 16u, 1u, NULL, 0u},
+        {"Star2InertialY", "", 640u, 16u, 1u, NULL, 0u},
+        {"Star2InertialZ", "", 656u, 16u, 1u, NULL, 0u},
+        {"Star3CameraX", "", 672u, 16u, 1u, NULL, 0u},
+        {"Star3CameraY", "", 688u, 16u, 1u, NULL, 0u},
+        {"Star3CameraZ", "", 704u, 16u, 1u, NULL, 0u},
+        {"Star3InertialX", "", 720u, 16u, 1u, NULL, 0u},
+        {"Star3InertialY", "", 736u, 16u, 1u, NULL, 0u},
+        {"Star3InertialZ", "", 752u, 16u, 1u, NULL, 0u},
+        {"Gps Solution Status", "", 768u, 8u, 1u, NULL, 0u},
+        {"GPS Reference Week", "", 776u, 16u, 1u, NULL, 0u},
+        {"GPS Time Milliseconds", "ms", 792u, 32u, 1u, NULL, 0u},
+        {"ECEF Position X", "m", 824u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity X", "m/s", 856u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Y", "m", 872u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity Y", "m/s", 904u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Z", "m", 920u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity Z", "m/s", 952u, 16u, 1u, NULL, 0u},
+        {"X-pos Standard Deviation", "m", 968u, 8u, 1u, NULL, 0u},
+        {"Y-pos Standard Deviation", "m", 976u, 8u, 1u, NULL, 0u},
+        {"Z-pos Standard Deviation", "m", 984u, 8u, 1u, NULL, 0u},
+        {"X-vel Standard Deviation", "m/s", 992u, 8u, 1u, NULL, 0u},
+        {"Y-vel Standard Deviation", "m/s", 1000u, 8u, 1u, NULL, 0u},
+        {"Z-vel Standard Deviation", "m/s", 1008u, 8u, 1u, NULL, 0u},
+    };
+    *count = 61u;
+    return fields;
+}
+
 /** X-pos Standard Deviation in mm, exact: 0 to 25500. */
 static inline int32_t cubeacp_trigger_simulated_loop_x_pos_standard_deviation_mm(
     const cubeacp_trigger_simulated_loop_t *message)

@@ -70,4 +70,15 @@ static inline icd_status_t cubeacp_uart_log_configuration_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_uart_log_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Log Selection", "", 0u, 80u, 1u, NULL, 0u},
+        {"Log Period", "", 80u, 16u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* CUBEACP_UART_LOG_CONFIGURATION_H */

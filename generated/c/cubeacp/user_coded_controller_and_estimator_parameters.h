@@ -68,4 +68,15 @@ static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameter
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_user_coded_controller_and_estimator_parameters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"User Coded Controller Settings", "", 0u, 384u, 1u, NULL, 0u},
+        {"User Coded Estimator Settings", "", 384u, 384u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_H */

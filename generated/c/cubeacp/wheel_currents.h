@@ -78,6 +78,18 @@ static inline icd_status_t cubeacp_wheel_currents_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_wheel_currents_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Wheel1Current", "mA", 0u, 16u, 1u, NULL, 0u},
+        {"Wheel2Current", "mA", 16u, 16u, 1u, NULL, 0u},
+        {"Wheel3Current", "mA", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Wheel1Current in uA, exact: 0 to 655350. */
 static inline int32_t cubeacp_wheel_currents_wheel1_current_ua(const cubeacp_wheel_currents_t *message)
 {

@@ -108,4 +108,19 @@ static inline icd_status_t cubemag_deployment_status_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubemag_deployment_status_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Burn Current", "mA", 0u, 32u, 1u, NULL, 0u},
+        {"Deployment Pin State", "", 32u, 1u, 1u, NULL, 0u},
+        {"Burn Pin State", "", 33u, 1u, 1u, NULL, 0u},
+        {"Burn UnderCurrent", "", 34u, 1u, 1u, NULL, 0u},
+        {"Burn OverCurrent", "", 35u, 1u, 1u, NULL, 0u},
+        {"Deployment Timeout", "", 36u, 1u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
+}
+
 #endif /* CUBEMAG_DEPLOYMENT_STATUS_H */

@@ -85,4 +85,17 @@ static inline icd_status_t cubemag_redundant_magnetometer_measurement_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubemag_redundant_magnetometer_measurement_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"X_axis", "nT", 0u, 32u, 1u, NULL, 0u},
+        {"Y_axis", "nT", 32u, 32u, 1u, NULL, 0u},
+        {"Z_axis", "nT", 64u, 32u, 1u, NULL, 0u},
+        {"Data Valid", "", 96u, 1u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
+}
+
 #endif /* CUBEMAG_REDUNDANT_MAGNETOMETER_MEASUREMENT_H */

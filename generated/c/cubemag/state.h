@@ -75,4 +75,16 @@ static inline icd_status_t cubemag_state_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubemag_state_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"MagSvc State", "", 0u, 8u, 1u, NULL, 0u},
+        {"Primary Mag State", "", 8u, 8u, 1u, NULL, 0u},
+        {"Red Mag State", "", 16u, 8u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEMAG_STATE_H */

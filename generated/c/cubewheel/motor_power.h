@@ -63,4 +63,14 @@ static inline icd_status_t cubewheel_motor_power_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubewheel_motor_power_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Motor Power Switch", "", 0u, 1u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
+}
+
 #endif /* CUBEWHEEL_MOTOR_POWER_H */

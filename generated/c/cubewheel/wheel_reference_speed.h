@@ -67,4 +67,14 @@ static inline icd_status_t cubewheel_wheel_reference_speed_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubewheel_wheel_reference_speed_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Reference Speed", "rpm", 0u, 32u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
+}
+
 #endif /* CUBEWHEEL_WHEEL_REFERENCE_SPEED_H */

@@ -71,4 +71,15 @@ static inline icd_status_t cubewheel_wheel_speed_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubewheel_wheel_speed_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Wheel Speed", "rpm", 0u, 32u, 1u, NULL, 0u},
+        {"Wheel Error State", "", 32u, 8u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* CUBEWHEEL_WHEEL_SPEED_H */

@@ -72,6 +72,4 @@ def _structs(info: FieldInfo, struct: type[Struct], value: Any) -> Any:
         return _filled(struct, value) if isinstance(value, Mapping) else value
     if isinstance(value, (str, bytes, Mapping)) or not hasattr(value, "__iter__"):
         raise RangeError(info.attribute, f"{info.elements} values", value)
-    return tuple(
-        _filled(struct, one) if isinstance(one, Mapping) else one for one in value
-    )
+    return tuple(_filled(struct, one) if isinstance(one, Mapping) else one for one in value)

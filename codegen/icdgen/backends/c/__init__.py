@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from icdgen.backends import Identifier
-from icdgen.backends.c import accessors, bits, constants, decoding, encoding, names, parts, types
+from icdgen.backends.c import accessors, bits, constants, decoding, encoding, fields, names, parts, types
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
@@ -102,6 +102,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "encode": encoding.statements(message),
         "views": [accessors.view(field) for field in message.views],
         "parts": parts.parts(message),
+        "known": fields.fields(message),
     }
 
 

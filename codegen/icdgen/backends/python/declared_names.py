@@ -49,7 +49,7 @@ def _of_field(field: FieldDescription) -> Iterator[str]:
 
 def _fields(one: Composite[Any], scope: str) -> Iterator[Identifier]:
     for field in one.all_members:
-        for name in _of_field(field):
+        for name in (*_of_field(field), *(constant.name.upper() for constant in field.constants)):
             yield field.identifier(scope, name)
             if name in names.IN_MESSAGE:
                 yield Identifier(scope, name, names.IN_MESSAGE[name].format(name), None)

@@ -5,20 +5,24 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.backends.python import names
+from icdgen.backends.python.fields import number
 from icdgen.describe import EnumDescription, MessageDescription, StructDescription
 from icdgen.describe.description import Composite
 from icdgen.describe.parts import parts_of
 
 
 def values(message: MessageDescription) -> dict[str, object]:
-    """What is imported for it. And the messages that it repeats, in the order of the frame."""
+    """What is said of it, and what it repeats in the order of the frame."""
     parts = [(begin, part.message) for part in parts_of(message) for begin in part.begins]
-    return {"imports": imports(message), "parts": sorted(parts, key=lambda one: one[0])}
+    return {**shared(message), "parts": sorted(parts, key=lambda one: one[0])}
 
 
-def imports(one: Composite[Any]) -> list[str]:
-    """What is imported for a message or a struct: enumerations and structs."""
-    return sorted(_import(used, one) for used in (*one.enums, *one.structs))
+def shared(one: Composite[Any]) -> dict[str, object]:
+    """The enumerations and structs that are imported for a message or a struct, and the constants of its fields."""
+    return {
+        "imports": sorted(_import(used, one) for used in (*one.enums, *one.structs)),
+        "constants": [(constant, number(constant.value)) for field in one.all_members for constant in field.constants],
+    }
 
 
 def _import(used: EnumDescription | StructDescription, by: Composite[Any]) -> str:

@@ -26,6 +26,8 @@ class CopyToInternalFlash(_base.Message):
     ID = 103
     IDS = (ID,)
     LENGTH = 2
+    OVERWRITE_OVERWRITE_THE_BOOT_SEGMENT = 90
+    """Bootloader overwrite flag: overwrite the boot segment."""
     TABLE = 67
 
     source_program_index: ProgramsList = _base.field(

@@ -24,6 +24,8 @@ class LoadFileDownloadBlock(_base.Message):
     ID = 112
     IDS = (ID,)
     LENGTH = 8
+    BLOCK_LENGTH_MAX = 20480
+    """BlockLength in byte: largest value."""
     TABLE = 17
 
     file_type: FileType = _base.field("File Type", 0, 8, "enum", default=FileType(0))

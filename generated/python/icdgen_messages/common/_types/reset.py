@@ -29,6 +29,8 @@ class Reset(_base.Message):
     ID = 1
     IDS = (ID,)
     LENGTH = 1
+    MAGIC_NUMBER_CONST = 90
+    """Magic number: the only valid raw value."""
     TABLE = 10
     ACKNOWLEDGED = False
 

@@ -47,6 +47,10 @@ class AdcsConfiguration(_base.Message):
     GET_ID = 206
     IDS = (SET_ID, GET_ID)
     LENGTH = 504
+    REFERENCE_SPIN_RATE_DEG_PER_S_BELOW = 0
+    """Reference spin rate in deg/s: must be below this."""
+    REFERENCE_WHEEL_MOMENTUM_BELOW = 0
+    """Reference Wheel Momentum in Nms: must be below this."""
     TABLE = 192
     PARTS = (
         ("cubeacp", "SetMagnetorquerConfiguration", 0),

@@ -20,6 +20,8 @@ class SetAttitudeControlMode(_base.Message):
     ID = 13
     IDS = (ID,)
     LENGTH = 3
+    TIMEOUT_NO_TIMEOUT = 65535
+    """Timeout: no timeout."""
     TABLE = 77
 
     control_mode: ConModeSelect = _base.field("Control Mode", 0, 8, "enum", default=ConModeSelect.NO_CONTROL)

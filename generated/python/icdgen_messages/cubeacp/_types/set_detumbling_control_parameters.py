@@ -28,6 +28,8 @@ class SetDetumblingControlParameters(_base.Message):
     GET_ID = 208
     IDS = (SET_ID, GET_ID)
     LENGTH = 14
+    SPIN_RATE_DEG_PER_S_BELOW = 0
+    """Reference spin rate in deg/s: must be below this."""
     TABLE = 195
 
     detumbling_spin_gain: float = _base.field("Detumbling Spin Gain", 0, 32, "float", default=0.0)

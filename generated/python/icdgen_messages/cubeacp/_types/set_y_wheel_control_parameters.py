@@ -28,6 +28,8 @@ class SetYWheelControlParameters(_base.Message):
     GET_ID = 209
     IDS = (SET_ID, GET_ID)
     LENGTH = 20
+    REFERENCE_WHEEL_MOMENTUM_BELOW = 0
+    """Reference Wheel Momentum in Nms: must be below this."""
     TABLE = 196
 
     y_momentum_control_gain: float = _base.field("Y-Momentum Control Gain", 0, 32, "float", default=0.0)
