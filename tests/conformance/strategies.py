@@ -213,7 +213,9 @@ def _fields(
         count = draw(st.sampled_from((None, None, 0, 1, 2, 3)))
         if count is not None:
             at = (end + 7) // 8 * 8
-            fields.append({"at": at, **names.one("part"), "struct": struct["name"], **({"count": count} if count else {})})
+            fields.append(
+                {"at": at, **names.one("part"), "struct": struct["name"], **({"count": count} if count else {})}
+            )
             end = at + 8 * struct["length"] * (count or 1)
     order = draw(st.permutations(fields)) if draw(st.booleans()) else fields
     return order, (end + 7) // 8

@@ -180,7 +180,7 @@ class Id(NamedTuple):
     comment: str
 
 
-Whole = TypeVar("Whole", Message, Struct)
+Whole = TypeVar("Whole", bound=Message | Struct)
 
 
 class Composite(Named[Whole]):
@@ -189,6 +189,11 @@ class Composite(Named[Whole]):
     def __init__(self, description: Description, model: Whole, node: Node, what: str) -> None:
         super().__init__(model, node.vocabulary, f"{what} `{model.name}`")
         self._description, self.node = description, node
+
+    @cached_property
+    def comment(self) -> Comment:
+        """What comments say of it."""
+        raise NotImplementedError
 
     @cached_property
     def all_fields(self) -> tuple[FieldDescription, ...]:
@@ -363,6 +368,11 @@ class NodeDescription:
     def structs(self) -> tuple[StructDescription, ...]:
         """Those that it declares, each after those that it has in it."""
         return tuple(map(self._description.struct, self.model.structs))
+
+    @property
+    def composites(self) -> tuple[Composite[Any], ...]:
+        """Structs and messages that it declares, each after those that it has in it."""
+        return (*self.structs, *self.messages)
 
     @cached_property
     def spoken(self) -> tuple[MessageDescription, ...]:

@@ -8,7 +8,7 @@ from icdgen.describe.comments import Comment, enum_comment, member_comment
 from icdgen.describe.errata import Thing, tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding
-from icdgen.icd.model import Enum, Icd, Member, Node
+from icdgen.icd.model import Enum, Icd, Member, Message, Node, Struct
 
 
 def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
@@ -18,7 +18,8 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
         for enum in node.enums:
             bits = enum.bits_for(enum.widest.value) if enum.widest else 1
             found[enum.node, enum.name] = max(found.get((enum.node, enum.name), 1), bits)
-        for one in (*node.structs, *node.messages):
+        every: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
+        for one in every:
             for field in one.fields:
                 if field.enum is not None:
                     key = field.enum.node, field.enum.name

@@ -8,7 +8,7 @@ from icdgen import naming
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Enum, Field, Member, Message, Struct
 
-Model = TypeVar("Model", Message, Field, Enum, Member, Struct)
+Model = TypeVar("Model", bound=Message | Struct | Field | Enum | Member)
 
 
 class Named(Generic[Model]):

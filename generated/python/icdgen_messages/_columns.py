@@ -18,7 +18,9 @@ from ._layout import Piece, byte_order, pieces
 _EXACT = 1 << 53  # integers below this are exact as 64-bit floats
 
 
-def decode_many(message: type[Message], frames: Buffer, physical: bool) -> dict[str, Any]:
+def decode_many(
+    message: type[Message], frames: Buffer, physical: bool
+) -> dict[str, Any]:
     """See `Message.decode_many`."""
     numpy: Any = import_module("numpy")
     decoder = _Decoder(numpy, message, frames)
@@ -189,7 +191,9 @@ class _Decoder:
         """What stands at a byte of every frame, as a view."""
         if not self.count:
             return self.numpy.empty(0, kind)
-        return self.numpy.ndarray(self.count, kind, self.rows, start, (self.message.LENGTH,))
+        return self.numpy.ndarray(
+            self.count, kind, self.rows, start, (self.message.LENGTH,)
+        )
 
     def _byte(self, byte: int) -> Any:
         return self.bytes[byte][: self.count]
@@ -215,7 +219,9 @@ class _Decoder:
         if not info.signed:
             return total.astype(f"u{size // 8}")
         spare = numpy.uint64(64 - info.bits)
-        return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(f"i{size // 8}")
+        return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(
+            f"i{size // 8}"
+        )
 
 
 class _Plan(NamedTuple):

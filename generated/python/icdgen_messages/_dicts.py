@@ -64,7 +64,19 @@ def _raw(info: FieldInfo, value: Any) -> Any:
         except ValueError:
             allowed = f"{info.bits // 8} bytes in hexadecimal digits"
             raise RangeError(info.attribute, allowed, value) from None
-    return value
+    if info.elements and isinstance(value, (list, tuple)):
+        return tuple(_member(info, one) for one in value)
+    return _member(info, value)
+
+
+def _member(info: FieldInfo, value: Any) -> Any:
+    """Of an enumeration the member, if the value is one of it."""
+    if info.enum is None or type(value) is not int:
+        return value
+    try:
+        return info.enum(value)
+    except ValueError:
+        return value
 
 
 def _structs(info: FieldInfo, struct: type[Struct], value: Any) -> Any:
@@ -72,4 +84,6 @@ def _structs(info: FieldInfo, struct: type[Struct], value: Any) -> Any:
         return _filled(struct, value) if isinstance(value, Mapping) else value
     if isinstance(value, (str, bytes, Mapping)) or not hasattr(value, "__iter__"):
         raise RangeError(info.attribute, f"{info.elements} values", value)
-    return tuple(_filled(struct, one) if isinstance(one, Mapping) else one for one in value)
+    return tuple(
+        _filled(struct, one) if isinstance(one, Mapping) else one for one in value
+    )

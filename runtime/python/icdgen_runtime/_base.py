@@ -35,7 +35,9 @@ else:
         return lambda cls: cls
 
 
-@dataclass_transform(kw_only_default=True, field_specifiers=(field, part, scaled, whole, text))
+@dataclass_transform(
+    kw_only_default=True, field_specifiers=(field, part, scaled, whole, text)
+)
 class MessageType(type):
     """Makes the class of a message or a struct: a dataclass with slots, of fields that `field` declares.
 
@@ -43,7 +45,9 @@ class MessageType(type):
     first used, and what `dataclasses` wants is made when it is asked for.
     """
 
-    def __new__(mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _lazy.Any]) -> _lazy.Any:
+    def __new__(
+        mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _lazy.Any]
+    ) -> _lazy.Any:
         """The class. Values of fields stand in slots, so their declarations go."""
         if "LENGTH" in namespace:
             infos: list[FieldInfo] = []
@@ -142,7 +146,9 @@ class Struct(metaclass=MessageType):
             """
             for info in cls.FIELDS:
                 if info.physical and info.attribute in values:
-                    raise TypeError(f"from_physical takes {info.physical}, not {info.attribute}")
+                    raise TypeError(
+                        f"from_physical takes {info.physical}, not {info.attribute}"
+                    )
             for info in cls.VIEWS:  # they follow from the fields
                 values.pop(info.attribute, None)
                 values.pop(info.physical, None)
@@ -163,7 +169,9 @@ class Struct(metaclass=MessageType):
             if info.struct is not None:
                 value = values[info.attribute]
                 values[info.attribute] = (
-                    tuple(one.as_dict(physical) for one in value) if info.elements else value.as_dict(physical)
+                    tuple(one.as_dict(physical) for one in value)
+                    if info.elements
+                    else value.as_dict(physical)
                 )
         return values
 
@@ -264,7 +272,9 @@ class Message(Struct):
         return frame
 
     @classmethod
-    def decode_many(cls, frames: _lazy.Buffer, physical: bool = False) -> dict[str, _lazy.Any]:
+    def decode_many(
+        cls, frames: _lazy.Buffer, physical: bool = False
+    ) -> dict[str, _lazy.Any]:
         """Frames that follow each other, as one numpy array a field.
 
         The names are those of `as_dict`. What stands on whole bytes is a view of the

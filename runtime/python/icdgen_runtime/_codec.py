@@ -117,8 +117,15 @@ def text(value: _lazy.Buffer) -> str:
 
 def text_bytes(value: str, field: str, size: int) -> bytes:
     """The bytes of a text, filled with NUL. Raises `RangeError`."""
-    if not isinstance(value, str) or not value.isascii() or "\0" in value or len(value) > size:
-        raise RangeError(field, f"up to {size} ASCII characters, none of them NUL", value)
+    if (
+        not isinstance(value, str)
+        or not value.isascii()
+        or "\0" in value
+        or len(value) > size
+    ):
+        raise RangeError(
+            field, f"up to {size} ASCII characters, none of them NUL", value
+        )
     return value.encode("ascii").ljust(size, b"\0")
 
 

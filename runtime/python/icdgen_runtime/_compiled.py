@@ -51,7 +51,9 @@ def compiled(message: type[_lazy.Message], name: str) -> _lazy.Any:
         function.__doc__, function.__module__ = told.__doc__, owner.__module__
         function.__qualname__ = f"{owner.__qualname__}.{name}"
         if name not in vars(owner):
-            setattr(owner, name, classmethod(function) if name == "from_bytes" else function)
+            setattr(
+                owner, name, classmethod(function) if name == "from_bytes" else function
+            )
     return _functions[owner, name]
 
 
@@ -60,7 +62,9 @@ class _Item:
 
     __slots__ = ("byte", "code", "size", "target", "value")
 
-    def __init__(self, byte: int, size: int, code: str, target: str, value: str) -> None:
+    def __init__(
+        self, byte: int, size: int, code: str, target: str, value: str
+    ) -> None:
         self.byte, self.size, self.code = byte, size, code
         self.target = target
         """What unpacking assigns it to."""
@@ -83,7 +87,9 @@ class Codec:
         self._items: list[_Item] = []
         self._assign: list[str] = []
         self._prepare: list[str] = []
-        self._parts: dict[int, list[tuple[int, _lazy.FieldInfo]]] = {}  # byte -> fields within it, from bit `shift` up
+        self._parts: dict[int, list[tuple[int, _lazy.FieldInfo]]] = (
+            {}
+        )  # byte -> fields within it, from bit `shift` up
         self._terms: dict[int, list[str]] = {}  # byte -> what crossing fields add to it
         self._floats: list[str] = []  # 32-bit floats that the struct converts
         self._holders: dict[str, str] = {}  # attribute of a struct -> its variable
@@ -119,7 +125,9 @@ class Codec:
             if info.elements:
                 self._run(info, span.start)
                 continue
-            is_whole = info.at % 8 == info.bits % 8 == 0 and not shared.intersection(span)
+            is_whole = info.at % 8 == info.bits % 8 == 0 and not shared.intersection(
+                span
+            )
             if is_whole and (info.type != "float" or self._is_in_order(info)):
                 self._whole(info, span.start, len(span))
             elif len(span) == 1:
@@ -167,7 +175,9 @@ class Codec:
         else:
             yield info
 
-    def _within(self, info: _lazy.FieldInfo, struct: type[_lazy.Struct]) -> _lazy.Iterator[_lazy.FieldInfo]:
+    def _within(
+        self, info: _lazy.FieldInfo, struct: type[_lazy.Struct]
+    ) -> _lazy.Iterator[_lazy.FieldInfo]:
         """The fields of a struct, wherever it stands. Each is a variable while a frame is read or written."""
         own, parts = self._own(info), info.parts
         kind = self._named("struct", struct)
@@ -201,7 +211,9 @@ class Codec:
         code = code.lower() if info.signed else code
         order = "<" if byte_order(info, self.message) == "little" else ">"
         words = struct.Struct(f"{order}{info.elements}{code}")
-        unpack, pack = self._named("unpack", words.unpack), self._named("pack", words.pack)
+        unpack, pack = self._named("unpack", words.unpack), self._named(
+            "pack", words.pack
+        )
         self._items.append(_Item(byte, words.size, f"{words.size}s", local, local))
         values, given = f"{unpack}({local})", own
         if is_single:
@@ -265,7 +277,9 @@ class Codec:
             self._prepare.append(f"{local} = {own}.to_bytes({size}, {how})")
         else:
             code = code.lower() if info.signed else code
-            self._items.append(_Item(byte, size, code, target if info.enum is None else local, own))
+            self._items.append(
+                _Item(byte, size, code, target if info.enum is None else local, own)
+            )
             if info.bits == 8 and info.enum is not None and not info.signed:
                 rows = self._named("rows", _codec.bit_table(((0, info),)))
                 self._assign.append(f"{target} = {rows}[{local}]")
@@ -285,7 +299,9 @@ class Codec:
         parts = sorted(self._parts.get(byte, ()), key=lambda part: part[0])
         if parts:
             table = _codec.bit_table(tuple((shift, info) for shift, info in parts))
-            rows, inverse = self._named("rows", table), self._named("bytes", _codec.Inverse(table))
+            rows, inverse = self._named("rows", table), self._named(
+                "bytes", _codec.Inverse(table)
+            )
             names = ", ".join(self._own(info) for _, info in parts)
             targets = ", ".join(self._target(info) for _, info in parts)
             self._assign.append(f"{targets} = {rows}[{local}]")
@@ -303,7 +319,9 @@ class Codec:
             )
             self._prepare.append(f"{local} = {bits_of}({own})")
         else:
-            bits_of = self._named("bits_of", _codec.signed_bits if info.signed else _codec.unsigned_bits)
+            bits_of = self._named(
+                "bits_of", _codec.signed_bits if info.signed else _codec.unsigned_bits
+            )
             self._prepare.append(f"{local} = {bits_of}({own}, {info.bits})")
         for piece in pieces(info, self.message):
             term = f"({local} >> {piece.at} & {(1 << piece.bits) - 1}) << {piece.shift}"
@@ -312,9 +330,14 @@ class Codec:
     def _put_together(self, info: _lazy.FieldInfo) -> None:
         """Decoding of a field that crosses bytes."""
         runs = pieces(info, self.message)
-        value = " | ".join(f"(v{one.byte} >> {one.shift} & {(1 << one.bits) - 1}) << {one.at}" for one in runs)
+        value = " | ".join(
+            f"(v{one.byte} >> {one.shift} & {(1 << one.bits) - 1}) << {one.at}"
+            for one in runs
+        )
         if info.type == "float":
-            value_of = self._named("value_of", _floats.float32 if info.bits == 32 else _floats.float64)
+            value_of = self._named(
+                "value_of", _floats.float32 if info.bits == 32 else _floats.float64
+            )
             value = f"{value_of}({value})"
         elif info.signed:
             value = f"{self._named('signed', _codec.signed)}({value}, {info.bits})"

@@ -11,14 +11,18 @@ from ._fields import FieldInfo
 
 _KEYWORDS: dict[str, Any] = {"kw_only": True} if sys.version_info >= (3, 10) else {}
 
-PARAMS: Any = vars(dataclasses.make_dataclass("Message", [], **_KEYWORDS))["__dataclass_params__"]
+PARAMS: Any = vars(dataclasses.make_dataclass("Message", [], **_KEYWORDS))[
+    "__dataclass_params__"
+]
 
 
 def dataclass_fields(message: Any) -> dict[str, Any]:
     """The fields of a class of messages; it keeps them."""
     owner = next(one for one in message.__mro__ if "FIELDS" in vars(one))
     notes = vars(owner).get("__annotations__", {})
-    fields = [(one.attribute, notes[one.attribute], _field(one)) for one in owner.FIELDS]
+    fields = [
+        (one.attribute, notes[one.attribute], _field(one)) for one in owner.FIELDS
+    ]
     made = dataclasses.make_dataclass(owner.__name__, fields, **_KEYWORDS)
     owner.__dataclass_fields__ = found = vars(made)["__dataclass_fields__"]
     return found  # type: ignore[no-any-return]
@@ -47,5 +51,7 @@ def signature(message: Any) -> Signature:
             type_name = "str" if one.type == "text" else "float"
             type_name = f"tuple[{type_name}, ...]" if one.elements else type_name
             fresh = getattr(message(), one.physical)
-            found.append(Parameter(one.physical, kind, default=fresh, annotation=type_name))
+            found.append(
+                Parameter(one.physical, kind, default=fresh, annotation=type_name)
+            )
     return Signature(found)

@@ -143,7 +143,12 @@ class FieldInfo:
         """The field; of a struct the fields in it, called ``satellites[2].gnss``, arrays as one."""
         if self.struct is None:
             return (self,)
-        return tuple(line for part in self.parts for info in self.struct.FIELDS for line in info.within(part).lines)
+        return tuple(
+            line
+            for part in self.parts
+            for info in self.struct.FIELDS
+            for line in info.within(part).lines
+        )
 
     def within(self, part: FieldInfo) -> FieldInfo:
         """This field of a struct, where the struct stands as ``part`` of a message."""
@@ -237,7 +242,8 @@ def _array_property(info: FieldInfo, form: Form) -> property:
         if not hasattr(values, "__len__") or len(values) != info.elements:
             raise RangeError(attribute, f"{info.elements} values", values)
         found = (
-            nearest_raw(value, f"{attribute}[{index}]", terms, info.raw_range) for index, value in enumerate(values)
+            nearest_raw(value, f"{attribute}[{index}]", terms, info.raw_range)
+            for index, value in enumerate(values)
         )
         setattr(self, attribute, tuple(found))
 
@@ -260,7 +266,9 @@ def _text_property(info: FieldInfo) -> property:
     return property(get_text, set_text)
 
 
-def field(name: str, at: int, bits: int, type: str, *, default: _lazy.Any, **told: _lazy.Any) -> _lazy.Any:
+def field(
+    name: str, at: int, bits: int, type: str, *, default: _lazy.Any, **told: _lazy.Any
+) -> _lazy.Any:
     """A field: the manual's name, offset and width in bits, type, and its first value.
 
     What else is told of it goes by the names of `FieldInfo`; the enumeration is that of

@@ -60,7 +60,9 @@ else:
         return getattr(import_module(_NAMED[name], __package__), name)
 
 
-def attribute(module: dict[str, _lazy.Any], homes: dict[str, str], name: str) -> _lazy.Any:
+def attribute(
+    module: dict[str, _lazy.Any], homes: dict[str, str], name: str
+) -> _lazy.Any:
     """The class ``name`` of the node ``module``, from the file that ``homes`` gives."""
     if name not in homes:
         raise AttributeError(f"module {module['__name__']!r} has no attribute {name!r}")
@@ -72,7 +74,9 @@ def attribute(module: dict[str, _lazy.Any], homes: dict[str, str], name: str) ->
 class Messages:
     """The messages of a node by id: ``TELEMETRY[146]`` is a class."""
 
-    def __init__(self, module: dict[str, _lazy.Any], node: str, kind: str, names: dict[int, str]) -> None:
+    def __init__(
+        self, module: dict[str, _lazy.Any], node: str, kind: str, names: dict[int, str]
+    ) -> None:
         self._module, self._node, self._kind, self._names = module, node, kind, names
         self._loaded: dict[int, type[Message]] = {}
 

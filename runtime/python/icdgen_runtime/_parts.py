@@ -39,7 +39,9 @@ def _values(message: Message) -> dict[int, _lazy.Any]:
     return found
 
 
-def _collect(info: _lazy.FieldInfo, value: _lazy.Any, found: dict[int, _lazy.Any]) -> None:
+def _collect(
+    info: _lazy.FieldInfo, value: _lazy.Any, found: dict[int, _lazy.Any]
+) -> None:
     for one, raw in zip(info.parts, value if info.elements else (value,)):
         if one.struct is None:
             found[one.at] = raw
@@ -53,12 +55,17 @@ def _read(kind: type[_lazy.M], values: dict[int, _lazy.Any], begin: int) -> _laz
     return kind(**{info.attribute: _value(info, values, begin) for info in kind.FIELDS})
 
 
-def _value(info: _lazy.FieldInfo, values: dict[int, _lazy.Any], begin: int) -> _lazy.Any:
+def _value(
+    info: _lazy.FieldInfo, values: dict[int, _lazy.Any], begin: int
+) -> _lazy.Any:
     found: list[_lazy.Any] = []
     for one in info.parts:
         if one.struct is None:
             found.append(values[begin + one.at])
             continue
-        held = {inner.attribute: _value(inner.within(one), values, begin) for inner in one.struct.FIELDS}
+        held = {
+            inner.attribute: _value(inner.within(one), values, begin)
+            for inner in one.struct.FIELDS
+        }
         found.append(one.struct(**held))
     return tuple(found) if info.elements else found[0]

@@ -108,7 +108,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
 
 def _is_wide(description: Description) -> bool:
     """Whether a formula needs more than the support header computes with."""
-    return any(one.has_wide_steps for node in description.nodes for one in (*node.structs, *node.messages))
+    return any(one.has_wide_steps for node in description.nodes for one in node.composites)
 
 
 def _links(description: Description) -> dict[str, LinkDescription]:
@@ -148,7 +148,7 @@ def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
 def _node(node: NodeDescription) -> dict[str, object]:
     headers = [f"{name}.h" for name in node.model.includes]
     headers += [f"{node.name}/enums.h"] if node.enums else []
-    headers += [f"{node.name}/{one.name}.h" for one in (*node.structs, *node.messages)]
+    headers += [f"{node.name}/{one.name}.h" for one in node.composites]
     headers += [f"{node.name}/link.h", f"{node.name}/client.h"] if node.is_linked else []
     return {
         "about": comment(["@file", f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),

@@ -25,8 +25,10 @@ def declared_names(description: Description, package: str) -> Iterator[Identifie
         for owner in map(description.node, (*description.icd.included(node.model), node.model)):
             for one in owner.messages:
                 yield one.identifier(f"module {within}", names.class_name(one))
-            for one in (*owner.enums, *owner.structs):
-                yield one.identifier(f"module {within}", names.class_name(one))
+            for enum in owner.enums:
+                yield enum.identifier(f"module {within}", names.class_name(enum))
+            for struct in owner.structs:
+                yield struct.identifier(f"module {within}", names.class_name(struct))
         for struct in node.structs:
             yield struct.identifier(f"files of {within}", names.module_name(struct))
             yield from _fields(struct, f"members of {within}.{names.class_name(struct)}")

@@ -19,8 +19,9 @@ def values(message: MessageDescription) -> dict[str, object]:
 
 def shared(one: Composite[Any]) -> dict[str, object]:
     """The enumerations and structs that are imported for a message or a struct, and the constants of its fields."""
+    used_by: tuple[EnumDescription | StructDescription, ...] = (*one.enums, *one.structs)
     return {
-        "imports": sorted(_import(used, one) for used in (*one.enums, *one.structs)),
+        "imports": sorted(_import(used, one) for used in used_by),
         "constants": [(constant, number(constant.value)) for field in one.all_members for constant in field.constants],
     }
 

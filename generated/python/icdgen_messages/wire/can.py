@@ -9,7 +9,9 @@ from .._errors import RangeError
 from .errors import TooLongError, need
 from .link import Can, CanKind, Extended, Link
 
-Found = Literal["message", "duplicate", "incomplete", "malformed", "busy", "unknown_type"]
+Found = Literal[
+    "message", "duplicate", "incomplete", "malformed", "busy", "unknown_type"
+]
 _WITH_DATA = ("telecommand", "reply")
 
 
@@ -90,7 +92,9 @@ def _identifier(can: Can, type: int, message: CanMessage) -> int:
 class _Joining:
     """A message of several packets; also after it is complete, to know duplicates."""
 
-    def __init__(self, message: CanMessage, count: int, length: Optional[int], now: float) -> None:
+    def __init__(
+        self, message: CanMessage, count: int, length: Optional[int], now: float
+    ) -> None:
         self.message, self.count, self.length = message, count, length
         self.last = now
         self.pieces: dict[int, bytes] = {}
@@ -124,19 +128,29 @@ class CanJoiner:
     messages at once.
     """
 
-    def __init__(self, link: Link, address: Optional[int] = None, senders: int = 4) -> None:
+    def __init__(
+        self, link: Link, address: Optional[int] = None, senders: int = 4
+    ) -> None:
         self._link, self._can = link, need(link.can, "can")
         self._address, self._senders = address, senders
         self._open: dict[tuple[int, int, int, int], _Joining] = {}
-        self._kinds: dict[int, CanKind] = {number: kind for kind, number in self._can.types.items()}
-        self._extended_kinds: dict[int, CanKind] = {number: kind for kind, number in self._can.extended_types.items()}
+        self._kinds: dict[int, CanKind] = {
+            number: kind for kind, number in self._can.types.items()
+        }
+        self._extended_kinds: dict[int, CanKind] = {
+            number: kind for kind, number in self._can.extended_types.items()
+        }
 
     def expire(self, now: float) -> list[CanEvent]:
         """Gives up what has waited too long for its next packet."""
         form = self._can.extended
         if form is None or not self._open:
             return []
-        late = [key for key, joining in self._open.items() if now - joining.last >= form.packet_timeout]
+        late = [
+            key
+            for key, joining in self._open.items()
+            if now - joining.last >= form.packet_timeout
+        ]
         return [event for key in late for event in self._give_up(key)]
 
     def feed(self, now: float, packet: CanPacket) -> list[CanEvent]:

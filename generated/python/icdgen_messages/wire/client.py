@@ -309,7 +309,9 @@ class Client:
         except IcdError:
             return [Malformed(form.telemetry), *self._pause(now)]
         told = self.link.TELEMETRY[form.telemetry].from_bytes(frame)
-        if getattr(told, form.id) != self._asked.id or not getattr(told, form.processed):
+        if getattr(told, form.id) != self._asked.id or not getattr(
+            told, form.processed
+        ):
             return self._pause(now)
         code = int(getattr(told, form.error))
         if code == self.link.errors.get("none", 0):
@@ -365,7 +367,9 @@ class Client:
         self._end(now, self._attempts > 1)
         return [Done(id, self._attempts, frame, message)]
 
-    def _refused(self, now: float, code: Optional[int], parameter: Optional[int] = None) -> list[Event]:
+    def _refused(
+        self, now: float, code: Optional[int], parameter: Optional[int] = None
+    ) -> list[Event]:
         """The node refused it. After a wrong checksum it is sent again."""
         codes = {number: role for role, number in self.link.errors.items()}
         reason = None if code is None else codes.get(code)

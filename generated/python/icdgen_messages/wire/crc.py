@@ -17,7 +17,11 @@ class Crc:
     def __init__(self, form: CrcForm, table: bool = True) -> None:
         self._form = form
         self._is_fed = False
-        self._register = _reversed(form.init, form.width) if form.reflect_in else form.init << _padding(form)
+        self._register = (
+            _reversed(form.init, form.width)
+            if form.reflect_in
+            else form.init << _padding(form)
+        )
         self._rows = _table(form) if table else None
         self._is_known = table and form[:4] == (16, 0x1021, form.init, False)
 

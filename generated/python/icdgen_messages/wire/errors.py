@@ -29,7 +29,9 @@ class ChecksumError(IcdError):
     """The checksum of a frame is ``actual``, and should be ``expected``."""
 
     def __init__(self, expected: int, actual: int) -> None:
-        super().__init__(f"the checksum is {actual:#x}, of the data it is {expected:#x}")
+        super().__init__(
+            f"the checksum is {actual:#x}, of the data it is {expected:#x}"
+        )
         self.expected, self.actual = expected, actual
 
     def __reduce__(self) -> tuple[type[ChecksumError], tuple[int, int]]:

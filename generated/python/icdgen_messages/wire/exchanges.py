@@ -63,7 +63,9 @@ class Exchanges:
                 self._tell(event)
         return events
 
-    def _exchange(self, start: Callable[..., list[Event]], *arguments: Any) -> Exchange[Outcome]:
+    def _exchange(
+        self, start: Callable[..., list[Event]], *arguments: Any
+    ) -> Exchange[Outcome]:
         """A request, which a method of the client begins, to its outcome."""
         try:
             events = start(self._now(), *arguments)
@@ -76,7 +78,9 @@ class Exchanges:
         finally:
             self.client.cancel()  # else a port that fails leaves it busy
 
-    def _procedure(self, procedure: P, progress: Optional[Progress] = None) -> Exchange[P]:
+    def _procedure(
+        self, procedure: P, progress: Optional[Progress] = None
+    ) -> Exchange[P]:
         """A procedure to its end. Raises `FailedError`."""
         try:
             return (yield from self._driven(procedure, progress))

@@ -28,4 +28,6 @@ def identify(link: Link, data: Buffer) -> Identity:
     type = int(getattr(frame, step.fields["node_type"]))
     version = int(getattr(frame, step.fields["interface_version"]))
     is_type = link.node_type in (None, type)
-    return Identity(type, version, is_type and link.interface_version in (None, version))
+    return Identity(
+        type, version, is_type and link.interface_version in (None, version)
+    )

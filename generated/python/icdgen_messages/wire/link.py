@@ -11,7 +11,9 @@ from typing import Literal, NamedTuple, Optional, Union
 from .._lazy import Messages
 
 Bus = Literal["uart", "i2c", "can"]
-CanKind = Literal["telecommand", "acknowledge", "refusal", "request", "reply", "request_refusal"]
+CanKind = Literal[
+    "telecommand", "acknowledge", "refusal", "request", "reply", "request_refusal"
+]
 Number = Union[int, float]
 
 

@@ -160,7 +160,9 @@ def _selected(layout: LogMask, mask: bytes) -> list[LogBit]:
     return layout.selected(mask)
 
 
-def _pieces(slots: Sequence[LogBit], layout: LogMask, start: int) -> list[tuple[int, Optional[int], int, int]]:
+def _pieces(
+    slots: Sequence[LogBit], layout: LogMask, start: int
+) -> list[tuple[int, Optional[int], int, int]]:
     """Bit, id, begin and end of each frame."""
     pieces = []
     for number, slot in enumerate(slots):
@@ -169,8 +171,15 @@ def _pieces(slots: Sequence[LogBit], layout: LogMask, start: int) -> list[tuple[
     return pieces
 
 
-def _frames(pieces: Sequence[tuple[int, Optional[int], int, int]], data: bytes, start: int) -> tuple[LogFrame, ...]:
-    return tuple([LogFrame(bit, id, data[start + begin : start + end]) for bit, id, begin, end in pieces])
+def _frames(
+    pieces: Sequence[tuple[int, Optional[int], int, int]], data: bytes, start: int
+) -> tuple[LogFrame, ...]:
+    return tuple(
+        [
+            LogFrame(bit, id, data[start + begin : start + end])
+            for bit, id, begin, end in pieces
+        ]
+    )
 
 
 def _filled(link: Link, slots: Sequence[LogBit], frames: Iterable[bytes]) -> bytes:

@@ -13,7 +13,9 @@ from .errors import need
 from .events import AnyDone, Done, Event, Outcome, Packet, Refused, Timeout
 from .link import Link, Step
 
-Result = Literal["done", "refused", "timeout", "parameter", "length", "rounds", "checksum", "error"]
+Result = Literal[
+    "done", "refused", "timeout", "parameter", "length", "rounds", "checksum", "error"
+]
 
 
 class Wait(NamedTuple):
@@ -106,7 +108,9 @@ class Procedure:
         except Ended as end:
             self.result = end.result
 
-    def _telecommand(self, step: Step, values: Optional[Values] = None, repeat: bool = True) -> Request:
+    def _telecommand(
+        self, step: Step, values: Optional[Values] = None, repeat: bool = True
+    ) -> Request:
         """The telecommand of a step: a fresh message with values by role."""
         id = need(step.telecommand, "telecommand")
         message = self.link.TELECOMMANDS[id]()
@@ -134,7 +138,9 @@ class Procedure:
         """Sends the telecommand of a step, which must be executed."""
         yield from self._must(self._telecommand(step, values, repeat))
 
-    def _frame(self, step: Step) -> Generator[Wanted, Optional[Outcome], tuple[Values, bytes]]:
+    def _frame(
+        self, step: Step
+    ) -> Generator[Wanted, Optional[Outcome], tuple[Values, bytes]]:
         """The frame of a step: its values by role, and its bytes."""
         id = need(step.telemetry, "telemetry")
         done = yield from self._must(Request("telemetry", id, repeat=True))

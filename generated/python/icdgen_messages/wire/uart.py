@@ -68,7 +68,8 @@ def uart_kind(link: Link, message: bytes) -> Kind:
 def _whole(framing: Framing) -> re.Pattern[bytes]:
     """Finds a message that is whole: its id if that is not escaped, and the rest."""
     escape, start, end, escaped = (
-        re.escape(bytes((byte,))) for byte in (framing.escape, framing.start, framing.end, framing.escaped)
+        re.escape(bytes((byte,)))
+        for byte in (framing.escape, framing.start, framing.end, framing.escaped)
     )
     id = b"()" if framing.escapes_id else b"(.)"
     plain = b"[^" + escape + b"]*"
@@ -188,7 +189,9 @@ class UartDecoder:
         self.pending, self._is_inside, self._is_escaped = 2, True, False
         self._buffer.clear()
 
-    def _drop(self, event: UartEvent, events: list[UartEvent], is_escape: bool = False) -> None:
+    def _drop(
+        self, event: UartEvent, events: list[UartEvent], is_escape: bool = False
+    ) -> None:
         events.append(event)
         self._leave(is_escape)
 

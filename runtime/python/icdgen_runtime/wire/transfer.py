@@ -50,11 +50,15 @@ class FileList(FileProcedure):
         form, last, repeated = self._form, b"", 0
         yield from self._order(form.reset)
         while True:
-            values, frame = yield from self._poll(form.information, "busy", False, form.poll_interval, form.timeout)
+            values, frame = yield from self._poll(
+                form.information, "busy", False, form.poll_interval, form.timeout
+            )
             if not any(frame):
                 return
             if frame != last:
-                known = {role: values[role] for role in FileEntry._fields if role in values}
+                known = {
+                    role: values[role] for role in FileEntry._fields if role in values
+                }
                 self.entries.append(FileEntry(**{r: int(v) for r, v in known.items()}))
                 repeated = 0
             elif repeated > self.link.settings.retries:
@@ -90,7 +94,9 @@ class Download(FileProcedure):
         """Offset and data of what was delivered."""
         self._bus = bus
         self._file = {"type": type, "counter": counter}
-        self._block_bytes = min(block or self._files.block_bytes, self._files.block_bytes)
+        self._block_bytes = min(
+            block or self._files.block_bytes, self._files.block_bytes
+        )
         self._offset = 0
         self._got: dict[int, bytes] = {}
         self._count = 0  # packets of the block
@@ -155,7 +161,9 @@ class Download(FileProcedure):
         place = {**self._file, "offset": self._offset, "length": length}
         form = self._form
         yield from self._order(form.load, place)
-        ready, _ = yield from self._poll(form.ready, "ready", True, form.poll_interval, form.ready_timeout)
+        ready, _ = yield from self._poll(
+            form.ready, "ready", True, form.poll_interval, form.ready_timeout
+        )
         if ready["error"]:
             raise Ended("parameter")
         return ready
@@ -185,7 +193,9 @@ class Download(FileProcedure):
 
     def _fetch(self, packets: int) -> Steps:
         """Requests so many packets one by one."""
-        id = need(self._files.packet_ids.get(self._bus), f"file_transfer.download.{self._bus}")
+        id = need(
+            self._files.packet_ids.get(self._bus), f"file_transfer.download.{self._bus}"
+        )
         for _ in range(packets):
             outcome = yield from self._ask(Request("telemetry", id, repeat=True))
             if isinstance(outcome, Done):
@@ -198,7 +208,9 @@ class Download(FileProcedure):
         first = self._files.first_packet
         received = [first + position for position in self._got]
         pieces = HoleMap(self.link, self._count, received).messages()
-        for id, piece in zip(form.telecommands, pieces[: _maps(self.link, self._count)]):
+        for id, piece in zip(
+            form.telecommands, pieces[: _maps(self.link, self._count)]
+        ):
             message = self.link.TELECOMMANDS[id]()
             setattr(message, form.attribute, piece)
             data = message.to_bytes()
@@ -212,7 +224,9 @@ class Upload(FileProcedure):
     holds less, and `UnsupportedError`.
     """
 
-    def __init__(self, link: Link, destination: int, data: bytes, block: Optional[int] = None) -> None:
+    def __init__(
+        self, link: Link, destination: int, data: bytes, block: Optional[int] = None
+    ) -> None:
         super().__init__(link)
         form = self._form = need(self._files.upload, "file_transfer.upload")
         known = form.destinations
@@ -223,7 +237,9 @@ class Upload(FileProcedure):
             raise TooLongError(most, len(data))
         self.sent = 0
         self._destination, self._data = destination, data
-        self._block_bytes = min(block or self._files.block_bytes, self._files.block_bytes)
+        self._block_bytes = min(
+            block or self._files.block_bytes, self._files.block_bytes
+        )
 
     @property
     def progress(self) -> tuple[int, Optional[int]]:
@@ -236,7 +252,9 @@ class Upload(FileProcedure):
         }
         form = self._form
         yield from self._order(form.initiate, values)
-        yield from self._poll(form.initiated, "busy", False, form.poll_interval, form.erase_timeout)
+        yield from self._poll(
+            form.initiated, "busy", False, form.poll_interval, form.erase_timeout
+        )
         while self.sent < len(self._data):
             data = self._data[self.sent : self.sent + self._block_bytes]
             yield from self._block(data)
@@ -288,14 +306,18 @@ class Upload(FileProcedure):
         }
         form = self._form
         yield from self._order(form.finalize, values)
-        told, _ = yield from self._poll(form.finalized, "busy", False, form.poll_interval, form.finalize_timeout)
+        told, _ = yield from self._poll(
+            form.finalized, "busy", False, form.poll_interval, form.finalize_timeout
+        )
         return not told["error"]
 
 
 class Erase(FileProcedure):
     """Deletes a file, or all files: then it is done when the node is no longer busy."""
 
-    def __init__(self, link: Link, type: int = 0, counter: int = 0, all: bool = False) -> None:
+    def __init__(
+        self, link: Link, type: int = 0, counter: int = 0, all: bool = False
+    ) -> None:
         super().__init__(link)
         self._form = need(self._files.erase, "file_transfer.erase")
         self._values = {"type": type, "counter": counter, "all": all}
@@ -304,7 +326,9 @@ class Erase(FileProcedure):
         form = self._form
         yield from self._order(form.request, self._values)
         if self._values["all"]:
-            yield from self._poll(form.progress, "busy", False, form.poll_interval, form.timeout)
+            yield from self._poll(
+                form.progress, "busy", False, form.poll_interval, form.timeout
+            )
 
 
 class Format(FileProcedure):
@@ -317,7 +341,9 @@ class Format(FileProcedure):
     def _run(self) -> Steps:
         form = self._form
         yield from self._order(form.request)
-        yield from self._poll(form.progress, "busy", False, form.poll_interval, form.timeout)
+        yield from self._poll(
+            form.progress, "busy", False, form.poll_interval, form.timeout
+        )
 
 
 def _maps(link: Link, packets: int) -> int:
