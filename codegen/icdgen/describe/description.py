@@ -4,21 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cached_property
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 from icdgen import layout, naming
 from icdgen.describe import steps
 from icdgen.describe.bounds import Bound, bounds
 from icdgen.describe.comments import Comment, field_comment, message_comment, struct_comment, words
 from icdgen.describe.constants import Constant, constants
-from icdgen.describe.enums import EnumDescription, enum_widths
+from icdgen.describe.enums import EnumDescription
 from icdgen.describe.errata import Thing, tellers, told_elsewhere
 from icdgen.describe.named import Named
-from icdgen.describe.storage import Storage, holding, storage_of
+from icdgen.describe.storage import Storage, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Enum, Field, Icd, Message, Node, Struct
 from icdgen.icd.paths import Step, placed
+
+
+class Whole(Protocol):
+    """The set of ICDs that all of this describes: `icdgen.describe.whole.Description`."""
+
+    icd: Icd
+
+    @property
+    def id_bits(self) -> int: ...
+
+    def node(self, node: str | Node) -> NodeDescription: ...
+
+    def message(self, message: Message) -> MessageDescription: ...
+
+    def struct(self, struct: Struct) -> StructDescription: ...
+
+    def enum(self, enum: Enum) -> EnumDescription: ...
 
 
 class FieldDescription(Named[Field]):
@@ -180,13 +197,13 @@ class Id(NamedTuple):
     comment: str
 
 
-Whole = TypeVar("Whole", bound=Message | Struct)
+Fielded = TypeVar("Fielded", bound=Message | Struct)
 
 
-class Composite(Named[Whole]):
+class Composite(Named[Fielded]):
     """What has fields: a message, or a struct, that ``node`` declares."""
 
-    def __init__(self, description: Description, model: Whole, node: Node, what: str) -> None:
+    def __init__(self, description: Whole, model: Fielded, node: Node, what: str) -> None:
         super().__init__(model, node.vocabulary, f"{what} `{model.name}`")
         self._description, self.node = description, node
 
@@ -282,7 +299,7 @@ def _wholes(fields: Iterable[FieldDescription]) -> Iterator[FieldDescription]:
 class StructDescription(Composite[Struct]):
     """A struct."""
 
-    def __init__(self, description: Description, struct: Struct, node: Node) -> None:
+    def __init__(self, description: Whole, struct: Struct, node: Node) -> None:
         super().__init__(description, struct, node, "struct")
 
     @cached_property
@@ -298,7 +315,7 @@ class StructDescription(Composite[Struct]):
 class MessageDescription(Composite[Message]):
     """A message."""
 
-    def __init__(self, description: Description, message: Message, node: Node) -> None:
+    def __init__(self, description: Whole, message: Message, node: Node) -> None:
         super().__init__(description, message, node, "message")
 
     @cached_property
@@ -347,7 +364,7 @@ class Direction(NamedTuple):
 class NodeDescription:
     """A node (``model``) of the set."""
 
-    def __init__(self, description: Description, node: Node) -> None:
+    def __init__(self, description: Whole, node: Node) -> None:
         self._description, self.model, self.name = description, node, node.name
 
     def identifier(self, scope: str, name: str) -> Identifier:
@@ -412,62 +429,3 @@ class NodeDescription:
     def log_bits(self) -> dict[int, int]:
         """Telemetry id -> the bit of the log mask that selects it."""
         return {row.id: row.bit for row in self.model.loggable}
-
-
-class Description:
-    """A set of ICDs. ``nodes`` stand in the order of the set: each after those that it includes."""
-
-    def __init__(self, icd: Icd) -> None:
-        self.icd = icd
-        self._enum_bits = enum_widths(icd)
-        self._messages: dict[tuple[str, str], MessageDescription] = {}
-        self._enums: dict[tuple[str, str], EnumDescription] = {}
-        self._structs: dict[tuple[str, str], StructDescription] = {}
-        self._nodes = {node.name: NodeDescription(self, node) for node in icd.nodes}
-        self.nodes = tuple(self._nodes.values())
-
-    @cached_property
-    def id_bits(self) -> int:
-        """8, 16 or 32: bits of the integer that holds every id of the set."""
-        used = (id.bit_length() for node in self.icd.nodes for message in node.messages for id in message.ids)
-        return holding(max((*(node.id_bits for node in self.icd.nodes), *used), default=8))
-
-    def node(self, node: str | Node) -> NodeDescription:
-        """The description of a node, by its name or of the node itself. Raises `KeyError`."""
-        return self._nodes[node if isinstance(node, str) else node.name]
-
-    def message(self, message: Message) -> MessageDescription:
-        """The description of a message, whoever speaks it."""
-        key = message.node, message.name
-        found = self._messages.get(key)
-        if found is None or found.model is not message:
-            found = self._messages[key] = MessageDescription(self, message, self.icd.node(message.node))
-        return found
-
-    def struct(self, struct: Struct) -> StructDescription:
-        """The description of a struct, whoever uses it."""
-        key = struct.node, struct.name
-        found = self._structs.get(key)
-        if found is None or found.model is not struct:
-            found = self._structs[key] = StructDescription(self, struct, self.icd.node(struct.node))
-        return found
-
-    def enum(self, enum: Enum) -> EnumDescription:
-        """The description of an enumeration, whoever uses it."""
-        key = enum.node, enum.name
-        found = self._enums.get(key)
-        if found is None or found.model is not enum:
-            found = self._enums[key] = EnumDescription(enum, self.icd.node(enum.node), self._enum_bits[key])
-        return found
-
-
-_kept: list[Description] = []
-
-
-def describe(icd: Icd) -> Description:
-    """The description of a set of ICDs. The last ones are kept, so that the backends of one run share theirs."""
-    for known in _kept:
-        if known.icd is icd:
-            return known
-    _kept[:] = [*_kept[-1:], Description(icd)]
-    return _kept[-1]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from math import prod
-from typing import TYPE_CHECKING
+from typing import Any, TypeAlias
 
-if TYPE_CHECKING:
-    from icdgen.icd.model import Field, Struct
+Field: TypeAlias = Any  # those of the model, which imports this
+Struct: TypeAlias = Any
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ def _is_first(field: Field) -> bool:
     if step.member is None or step.struct is None:
         return not step.index
     first = step.struct.fields[0]
-    return field.name == f"{step.text}.{first.name}" and field.at == step.member.at + first.at
+    return bool(field.name == f"{step.text}.{first.name}" and field.at == step.member.at + first.at)
 
 
 def _declared(field: Field) -> Field:

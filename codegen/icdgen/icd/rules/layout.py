@@ -226,7 +226,7 @@ def reserved_end(ctx: Context) -> Iterator[Fault]:
 def undescribed_end(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         covered = covered_bytes(message)
-        if covered + message.reserved < message.length:
+        if covered + message.reserved < message.length and _is_read(message):
             left = message.length - covered - message.reserved
             what = "the fields describe" if message.fields else "there are no fields:"
             rest = f"{what} {covered:,}" if message.fields else f"{what} what stands in them is unknown"

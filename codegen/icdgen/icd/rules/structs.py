@@ -106,8 +106,12 @@ def struct_names(ctx: Context) -> Iterator[Fault]:
 @rule("ICD144", severity="warning", whole=True)
 def struct_used(ctx: Context) -> Iterator[Fault]:
     used, names = {id(field.struct) for field, _, _ in ctx.members}, [struct.name for struct, _ in ctx.structs]
+    meant = set()
+    for row, _, node in _uses(ctx):  # of a slip of the pen; the one that is meant is used
+        known = [struct.name for n in ctx.scope(node) for struct in n.structs]
+        meant |= set() if row["struct"] in known else {close_to(row["struct"], known)}
     for struct, _ in ctx.structs:
-        if id(struct) not in used and names.count(struct.name) == 1:
+        if id(struct) not in used and names.count(struct.name) == 1 and struct.name not in meant:
             message = f"no message uses the struct {quote(struct.name)}"
             yield Fault(struct.source, struct.source.at("name"), message, "use or remove it")
 
