@@ -24,15 +24,15 @@
 typedef struct {
     /**
      * Source Program Index: bits 0 to 7.
-     * @note Note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense. The source may be the
-     * internal program itself or the bootloader. The result is not described.
+     * @note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense. The source may be the internal
+     * program itself or the bootloader. The result is not described.
      */
     bootloader_programs_list_t source_program_index;
     /**
      * Bootloader overwrite flag: bits 8 to 15, raw 0 to 255. To be used with great caution. 90 (0x5A): overwrite the
      * boot segment.
-     * @note Note BOOT-012 (likely): Bootloader overwrite flag is a magic number. A field of 8 bits is called a flag and
-     * acts at one value. Which value to send otherwise is not said; anything else is assumed to leave the boot segment
+     * @note BOOT-012 (likely): Bootloader overwrite flag is a magic number. A field of 8 bits is called a flag and acts
+     * at one value. Which value to send otherwise is not said; anything else is assumed to leave the boot segment
      * alone.
      */
     uint8_t overwrite;

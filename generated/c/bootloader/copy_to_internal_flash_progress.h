@@ -6,10 +6,10 @@
 /**
  * @file
  * Copy To Internal Flash Progress: telemetry 233, 1 byte. Table 71.
- * @note Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The two programs
- * answer on the same buses and addresses. These ids are a different message in each, of another length in three cases,
- * so who is answering must be known first.
- * @note Note BOOT-020 (open): Progress frame without progress. The frame tells busy and error, not how far the copy has
+ * @note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The two programs answer
+ * on the same buses and addresses. These ids are a different message in each, of another length in three cases, so who
+ * is answering must be known first.
+ * @note BOOT-020 (open): Progress frame without progress. The frame tells busy and error, not how far the copy has
  * come; and no time-out is suggested for it, although 2 s are for reading.
  */
 

@@ -8,9 +8,9 @@
  * Run Selected Program: telecommand 101, 0 bytes. Table 64.
  * Starts the program in internal flash at once.
  * The node restarts instead of acknowledging it.
- * @note Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere. Its name refers to a
- * selection, the text to the internal flash program. What it does to the boot status, and whether it is acknowledged
- * before the program starts, is not said.
+ * @note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere. Its name refers to a selection,
+ * the text to the internal flash program. What it does to the boot status, and whether it is acknowledged before the
+ * program starts, is not said.
  */
 
 #include "../icdgen.h"

@@ -21,7 +21,7 @@
 typedef struct {
     /**
      * Program Index: bits 0 to 7.
-     * @note Note BOOT-007 (certain): Set Boot Index selects among one. The telecommand is to choose a program, but its
+     * @note BOOT-007 (certain): Set Boot Index selects among one. The telecommand is to choose a program, but its
      * enumeration has one member and the text forbids others. Its use is a side effect that the table does not mention:
      * it sets the boot status back.
      */

@@ -7,7 +7,7 @@
  * @file
  * Advance File List Read Pointer: telecommand 113, 0 bytes. Table 18.
  * Makes File Information describe the next file.
- * @note Note COM-040 (certain): A flow diagram is referred to without its number. The process is described by the flow
+ * @note COM-040 (certain): A flow diagram is referred to without its number. The process is described by the flow
  * diagram in nothing; figure 14 is meant.
  */
 

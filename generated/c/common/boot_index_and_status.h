@@ -21,8 +21,8 @@
 typedef struct {
     /**
      * Program Index: bits 0 to 7.
-     * @note Note COM-069 (open): Program Index of the boot status can be the bootloader. The frame shows which program
-     * is selected to boot, with an enumeration that has the bootloader; only the internal program can be selected.
+     * @note COM-069 (open): Program Index of the boot status can be the bootloader. The frame shows which program is
+     * selected to boot, with an enumeration that has the bootloader; only the internal program can be selected.
      */
     common_boot_programs_list_t program_index;
     /** Boot Status: bits 8 to 15. */

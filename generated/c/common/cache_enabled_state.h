@@ -21,8 +21,8 @@
 typedef struct {
     /**
      * Enabled state: bit 0.
-     * @note Note COM-108 (open): Cache enabled state: which cache, and the default. The setting switches a cache that
-     * the manual does not mention anywhere else.
+     * @note COM-108 (open): Cache enabled state: which cache, and the default. The setting switches a cache that the
+     * manual does not mention anywhere else.
      */
     bool enabled_state;
 } common_cache_enabled_state_t;

@@ -7,8 +7,8 @@
  * @file
  * Download Block Ready: telemetry 242, 5 bytes. Table 42.
  * Whether the block asked for by Load File Download Block is in the buffer.
- * @note Note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be polled, and when
- * to give up, is not said. For files a time is suggested for two of the operations only.
+ * @note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be polled, and when to
+ * give up, is not said. For files a time is suggested for two of the operations only.
  */
 
 #include "../icdgen.h"
@@ -24,9 +24,9 @@ typedef struct {
     bool ready;
     /**
      * ParameterError: bit 1. Message length and hole map together led to invalid array lengths.
-     * @note Note COM-097 (open): ParameterError refers to arrays that no message has. The combination of message length
-     * and hole map is said to have led to invalid array lengths. Which combinations do is not said, and the download
-     * text does not mention the flag.
+     * @note COM-097 (open): ParameterError refers to arrays that no message has. The combination of message length and
+     * hole map is said to have led to invalid array lengths. Which combinations do is not said, and the download text
+     * does not mention the flag.
      */
     bool parameter_error;
     /** Block CRC16 Checksum: bits 8 to 23, raw 0 to 65535. */

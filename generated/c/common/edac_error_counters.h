@@ -22,14 +22,14 @@ typedef struct {
     uint16_t single_sram_upsets;
     /**
      * Double SRAM upsets: bits 16 to 31, raw 0 to 65535. Counted per byte.
-     * @note Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been. The frame is said to count
-     * errors that were detected and corrected. It has counters for double and multiple upsets in a byte, which such a
-     * code detects at best.
+     * @note COM-077 (likely): EDAC: errors counted as corrected cannot all have been. The frame is said to count errors
+     * that were detected and corrected. It has counters for double and multiple upsets in a byte, which such a code
+     * detects at best.
      */
     uint16_t double_sram_upsets;
     /**
      * Multiple SRAM upsets: bits 32 to 47, raw 0 to 65535. Counted per byte.
-     * @note Note COM-077 (likely): see Double SRAM upsets.
+     * @note COM-077 (likely): see Double SRAM upsets.
      */
     uint16_t multiple_sram_upsets;
 } common_edac_error_counters_t;

@@ -8,8 +8,8 @@
  * Erase File: telecommand 108, 3 bytes. Table 15.
  * Deletes one file of the SD card or all of them. Erasing all takes some time: see SD card format/erase progress.
  * Dangerous: The file is lost; all files are with Erase All.
- * @note Note COM-034 (open): Erase File: what the other fields mean with Erase All. With the flag set all files go;
- * whether type and counter must still be valid, or limit the erasing to one type, is not said.
+ * @note COM-034 (open): Erase File: what the other fields mean with Erase All. With the flag set all files go; whether
+ * type and counter must still be valid, or limit the erasing to one type, is not said.
  */
 
 #include "../icdgen.h"
@@ -26,8 +26,8 @@ typedef struct {
     common_file_type_t file_type;
     /**
      * File Counter: bits 8 to 15, raw 0 to 255.
-     * @note Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with the next one is
-     * not said.
+     * @note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with the next one is not
+     * said.
      */
     uint8_t file_counter;
     /** Erase All: bit 16. All files instead of this one. */

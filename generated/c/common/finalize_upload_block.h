@@ -7,12 +7,12 @@
  * @file
  * Finalize Upload Block: telecommand 116, 7 bytes. Table 22.
  * Commits the received block to its destination.
- * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
+ * @note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
  * upload are in the list common to both programs, the procedure belongs to the bootloader. Whether the ACP answers
  * them, refuses them, or uploads somewhere is not said.
- * @note Note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text ends with the checksum
- * test before the block is committed. The telecommand that commits it and the frame that reports it are never named;
- * both stood in a figure at best.
+ * @note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text ends with the checksum test
+ * before the block is committed. The telecommand that commits it and the frame that reports it are never named; both
+ * stood in a figure at best.
  */
 
 #include "../icdgen.h"

@@ -25,11 +25,11 @@ typedef struct {
     common_file_type_t file_type;
     /**
      * Counter: bits 8 to 15, raw 0 to 255. Of the file: with the type it identifies the file.
-     * @note Note COM-029 (certain): One field, several spellings. The same things are written Magic number and Magic
-     * Number, BlockLength and Block Length, File bytes and File Bytes, File Counter, Counter and File Ctr, and Checksum
-     * with and without CRC16. Names are held as printed.
-     * @note Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with the next one is
-     * not said.
+     * @note COM-029 (certain): One field, several spellings. The same things are written Magic number and Magic Number,
+     * BlockLength and Block Length, File bytes and File Bytes, File Counter, Counter and File Ctr, and Checksum with
+     * and without CRC16. Names are held as printed.
+     * @note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with the next one is not
+     * said.
      */
     uint8_t counter;
     /**
@@ -39,9 +39,10 @@ typedef struct {
      */
     uint32_t offset;
     /**
-     * BlockLength: bits 48 to 63, raw 0 to 65535, in byte. 20 kB at most. Must be at most 20480 byte.
+     * BlockLength: bits 48 to 63, raw 0 to 65535, in byte. 20 kB at most. Must be at most 20480 byte, which setters do
+     * not check.
      * @note Erratum COM-039 (likely): see Offset.
-     * @note Note COM-029 (certain): see Counter.
+     * @note COM-029 (certain): see Counter.
      */
     uint16_t block_length;
 } common_load_file_download_block_t;

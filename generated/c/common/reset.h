@@ -9,8 +9,8 @@
  * Restarts the CubeComputer.
  * Dangerous: The program that runs is stopped, and what it has not saved is lost. The node restarts instead of
  * acknowledging it.
- * @note Note COM-028 (open): The Reset telecommand: acknowledged or not. Every telecommand is acknowledged, but this
- * one restarts the program that would do it. Whether the reply comes first is not said.
+ * @note COM-028 (open): The Reset telecommand: acknowledged or not. Every telecommand is acknowledged, but this one
+ * restarts the program that would do it. Whether the reply comes first is not said.
  */
 
 #include "../icdgen.h"
@@ -26,9 +26,9 @@
 typedef struct {
     /**
      * Magic number: bits 0 to 7, raw 0 to 255. Guards against an accidental reset. Always 90 (0x5A).
-     * @note Note COM-029 (certain): One field, several spellings. The same things are written Magic number and Magic
-     * Number, BlockLength and Block Length, File bytes and File Bytes, File Counter, Counter and File Ctr, and Checksum
-     * with and without CRC16. Names are held as printed.
+     * @note COM-029 (certain): One field, several spellings. The same things are written Magic number and Magic Number,
+     * BlockLength and Block Length, File bytes and File Bytes, File Counter, Counter and File Ctr, and Checksum with
+     * and without CRC16. Names are held as printed.
      */
     uint8_t magic_number;
 } common_reset_t;

@@ -21,8 +21,8 @@
 typedef struct {
     /**
      * Scrub Size: bits 0 to 15, raw 0 to 65535.
-     * @note Note COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit. The message has one field,
-     * described as a size. Bytes, words or blocks per cycle are all possible, and the cycle is not given.
+     * @note COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit. The message has one field, described as
+     * a size. Bytes, words or blocks per cycle are all possible, and the cycle is not given.
      */
     uint16_t scrub_size;
 } common_sram_scrub_parameters_t;

@@ -7,8 +7,8 @@
  * @file
  * Unix Time Save to Flash: configuration, set by telecommand 9, got by telemetry 145, 2 bytes. Table 51.
  * When the Unix time is kept in flash, so that it survives a power cycle.
- * @note Note COM-112 (certain): Unix Time Save to Flash is described in two spellings. The list has Unix time, the
- * table unixtime.
+ * @note COM-112 (certain): Unix Time Save to Flash is described in two spellings. The list has Unix time, the table
+ * unixtime.
  */
 
 #include "../icdgen.h"
@@ -24,8 +24,8 @@
 typedef struct {
     /**
      * Save Now: bit 0. Saves once.
-     * @note Note COM-113 (open): Save Now is an action among settings. The message is a setting that can be read back.
-     * What the action bit reads as, and whether a set with it changes the other bits, is not said.
+     * @note COM-113 (open): Save Now is an action among settings. The message is a setting that can be read back. What
+     * the action bit reads as, and whether a set with it changes the other bits, is not said.
      */
     bool save_now;
     /** Save On Update: bit 1. Saves whenever the time is set. */
@@ -34,8 +34,8 @@ typedef struct {
     bool save_periodic;
     /**
      * Period: bits 8 to 15, raw 0 to 255, in s.
-     * @note Note COM-114 (open): Saving period: meaning of 0. The period has 8 bits of seconds, 255 s at most. What 0
-     * does is not said.
+     * @note COM-114 (open): Saving period: meaning of 0. The period has 8 bits of seconds, 255 s at most. What 0 does
+     * is not said.
      */
     uint8_t period;
 } common_unix_time_save_to_flash_t;

@@ -15,9 +15,9 @@
  * Tracking Controller Gain Parameters from byte 310. Repeats Moment of Inertia Matrix from byte 323. Repeats Estimation
  * Parameters from byte 347. Repeats Augmented-SGP4 Parameters from byte 378. Repeats User-coded Controller and
  * Estimator Parameters from byte 408.
- * @note Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0
- * and ignored.
- * @note Note ACP-159 (open): The current configuration is not all of it. The message is described as the current
+ * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
+ * ignored.
+ * @note ACP-159 (open): The current configuration is not all of it. The message is described as the current
  * configuration. It joins 16 of the 25 others; orbit, target, attitude command, power, logs, inertial vector and system
  * configuration are not in it. Save Configuration uses the same words.
  */
@@ -48,9 +48,9 @@
 /** Bytes of a frame, without the id. */
 #define CUBEACP_ADCS_CONFIGURATION_LENGTH 504u
 /** Reference spin rate in deg/s: must be below this. */
-#define CUBEACP_ADCS_CONFIGURATION_REFERENCE_SPIN_RATE_DEG_PER_S_BELOW 0
+#define CUBEACP_ADCS_CONFIGURATION_REFERENCE_SPIN_RATE_DEG_PER_S_BELOW 0.0
 /** Reference Wheel Momentum in Nms: must be below this. */
-#define CUBEACP_ADCS_CONFIGURATION_REFERENCE_WHEEL_MOMENTUM_BELOW 0
+#define CUBEACP_ADCS_CONFIGURATION_REFERENCE_WHEEL_MOMENTUM_BELOW 0.0
 
 /** Raw values. */
 typedef struct {
@@ -82,8 +82,8 @@ typedef struct {
     int16_t z_rate_sensor_offset;
     /**
      * RateSensorMult: bits 128 to 135, raw 0 to 255. Factor on the rate sensor measurements.
-     * @note Note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8 bits; whether it is a
-     * whole factor, and of which quantity, is not said.
+     * @note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8 bits; whether it is a whole
+     * factor, and of which quantity, is not said.
      */
     uint8_t rate_sensor_mult;
     /** CSS1 Configuration: bits 136 to 143. */
@@ -128,8 +128,8 @@ typedef struct {
     uint8_t css10_relative_scale;
     /**
      * CSS Threshold: bits 296 to 303, raw 0 to 255.
-     * @note Note ACP-133 (open): CSS threshold has no description. The name is repeated; neither unit nor what lies
-     * below it is said. The message is described as directions and scale factors.
+     * @note ACP-133 (open): CSS threshold has no description. The name is repeated; neither unit nor what lies below it
+     * is said. The message is described as directions and scale factors.
      */
     uint8_t css_threshold;
     /**
@@ -460,35 +460,35 @@ typedef struct {
     int16_t star_tracker_mounting_gamma;
     /**
      * StarTracker exposure time: bits 1728 to 1743, raw 0 to 65535. Register value.
-     * @note Note ACP-145 (open): Exposure and gain are register values. Neither the register nor its scale is given, so
+     * @note ACP-145 (open): Exposure and gain are register values. Neither the register nor its scale is given, so
      * times and gains cannot be told from them.
      */
     uint16_t star_tracker_exposure_time;
     /**
      * StarTracker analog gain: bits 1744 to 1759, raw 0 to 65535. Register value.
-     * @note Note ACP-145 (open): see StarTracker exposure time.
+     * @note ACP-145 (open): see StarTracker exposure time.
      */
     uint16_t star_tracker_analog_gain;
     /**
      * StarTracker detection threshold: bits 1760 to 1767, raw 0 to 255.
-     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description. Names are repeated or a
-     * noun is missing, as in maximum of stars.
+     * @note ACP-146 (open): Thresholds and counts of the star tracker have no description. Names are repeated or a noun
+     * is missing, as in maximum of stars.
      */
     uint8_t star_tracker_detection_threshold;
     /**
      * StarTracker star threshold: bits 1768 to 1775, raw 0 to 255.
-     * @note Note ACP-146 (open): see StarTracker detection threshold.
+     * @note ACP-146 (open): see StarTracker detection threshold.
      */
     uint8_t star_tracker_star_threshold;
     /**
      * Maximum Star Matched: bits 1776 to 1783, raw 0 to 255. Most stars that are matched.
-     * @note Note ACP-146 (open): see StarTracker detection threshold.
+     * @note ACP-146 (open): see StarTracker detection threshold.
      */
     uint8_t maximum_star_matched;
     /**
      * Detection Timeout duration: bits 1784 to 1799, raw 0 to 65535.
-     * @note Note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in milliseconds; registers
-     * and pixels stand in between.
+     * @note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in milliseconds; registers and
+     * pixels stand in between.
      */
     uint16_t detection_timeout_duration;
     /** Maximum Star Pixel: bits 1800 to 1807, raw 0 to 255. Most pixels of a star. */
@@ -498,9 +498,9 @@ typedef struct {
     /**
      * Star Tracker Error Margin: bits 1816 to 1823, raw 0 to 255; physical `raw*0.01`, 0 to 2.55 %. Of the star
      * identification.
-     * @note Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit % and a factor of 0.01
-     * give steps of 0.01 % in 8 bits. If the factor already makes a fraction, as in the margins that follow without a
-     * unit, the range is 255 %.
+     * @note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit % and a factor of 0.01 give
+     * steps of 0.01 % in 8 bits. If the factor already makes a fraction, as in the margins that follow without a unit,
+     * the range is 255 %.
      */
     uint8_t star_tracker_error_margin;
     /**
@@ -523,39 +523,39 @@ typedef struct {
     float star_tracker_focal_length;
     /**
      * K1 radial distortion coefficient: bits 1936 to 1967, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain. It is kept as a plain
+     * @note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain. It is kept as a plain
      * factor; which lens model and which normalisation they belong to is not said.
      */
     float k1_radial_distortion_coefficient;
     /**
      * K2 radial distortion coefficient: bits 1968 to 1999, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): see K1 radial distortion coefficient.
+     * @note ACP-144 (certain): see K1 radial distortion coefficient.
      */
     float k2_radial_distortion_coefficient;
     /**
      * P1 tangential distortion coefficient: bits 2000 to 2031, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): see K1 radial distortion coefficient.
+     * @note ACP-144 (certain): see K1 radial distortion coefficient.
      */
     float p1_tangential_distortion_coefficient;
     /**
      * P2 tangential distortion coefficient: bits 2032 to 2063, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): see K1 radial distortion coefficient.
+     * @note ACP-144 (certain): see K1 radial distortion coefficient.
      */
     float p2_tangential_distortion_coefficient;
     /**
      * Star tracking window width: bits 2064 to 2071, raw 0 to 255.
-     * @note Note ACP-146 (open): see StarTracker detection threshold.
+     * @note ACP-146 (open): see StarTracker detection threshold.
      */
     uint8_t star_tracking_window_width;
     /**
      * Star Tracking Margin: bits 2072 to 2079, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
-     * @note Note ACP-143 (open): Margins and search width have no unit. Factors are given, units are not; pixels,
-     * fractions and degrees are all possible.
+     * @note ACP-143 (open): Margins and search width have no unit. Factors are given, units are not; pixels, fractions
+     * and degrees are all possible.
      */
     uint8_t star_tracking_margin;
     /**
      * Star Validation Margin: bits 2080 to 2087, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
-     * @note Note ACP-143 (open): see Star Tracking Margin.
+     * @note ACP-143 (open): see Star Tracking Margin.
      */
     uint8_t star_validation_margin;
     /** Star Tracking Module Enable: bit 2088. */
@@ -564,7 +564,7 @@ typedef struct {
     bool star_tracking_location_prediction_enable;
     /**
      * Star Tracking Search Width: bits 2096 to 2103, raw 0 to 255; physical `raw/5.0`, 0 to 51.
-     * @note Note ACP-143 (open): see Star Tracking Margin.
+     * @note ACP-143 (open): see Star Tracking Margin.
      */
     uint8_t star_tracking_search_width;
     /** Detumbling Spin Gain: bits 2104 to 2135, 32-bit float. Ks. */
@@ -573,9 +573,9 @@ typedef struct {
     float detumbling_damping_gain;
     /**
      * Reference spin rate: bits 2168 to 2183, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * wy-ref. Must be below 0 deg/s.
-     * @note Note ACP-162 (certain): Limits of a sign in words only. Two references must always be smaller than 0; the
-     * types allow the opposite, and what the program does with it is not said.
+     * wy-ref. Must be below 0 deg/s, which setters do not check.
+     * @note ACP-162 (certain): Limits of a sign in words only. Two references must always be smaller than 0; the types
+     * allow the opposite, and what the program does with it is not said.
      */
     int16_t reference_spin_rate;
     /** Fast BDot Detumbling Gain: bits 2184 to 2215, 32-bit float. Kdf. */
@@ -589,8 +589,9 @@ typedef struct {
     /** Y-momentum Derivative Gain: bits 2312 to 2343, 32-bit float. Kd1. */
     float y_momentum_derivative_gain;
     /**
-     * Reference Wheel Momentum: bits 2344 to 2375, 32-bit float, in Nms. H-ref. Must be below 0 Nms.
-     * @note Note ACP-162 (certain): see Reference spin rate.
+     * Reference Wheel Momentum: bits 2344 to 2375, 32-bit float, in Nms. H-ref. Must be below 0 Nms, which setters do
+     * not check.
+     * @note ACP-162 (certain): see Reference spin rate.
      */
     float reference_wheel_momentum;
     /** RWheel Proportional Gain: bits 2376 to 2407, 32-bit float. Kp2. */
@@ -632,21 +633,21 @@ typedef struct {
     /**
      * Product Of Inertia - Ixy: bits 2680 to 2711, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
-     * @note Note ACP-201 (open): Products of inertia: the sign is not given. The products are elements of a matrix by
-     * the message and products of inertia by their names, which differ in sign by the usual definitions. Neither is
+     * @note ACP-201 (open): Products of inertia: the sign is not given. The products are elements of a matrix by the
+     * message and products of inertia by their names, which differ in sign by the usual definitions. Neither is
      * defined.
      */
     float product_of_inertia_ixy;
     /**
      * Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
-     * @note Note ACP-201 (open): see Product Of Inertia - Ixy.
+     * @note ACP-201 (open): see Product Of Inertia - Ixy.
      */
     float product_of_inertia_ixz;
     /**
      * Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
-     * @note Note ACP-201 (open): see Product Of Inertia - Ixy.
+     * @note ACP-201 (open): see Product Of Inertia - Ixy.
      */
     float product_of_inertia_iyz;
     /** Magnetometer Rate Filter System Noise: bits 2776 to 2807, 32-bit float. */
@@ -677,9 +678,9 @@ typedef struct {
     bool automatic_magnetometer_recovery;
     /**
      * Magnetometer Mode: bits 3006 to 3007. The magnetometer that estimation and control use.
-     * @note Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a configuration message
-     * set the same mode. Which wins after a restart, and whether the telecommand changes what the configuration
-     * returns, is not said.
+     * @note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a configuration message set
+     * the same mode. Which wins after a restart, and whether the telecommand changes what the configuration returns, is
+     * not said.
      */
     cubeacp_mag_mode_val_t magnetometer_mode;
     /**
@@ -781,13 +782,13 @@ typedef struct {
     uint16_t min_samples;
     /**
      * User Coded Controller Settings: bytes 408 to 455.
-     * @note Note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes without types; what they
-     * hold depends on code that the user supplies.
+     * @note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes without types; what they hold
+     * depends on code that the user supplies.
      */
     uint8_t user_coded_controller_settings[48];
     /**
      * User Coded Estimator Settings: bytes 456 to 503.
-     * @note Note ACP-178 (open): see User Coded Controller Settings.
+     * @note ACP-178 (open): see User Coded Controller Settings.
      */
     uint8_t user_coded_estimator_settings[48];
 } cubeacp_adcs_configuration_t;
@@ -4071,7 +4072,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_search_w
     return icdgen_set_u8(&message->star_tracking_search_width, value, 1, 0, 5, UINT8_MAX);
 }
 
-/** Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s. */
+/** Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s, which setters do not check. */
 static inline double cubeacp_adcs_configuration_reference_spin_rate_deg_per_s(
     const cubeacp_adcs_configuration_t *message)
 {

@@ -7,8 +7,8 @@
  * @file
  * Adcs Execution Times: telemetry 196, 8 bytes. Table 155.
  * How long the parts of the control program take.
- * @note Note ACP-107 (certain): ADCS is Adcs in one message, a model a computation. Adcs Execution Times stands alone
- * in its spelling, and its last field names a model where the description has a computation.
+ * @note ACP-107 (certain): ADCS is Adcs in one message, a model a computation. Adcs Execution Times stands alone in its
+ * spelling, and its last field names a model where the description has a computation.
  */
 
 #include "../icdgen.h"

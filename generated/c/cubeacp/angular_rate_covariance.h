@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * X Angular Rate Covariance: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for the square of a rate, and
-     * the type is signed.
+     * @note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for the square of a rate, and the
+     * type is signed.
      */
     int16_t x_angular_rate_covariance;
     /**
      * Y Angular Rate Covariance: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-077 (open): see X Angular Rate Covariance.
+     * @note ACP-077 (open): see X Angular Rate Covariance.
      */
     int16_t y_angular_rate_covariance;
     /**
      * Z Angular Rate Covariance: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-077 (open): see X Angular Rate Covariance.
+     * @note ACP-077 (open): see X Angular Rate Covariance.
      */
     int16_t z_angular_rate_covariance;
 } cubeacp_angular_rate_covariance_t;

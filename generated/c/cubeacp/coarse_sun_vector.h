@@ -8,9 +8,9 @@
  * Coarse Sun Vector: telemetry 152, 6 bytes. Table 108.
  * As measured.
  * Bit 10 of the log mask.
- * @note Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled vectors are in the orbit
- * frame, estimated rates relative to it. Of the measured field, sun, nadir and rate vectors nothing is said; SBC for
- * the body frame is in the list of acronyms and used nowhere.
+ * @note ACP-069 (open): Reference frames of measured vectors are not named. Modelled vectors are in the orbit frame,
+ * estimated rates relative to it. Of the measured field, sun, nadir and rate vectors nothing is said; SBC for the body
+ * frame is in the list of acronyms and used nowhere.
  */
 
 #include "../icdgen.h"

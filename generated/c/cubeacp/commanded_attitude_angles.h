@@ -6,7 +6,7 @@
 /**
  * @file
  * Commanded Attitude Angles: configuration, set by telecommand 15, got by telemetry 199, 6 bytes. Table 186.
- * @note Note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and yaw need a sequence and a
+ * @note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and yaw need a sequence and a
  * reference. Neither is given, for estimated or for commanded angles.
  */
 

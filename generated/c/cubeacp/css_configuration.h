@@ -63,8 +63,8 @@ typedef struct {
     uint8_t css10_relative_scale;
     /**
      * CSS Threshold: bits 160 to 167, raw 0 to 255.
-     * @note Note ACP-133 (open): CSS threshold has no description. The name is repeated; neither unit nor what lies
-     * below it is said. The message is described as directions and scale factors.
+     * @note ACP-133 (open): CSS threshold has no description. The name is repeated; neither unit nor what lies below it
+     * is said. The message is described as directions and scale factors.
      */
     uint8_t css_threshold;
 } cubeacp_css_configuration_t;

@@ -7,8 +7,8 @@
  * @file
  * CubeSense1 Current Measurements: telemetry 171, 4 bytes. Table 129.
  * Bit 21 of the log mask.
- * @note Note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to have 10+6*(N+1)*M bytes,
- * and the UART message 11+6*N. With a frame of 4 bytes in the mask both hold only if it is filled up.
+ * @note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to have 10+6*(N+1)*M bytes, and
+ * the UART message 11+6*N. With a frame of 4 bytes in the mask both hold only if it is filled up.
  */
 
 #include "../icdgen.h"

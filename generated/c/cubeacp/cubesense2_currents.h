@@ -7,10 +7,10 @@
  * @file
  * CubeSense2 Current Measurements: telemetry 232, 4 bytes. Table 175.
  * Bit 65 of the log mask.
- * @note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request
- * sent to the wrong program is taken for another one.
- * @note Note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to have 10+6*(N+1)*M bytes,
- * and the UART message 11+6*N. With a frame of 4 bytes in the mask both hold only if it is filled up.
+ * @note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request sent
+ * to the wrong program is taken for another one.
+ * @note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to have 10+6*(N+1)*M bytes, and
+ * the UART message 11+6*N. With a frame of 4 bytes in the mask both hold only if it is filled up.
  */
 
 #include "../icdgen.h"

@@ -21,20 +21,20 @@ typedef struct {
     /**
      * x-Axis rate: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Estimated by CubeStar,
      * about its own X axis.
-     * @note Note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given without a unit. The other
-     * rates are in deg/s; rad/s would fit the range as well.
+     * @note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given without a unit. The other rates
+     * are in deg/s; rad/s would fit the range as well.
      */
     int16_t x_axis_rate;
     /**
      * y-Axis rate: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Estimated by
      * CubeStar, about its own Y axis.
-     * @note Note ACP-111 (open): see x-Axis rate.
+     * @note ACP-111 (open): see x-Axis rate.
      */
     int16_t y_axis_rate;
     /**
      * z-Axis rate: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Estimated by
      * CubeStar, about its own Z axis.
-     * @note Note ACP-111 (open): see x-Axis rate.
+     * @note ACP-111 (open): see x-Axis rate.
      */
     int16_t z_axis_rate;
 } cubeacp_cubestar_estimated_rates_t;

@@ -8,14 +8,14 @@
  * Current ADCS State: telemetry 132, 6 bytes. Table 98.
  * State of the control processor, frame 1.
  * Bit 27 of the log mask.
- * @note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request
- * sent to the wrong program is taken for another one.
- * @note Note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS Control Program, the state
- * frames have Attitude Control Processor.
- * @note Note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called Current ADCS State, and frame
- * 190, which holds it and much more, ADCS State with the description current ADCS state.
- * @note Note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but the state frames do not
- * tell latched flags from present states.
+ * @note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request sent
+ * to the wrong program is taken for another one.
+ * @note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS Control Program, the state frames
+ * have Attitude Control Processor.
+ * @note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called Current ADCS State, and frame 190,
+ * which holds it and much more, ADCS State with the description current ADCS state.
+ * @note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but the state frames do not tell
+ * latched flags from present states.
  */
 
 #include "../icdgen.h"
@@ -36,8 +36,8 @@ typedef struct {
     cubeacp_adcs_run_mode_t adcs_run_mode;
     /**
      * ASGP4 Mode: bits 10 to 11.
-     * @note Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode with four
-     * values; the description has an enabled state.
+     * @note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode with four values;
+     * the description has an enabled state.
      */
     cubeacp_asgp4_mode_select_t asgp4_mode;
     /** CubeControl Signal Enabled: bit 12. */
@@ -56,25 +56,25 @@ typedef struct {
     bool cubewheel3_enabled;
     /**
      * CubeStar Enabled: bit 19.
-     * @note Note ACP-063 (certain): Star tracker has four spellings. StarTracker Match Error stands beside Star Tracker
+     * @note ACP-063 (certain): Star tracker has four spellings. StarTracker Match Error stands beside Star Tracker
      * Overcurrent Detected; elsewhere CubeStar and star tracking.
      */
     bool cubestar_enabled;
     /**
      * GPS Receiver Enabled: bit 20.
-     * @note Note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is reported as Motor Driver
+     * @note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is reported as Motor Driver
      * Enabled, GPS Power switches the antenna amplifier and is reported as GPS LNA Power Enabled. GPS Receiver Enabled
      * has no switch.
      */
     bool gps_receiver_enabled;
     /**
      * GPS LNA Power Enabled: bit 21. Amplifier of the GPS antenna.
-     * @note Note ACP-062 (open): see GPS Receiver Enabled.
+     * @note ACP-062 (open): see GPS Receiver Enabled.
      */
     bool gps_lna_power_enabled;
     /**
      * Motor Driver Enabled: bit 22.
-     * @note Note ACP-062 (open): see GPS Receiver Enabled.
+     * @note ACP-062 (open): see GPS Receiver Enabled.
      */
     bool motor_driver_enabled;
     /** Sun is Above Local Horizon: bit 23. The elevation is above 0. */
@@ -97,8 +97,8 @@ typedef struct {
     bool cubestar_communications_error;
     /**
      * Magnetometer Range Error: bit 32. About a measured field of 65 uT. Whether above or below is not printed.
-     * @note Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is set when the field has
-     * a size 65 uT. Above is likely, since the field of the earth hardly reaches it.
+     * @note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is set when the field has a
+     * size 65 uT. Above is likely, since the field of the earth hardly reaches it.
      */
     bool magnetometer_range_error;
     /** Cam1 SRAM Overcurrent Detected: bit 33. */
@@ -111,9 +111,9 @@ typedef struct {
     bool cam1_sensor_detection_error;
     /**
      * Sun Sensor Range Error: bit 37. A detected sun angle was beyond +/-90 deg.
-     * @note Note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag each is for the sun and
-     * the nadir sensor; the cameras are numbered, and which of them is which is a setting. With two sun sensors one
-     * flag serves both.
+     * @note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag each is for the sun and the
+     * nadir sensor; the cameras are numbered, and which of them is which is a setting. With two sun sensors one flag
+     * serves both.
      */
     bool sun_sensor_range_error;
     /** Cam2 SRAM Overcurrent Detected: bit 38. */
@@ -126,7 +126,7 @@ typedef struct {
     bool cam2_sensor_detection_error;
     /**
      * Nadir Sensor Range Error: bit 42. A detected nadir angle was beyond +/-60 deg.
-     * @note Note ACP-061 (open): see Sun Sensor Range Error.
+     * @note ACP-061 (open): see Sun Sensor Range Error.
      */
     bool nadir_sensor_range_error;
     /** Rate Sensor Range Error: bit 43. A measured body rate was beyond +/-20 deg/s. */
@@ -137,12 +137,12 @@ typedef struct {
     bool coarse_sun_sensor_error;
     /**
      * StarTracker Match Error: bit 46. Too few stars were matched.
-     * @note Note ACP-063 (certain): see CubeStar Enabled.
+     * @note ACP-063 (certain): see CubeStar Enabled.
      */
     bool star_tracker_match_error;
     /**
      * Star Tracker Overcurrent Detected: bit 47.
-     * @note Note ACP-063 (certain): see CubeStar Enabled.
+     * @note ACP-063 (certain): see CubeStar Enabled.
      */
     bool star_tracker_overcurrent_detected;
 } cubeacp_current_adcs_state_t;

@@ -10,10 +10,10 @@
  * Bit 61 of the log mask.
  * @note Erratum ACP-120 (open): Current ADCS State 2: 6 bytes announced, 18 bits described. More than half of the frame
  * is not explained. It is held as reserved, here and where frame 190 repeats it.
- * @note Note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS Control Program, the state
- * frames have Attitude Control Processor.
- * @note Note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but the state frames do not
- * tell latched flags from present states.
+ * @note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS Control Program, the state frames
+ * have Attitude Control Processor.
+ * @note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but the state frames do not tell
+ * latched flags from present states.
  */
 
 #include "../icdgen.h"
@@ -29,15 +29,15 @@ typedef struct {
     /**
      * Orbit Parameters are Invalid: bit 0. A parameter is out of bounds, or the SGP4 propagator could not start from
      * them.
-     * @note Note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds, or a propagator that
-     * failed to start, are told as two sentences for one bit.
+     * @note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds, or a propagator that failed
+     * to start, are told as two sentences for one bit.
      */
     bool orbit_parameters_are_invalid;
     /**
      * Configuration is Invalid: bit 1. Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at
      * least one CSS.
-     * @note Note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames differ by a letter in
-     * the description, and principle stands for principal twice in each.
+     * @note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames differ by a letter in the
+     * description, and principle stands for principal twice in each.
      */
     bool configuration_is_invalid;
     /**

@@ -7,8 +7,8 @@
  * @file
  * Deploy Magnetometer Boom: telecommand 7, 1 byte. Table 73.
  * Dangerous: The boom stays deployed.
- * @note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request
- * sent to the wrong program is taken for another one.
+ * @note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request sent
+ * to the wrong program is taken for another one.
  */
 
 #include "../icdgen.h"
@@ -22,8 +22,8 @@
 typedef struct {
     /**
      * Timeout: bits 0 to 7, raw 0 to 255, in s. Of the deployment actuation.
-     * @note Note ACP-016 (open): Deployment timeout: range and default. The field has 8 bits of seconds; whether 0
-     * means none, for ever or a default is not said. The telecommand has no magic number, unlike a reset.
+     * @note ACP-016 (open): Deployment timeout: range and default. The field has 8 bits of seconds; whether 0 means
+     * none, for ever or a default is not said. The telecommand has no magic number, unlike a reset.
      */
     uint8_t timeout;
 } cubeacp_deploy_magnetometer_boom_t;

@@ -23,20 +23,20 @@ typedef struct {
      * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres. In metres the field reaches 32.767 km, a
      * position some 7000 km. A factor is missing; 0.25 km as in the inertial position is one possibility, km another.
      * No unit is held, so nothing is converted.
-     * @note Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16 bits in the state
+     * @note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16 bits in the state
      * frames and 32 bits in the GPS frames and the simulated data, with the same name, description and unit.
      */
     int16_t ecef_position_x;
     /**
      * ECEF Position Y: bits 16 to 31, raw -32768 to 32767.
      * @note Erratum ACP-098 (likely): see ECEF Position X.
-     * @note Note ACP-099 (certain): see ECEF Position X.
+     * @note ACP-099 (certain): see ECEF Position X.
      */
     int16_t ecef_position_y;
     /**
      * ECEF Position Z: bits 32 to 47, raw -32768 to 32767.
      * @note Erratum ACP-098 (likely): see ECEF Position X.
-     * @note Note ACP-099 (certain): see ECEF Position X.
+     * @note ACP-099 (certain): see ECEF Position X.
      */
     int16_t ecef_position_z;
 } cubeacp_ecef_position_t;

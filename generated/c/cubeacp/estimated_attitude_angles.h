@@ -7,7 +7,7 @@
  * @file
  * Estimated Attitude Angles: telemetry 146, 6 bytes. Table 102.
  * Bit 28 of the log mask.
- * @note Note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and yaw need a sequence and a
+ * @note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and yaw need a sequence and a
  * reference. Neither is given, for estimated or for commanded angles.
  */
 

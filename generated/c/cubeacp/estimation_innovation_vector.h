@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * Innovation Vector X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767.
-     * @note Note ACP-074 (open): Innovation has no unit. What the innovation vector is a difference of, and hence its
-     * unit, is not said.
+     * @note ACP-074 (open): Innovation has no unit. What the innovation vector is a difference of, and hence its unit,
+     * is not said.
      */
     int16_t innovation_vector_x;
     /**
      * Innovation Vector Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767.
-     * @note Note ACP-074 (open): see Innovation Vector X.
+     * @note ACP-074 (open): see Innovation Vector X.
      */
     int16_t innovation_vector_y;
     /**
      * Innovation Vector Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767.
-     * @note Note ACP-074 (open): see Innovation Vector X.
+     * @note ACP-074 (open): see Innovation Vector X.
      */
     int16_t innovation_vector_z;
 } cubeacp_estimation_innovation_vector_t;

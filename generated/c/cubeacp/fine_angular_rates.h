@@ -21,22 +21,22 @@
 typedef struct {
     /**
      * Estimated X Angular Rate: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * @note Note ACP-109 (certain): Fine and normal rates have the same field names. Estimated X Angular Rate has a
-     * factor of 0.01 in one frame and of 0.001 in another. A value copied by its name is wrong by ten.
-     * @note Note ACP-110 (open): Fine rates end at 32 deg/s. The range is +/-32.767 deg/s; whether faster rates
-     * saturate or wrap is not said. The rate error flag starts at 20 deg/s.
+     * @note ACP-109 (certain): Fine and normal rates have the same field names. Estimated X Angular Rate has a factor
+     * of 0.01 in one frame and of 0.001 in another. A value copied by its name is wrong by ten.
+     * @note ACP-110 (open): Fine rates end at 32 deg/s. The range is +/-32.767 deg/s; whether faster rates saturate or
+     * wrap is not said. The rate error flag starts at 20 deg/s.
      */
     int16_t estimated_x_angular_rate;
     /**
      * Estimated Y Angular Rate: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * @note Note ACP-109 (certain): see Estimated X Angular Rate.
-     * @note Note ACP-110 (open): see Estimated X Angular Rate.
+     * @note ACP-109 (certain): see Estimated X Angular Rate.
+     * @note ACP-110 (open): see Estimated X Angular Rate.
      */
     int16_t estimated_y_angular_rate;
     /**
      * Estimated Z Angular Rate: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * @note Note ACP-109 (certain): see Estimated X Angular Rate.
-     * @note Note ACP-110 (open): see Estimated X Angular Rate.
+     * @note ACP-109 (certain): see Estimated X Angular Rate.
+     * @note ACP-110 (open): see Estimated X Angular Rate.
      */
     int16_t estimated_z_angular_rate;
 } cubeacp_fine_angular_rates_t;

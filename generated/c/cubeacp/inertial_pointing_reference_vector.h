@@ -7,9 +7,9 @@
  * @file
  * Inertial Pointing Reference Vector: configuration, set by telecommand 34, got by telemetry 238, 6 bytes. Table 214.
  * Unit vector for the inertial pointing mode.
- * @note Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control mode has a
- * reference vector, and GEO tracking, inertial and two sun pointing modes are special selections. The list of control
- * modes has none of them.
+ * @note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control mode has a reference
+ * vector, and GEO tracking, inertial and two sun pointing modes are special selections. The list of control modes has
+ * none of them.
  */
 
 #include "../icdgen.h"
@@ -25,18 +25,18 @@
 typedef struct {
     /**
      * Inertial Reference X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
-     * @note Note ACP-188 (open): Inertial reference: unit vector without a frame. The vector is for an inertial
-     * pointing mode; which inertial frame, and which body axis points along it, is not said.
+     * @note ACP-188 (open): Inertial reference: unit vector without a frame. The vector is for an inertial pointing
+     * mode; which inertial frame, and which body axis points along it, is not said.
      */
     int16_t reference_x;
     /**
      * Inertial Reference Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
-     * @note Note ACP-188 (open): see Inertial Reference X.
+     * @note ACP-188 (open): see Inertial Reference X.
      */
     int16_t reference_y;
     /**
      * Inertial Reference Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
-     * @note Note ACP-188 (open): see Inertial Reference X.
+     * @note ACP-188 (open): see Inertial Reference X.
      */
     int16_t reference_z;
 } cubeacp_inertial_pointing_reference_vector_t;

@@ -8,9 +8,9 @@
  * Magnetic Field Vector: telemetry 151, 6 bytes. Table 107.
  * As measured.
  * Bit 9 of the log mask.
- * @note Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled vectors are in the orbit
- * frame, estimated rates relative to it. Of the measured field, sun, nadir and rate vectors nothing is said; SBC for
- * the body frame is in the list of acronyms and used nowhere.
+ * @note ACP-069 (open): Reference frames of measured vectors are not named. Modelled vectors are in the orbit frame,
+ * estimated rates relative to it. Of the measured field, sun, nadir and rate vectors nothing is said; SBC for the body
+ * frame is in the list of acronyms and used nowhere.
  */
 
 #include "../icdgen.h"

@@ -28,19 +28,19 @@ typedef struct {
     float moment_of_inertia_izz;
     /**
      * Product Of Inertia - Ixy: bits 96 to 127, 32-bit float, in kg.m^2.
-     * @note Note ACP-201 (open): Products of inertia: the sign is not given. The products are elements of a matrix by
-     * the message and products of inertia by their names, which differ in sign by the usual definitions. Neither is
+     * @note ACP-201 (open): Products of inertia: the sign is not given. The products are elements of a matrix by the
+     * message and products of inertia by their names, which differ in sign by the usual definitions. Neither is
      * defined.
      */
     float product_of_inertia_ixy;
     /**
      * Product Of Inertia - Ixz: bits 128 to 159, 32-bit float, in kg.m^2.
-     * @note Note ACP-201 (open): see Product Of Inertia - Ixy.
+     * @note ACP-201 (open): see Product Of Inertia - Ixy.
      */
     float product_of_inertia_ixz;
     /**
      * Product Of Inertia - Iyz: bits 160 to 191, 32-bit float, in kg.m^2.
-     * @note Note ACP-201 (open): see Product Of Inertia - Ixy.
+     * @note ACP-201 (open): see Product Of Inertia - Ixy.
      */
     float product_of_inertia_iyz;
 } cubeacp_moment_of_inertia_matrix_t;

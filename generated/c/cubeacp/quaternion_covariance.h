@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * Quaternion Covariance - Q1 RMS: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-076 (open): Quaternion covariance: an RMS with a sign. The field is a covariance by its frame, an
-     * RMS by its name and signed by its type. Neither quantity, on the diagonal, is negative.
+     * @note ACP-076 (open): Quaternion covariance: an RMS with a sign. The field is a covariance by its frame, an RMS
+     * by its name and signed by its type. Neither quantity, on the diagonal, is negative.
      */
     int16_t q1_rms;
     /**
      * Quaternion Covariance - Q2 RMS: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
+     * @note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
      */
     int16_t q2_rms;
     /**
      * Quaternion Covariance - Q3 RMS: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
+     * @note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
      */
     int16_t q3_rms;
 } cubeacp_quaternion_covariance_t;

@@ -7,8 +7,8 @@
  * @file
  * Quaternion Error Vector: telemetry 163, 6 bytes. Table 119.
  * Bit 39 of the log mask.
- * @note Note ACP-075 (open): Quaternions: the fourth component. Three of four components are sent. The fourth follows
- * up to its sign only, and which component is the scalar is not said.
+ * @note ACP-075 (open): Quaternions: the fourth component. Three of four components are sent. The fourth follows up to
+ * its sign only, and which component is the scalar is not said.
  */
 
 #include "../icdgen.h"

@@ -20,34 +20,34 @@
 typedef struct {
     /**
      * CSS1: bits 0 to 7, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of the sun angle, without
-     * full scale, offset or what a sensor in the dark reads. The relative scale and the threshold of the configuration
-     * refer to them.
+     * @note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of the sun angle, without full
+     * scale, offset or what a sensor in the dark reads. The relative scale and the threshold of the configuration refer
+     * to them.
      */
     uint8_t css1;
     /**
      * CSS2: bits 8 to 15, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): see CSS1.
+     * @note ACP-080 (open): see CSS1.
      */
     uint8_t css2;
     /**
      * CSS3: bits 16 to 23, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): see CSS1.
+     * @note ACP-080 (open): see CSS1.
      */
     uint8_t css3;
     /**
      * CSS4: bits 24 to 31, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): see CSS1.
+     * @note ACP-080 (open): see CSS1.
      */
     uint8_t css4;
     /**
      * CSS5: bits 32 to 39, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): see CSS1.
+     * @note ACP-080 (open): see CSS1.
      */
     uint8_t css5;
     /**
      * CSS6: bits 40 to 47, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): see CSS1.
+     * @note ACP-080 (open): see CSS1.
      */
     uint8_t css6;
 } cubeacp_raw_css_1_to_6_t;

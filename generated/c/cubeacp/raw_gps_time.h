@@ -20,8 +20,8 @@
 typedef struct {
     /**
      * GPS Reference Week: bits 0 to 15, raw 0 to 65535.
-     * @note Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full week, ten of
-     * which a receiver sends. A number of roll-overs is a setting, so it is open which of the two this is.
+     * @note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full week, ten of which a
+     * receiver sends. A number of roll-overs is a setting, so it is open which of the two this is.
      */
     uint16_t gps_reference_week;
     /** GPS Time Milliseconds: bits 16 to 47, raw 0 to 4294967295, in ms. */

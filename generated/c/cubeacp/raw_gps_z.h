@@ -21,15 +21,15 @@
 typedef struct {
     /**
      * ECEF Position Z: bits 0 to 31, raw -2147483648 to 2147483647, in m.
-     * @note Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name. The three frames are described
-     * as ECI referenced, their fields are ECEF position and velocity. ECEF is what a receiver delivers.
+     * @note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name. The three frames are described as ECI
+     * referenced, their fields are ECEF position and velocity. ECEF is what a receiver delivers.
      */
     int32_t ecef_position_z;
     /**
      * ECEF Velocity Z: bits 32 to 47, raw -32768 to 32767, in m/s.
-     * @note Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity from the receiver has a
-     * step of 1 m/s, that of the propagator 0.25 m/s. A factor may have been lost; none is made up.
-     * @note Note ACP-090 (likely): see ECEF Position Z.
+     * @note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity from the receiver has a step
+     * of 1 m/s, that of the propagator 0.25 m/s. A factor may have been lost; none is made up.
+     * @note ACP-090 (likely): see ECEF Position Z.
      */
     int16_t ecef_velocity_z;
 } cubeacp_raw_gps_z_t;

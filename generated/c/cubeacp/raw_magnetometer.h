@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * MagX: bits 0 to 15, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale. Neither resolution
-     * nor unit of the sampled values is given.
+     * @note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale. Neither resolution nor
+     * unit of the sampled values is given.
      */
     int16_t mag_x;
     /**
      * MagY: bits 16 to 31, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): see MagX.
+     * @note ACP-082 (open): see MagX.
      */
     int16_t mag_y;
     /**
      * MagZ: bits 32 to 47, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): see MagX.
+     * @note ACP-082 (open): see MagX.
      */
     int16_t mag_z;
 } cubeacp_raw_magnetometer_t;

@@ -33,30 +33,30 @@
 typedef struct {
     /**
      * Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
-     * @note Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel value. What is
-     * counted stands in place of a unit; noise repeats the name. They are kept as units of counts.
+     * @note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel value. What is counted
+     * stands in place of a unit; noise repeats the name. They are kept as units of counts.
      */
     uint8_t number_of_stars_detected;
     /**
      * Star image noise: bits 8 to 15, raw 0 to 255, in noise.
-     * @note Note ACP-093 (certain): see Number of stars detected.
+     * @note ACP-093 (certain): see Number of stars detected.
      */
     uint8_t star_image_noise;
     /**
      * Invalid Stars: bits 16 to 23, raw 0 to 255, in Invalid stars. How many of the detected stars are invalid.
-     * @note Note ACP-093 (certain): see Number of stars detected.
+     * @note ACP-093 (certain): see Number of stars detected.
      */
     uint8_t invalid_stars;
     /**
      * Number of stars identified: bits 24 to 31, raw 0 to 255, in stars.
-     * @note Note ACP-093 (certain): see Number of stars detected.
+     * @note ACP-093 (certain): see Number of stars detected.
      */
     uint8_t number_of_stars_identified;
     /** Identification mode: bits 32 to 39. */
     cubeacp_star_id_mode_val_t identification_mode;
     /**
      * Image dark value: bits 40 to 47, raw 0 to 255, in 8-bit pixel value. Mean of the centre line of the image.
-     * @note Note ACP-093 (certain): see Number of stars detected.
+     * @note ACP-093 (certain): see Number of stars detected.
      */
     uint8_t image_dark_value;
     /** Image Capture Success: bit 48. */
@@ -67,8 +67,8 @@ typedef struct {
     bool identification_success;
     /**
      * AttitudeSuccess: bit 51.
-     * @note Note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags before it have blanks, as
-     * its description has.
+     * @note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags before it have blanks, as its
+     * description has.
      */
     bool attitude_success;
     /** Processing Time Error: bit 52. */
@@ -81,8 +81,7 @@ typedef struct {
     bool comms_error;
     /**
      * Sample Period: bits 56 to 71, raw 0 to 65535.
-     * @note Note ACP-113 (open): Sample period of the star tracker has no unit. Other times of the star tracker are in
-     * ms.
+     * @note ACP-113 (open): Sample period of the star tracker has no unit. Other times of the star tracker are in ms.
      */
     uint16_t sample_period;
     /**
@@ -102,18 +101,18 @@ typedef struct {
     uint8_t star_3_confidence;
     /**
      * Magnitude Star 1: bits 96 to 111, raw 0 to 65535. Instrument magnitude.
-     * @note Note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16 bits without a factor can
-     * be neither fractional nor negative.
+     * @note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16 bits without a factor can be
+     * neither fractional nor negative.
      */
     uint16_t magnitude_star_1;
     /**
      * Magnitude Star 2: bits 112 to 127, raw 0 to 65535. Instrument magnitude.
-     * @note Note ACP-092 (open): see Magnitude Star 1.
+     * @note ACP-092 (open): see Magnitude Star 1.
      */
     uint16_t magnitude_star_2;
     /**
      * Magnitude Star 3: bits 128 to 143, raw 0 to 65535. Instrument magnitude.
-     * @note Note ACP-092 (open): see Magnitude Star 1.
+     * @note ACP-092 (open): see Magnitude Star 1.
      */
     uint16_t magnitude_star_3;
     /** Catalogue Star 1: bits 144 to 159, raw 0 to 65535. Number in the star catalogue. */
@@ -143,26 +142,26 @@ typedef struct {
     /**
      * x-Axis rate: bits 336 to 351, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Estimated by
      * CubeStar, about its own X axis.
-     * @note Note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given without a unit. The other
-     * rates are in deg/s; rad/s would fit the range as well.
+     * @note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given without a unit. The other rates
+     * are in deg/s; rad/s would fit the range as well.
      */
     int16_t x_axis_rate;
     /**
      * y-Axis rate: bits 352 to 367, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Estimated by
      * CubeStar, about its own Y axis.
-     * @note Note ACP-111 (open): see x-Axis rate.
+     * @note ACP-111 (open): see x-Axis rate.
      */
     int16_t y_axis_rate;
     /**
      * z-Axis rate: bits 368 to 383, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Estimated by
      * CubeStar, about its own Z axis.
-     * @note Note ACP-111 (open): see x-Axis rate.
+     * @note ACP-111 (open): see x-Axis rate.
      */
     int16_t z_axis_rate;
     /**
      * Q0: bits 384 to 399, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Of the attitude estimated by
      * CubeStar, described as Q1.
-     * @note Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names and descriptions count
+     * @note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names and descriptions count
      * differently. Q1 to Q3 agree with the other quaternions; if Q0 were the scalar, the third vector component would
      * be missing.
      */
@@ -170,13 +169,13 @@ typedef struct {
     /**
      * Q1: bits 400 to 415, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Of the attitude estimated by
      * CubeStar, described as Q2.
-     * @note Note ACP-112 (open): see Q0.
+     * @note ACP-112 (open): see Q0.
      */
     int16_t q1;
     /**
      * Q2: bits 416 to 431, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Of the attitude estimated by
      * CubeStar, described as Q3.
-     * @note Note ACP-112 (open): see Q0.
+     * @note ACP-112 (open): see Q0.
      */
     int16_t q2;
 } cubeacp_raw_star_tracker_t;

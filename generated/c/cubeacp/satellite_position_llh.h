@@ -23,14 +23,14 @@ typedef struct {
     int16_t latitude;
     /**
      * Longitude: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-     * @note Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The datum is missing in one
-     * of three rows; the frame is called LLH by name and WGS-84 frame by description.
+     * @note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The datum is missing in one of
+     * three rows; the frame is called LLH by name and WGS-84 frame by description.
      */
     int16_t longitude;
     /**
      * Altitude: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
-     * @note Note ACP-067 (open): Position and altitude do not reach equally far. The inertial position fits orbits up
-     * to 1800 km, the altitude of 16 bits ends at 655.35 km. Above that it wraps or sticks; which is not said.
+     * @note ACP-067 (open): Position and altitude do not reach equally far. The inertial position fits orbits up to
+     * 1800 km, the altitude of 16 bits ends at 655.35 km. Above that it wraps or sticks; which is not said.
      */
     uint16_t altitude;
 } cubeacp_satellite_position_llh_t;

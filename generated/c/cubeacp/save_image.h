@@ -7,7 +7,7 @@
  * @file
  * Save Image: telecommand 80, 2 bytes. Table 94.
  * Takes a picture with a CubeSense or the CubeStar camera and saves it to the SD card.
- * @note Note ACP-055 (certain): Save Image saves before it captures. The description has the steps in the wrong order.
+ * @note ACP-055 (certain): Save Image saves before it captures. The description has the steps in the wrong order.
  */
 
 #include "../icdgen.h"

@@ -7,7 +7,7 @@
  * @file
  * Save Orbit Parameters: telecommand 64, 0 bytes. Table 93.
  * Keeps the current orbit parameters in flash.
- * @note Note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS configuration, the orbit
+ * @note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS configuration, the orbit
  * parameters and the system configuration. Telecommands save the current configuration and the orbit parameters; which
  * the first covers is not said.
  */

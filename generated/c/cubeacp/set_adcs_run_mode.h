@@ -21,8 +21,8 @@
 typedef struct {
     /**
      * Enabled: bits 0 to 7. While off, the control program leaves the ADCS I2C bus alone.
-     * @note Note ACP-017 (certain): A run mode called Enabled. The parameter is an enumeration of four modes, its name
-     * that of one of them. The frames call it ADCS Run Mode.
+     * @note ACP-017 (certain): A run mode called Enabled. The parameter is an enumeration of four modes, its name that
+     * of one of them. The frames call it ADCS Run Mode.
      */
     cubeacp_adcs_run_mode_t enabled;
 } cubeacp_set_adcs_run_mode_t;

@@ -25,10 +25,10 @@ typedef struct {
     /**
      * Timeout: bits 8 to 23, raw 0 to 65535, in s. The mode returns to None when it runs out. 65535 (0xFFFF): no
      * timeout.
-     * @note Note ACP-022 (open): Timeout of a control mode: 0. 0xFFFF is for ever; what 0 does is not said. No frame
-     * returns the time left.
-     * @note Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode falls back,
-     * when the control mode is None. The member with value 0 is called No control.
+     * @note ACP-022 (open): Timeout of a control mode: 0. 0xFFFF is for ever; what 0 does is not said. No frame returns
+     * the time left.
+     * @note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode falls back, when
+     * the control mode is None. The member with value 0 is called No control.
      */
     uint16_t timeout;
 } cubeacp_set_attitude_control_mode_t;

@@ -21,9 +21,9 @@
 typedef struct {
     /**
      * Magnetometer Mode: bits 0 to 7. The magnetometer that estimation and control use.
-     * @note Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a configuration message
-     * set the same mode. Which wins after a restart, and whether the telecommand changes what the configuration
-     * returns, is not said.
+     * @note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a configuration message set
+     * the same mode. Which wins after a restart, and whether the telecommand changes what the configuration returns, is
+     * not said.
      */
     cubeacp_mag_mode_val_t magnetometer_mode;
 } cubeacp_set_mode_of_magnetometer_operation_t;

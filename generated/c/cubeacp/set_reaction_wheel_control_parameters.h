@@ -8,8 +8,8 @@
  * Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, got by telemetry 217, 13 bytes. Table
  * 197\.
  * Gains and reference of the reaction-wheel mode.
- * @note Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have
- * neutral names, but for eight. Names and identifiers are held as printed.
+ * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
+ * names, but for eight. Names and identifiers are held as printed.
  */
 
 #include "../icdgen.h"
@@ -26,28 +26,27 @@
 typedef struct {
     /**
      * RWheel Proportional Gain: bits 0 to 31, 32-bit float. Kp2.
-     * @note Note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the control laws
-     * are in another document.
+     * @note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the control laws are in
+     * another document.
      */
     float rwheel_proportional_gain;
     /**
      * RWheel Derivative Gain: bits 32 to 63, 32-bit float. Kd2.
-     * @note Note ACP-163 (open): see RWheel Proportional Gain.
+     * @note ACP-163 (open): see RWheel Proportional Gain.
      */
     float rwheel_derivative_gain;
     /**
      * Y-Wheel Bias Momentum: bits 64 to 95, 32-bit float, in Nms. H-bias.
-     * @note Note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels. The description promises gains
-     * and a reference value for the reaction wheels; the reference is a bias of the Y-wheel.
+     * @note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels. The description promises gains and
+     * a reference value for the reaction wheels; the reference is a bias of the Y-wheel.
      */
     float y_wheel_bias_momentum;
     /**
      * Sun-pointing Facet: bits 96 to 102. Body axis that is turned towards the sun.
-     * @note Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration serves actuators,
-     * sensors and facets. A facet that points to the sun or to a target as Not Used is allowed by its table and not
-     * explained.
-     * @note Note ACP-177 (open): Sun-pointing facet and special control selection. Facets can be chosen by a setting,
-     * and sun pointing with Z or Y by the system configuration. Which one counts is not said.
+     * @note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration serves actuators, sensors
+     * and facets. A facet that points to the sun or to a target as Not Used is allowed by its table and not explained.
+     * @note ACP-177 (open): Sun-pointing facet and special control selection. Facets can be chosen by a setting, and
+     * sun pointing with Z or Y by the system configuration. Which one counts is not said.
      */
     cubeacp_axis_select_t sun_pointing_facet;
     /**

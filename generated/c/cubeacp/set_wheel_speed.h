@@ -7,8 +7,8 @@
  * @file
  * Set Wheel Speed: telecommand 17, 6 bytes. Table 82.
  * Only valid while the control mode is None.
- * @note Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode falls back, when
- * the control mode is None. The member with value 0 is called No control.
+ * @note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode falls back, when the
+ * control mode is None. The member with value 0 is called No control.
  */
 
 #include "../icdgen.h"

@@ -29,8 +29,8 @@ typedef struct {
     double argument_of_perigee;
     /**
      * B-Star drag term: bits 256 to 319, 64-bit float.
-     * @note Note ACP-161 (open): B-Star has no unit. The drag term of two-line elements is per earth radius; the table
-     * has none.
+     * @note ACP-161 (open): B-Star has no unit. The drag term of two-line elements is per earth radius; the table has
+     * none.
      */
     double b_star_drag_term;
     /** Mean Motion: bits 320 to 383, 64-bit float, in orbits/day. */
@@ -39,8 +39,8 @@ typedef struct {
     double mean_anomaly;
     /**
      * Epoch: bits 448 to 511, 64-bit float, in year.day. Year and day in one number.
-     * @note Note ACP-160 (open): Epoch: year.day. The unit is a format. Two or four digits of the year, and whether day
-     * 1 is the first of January, are left open; as a fraction of a year it would be something else.
+     * @note ACP-160 (open): Epoch: year.day. The unit is a format. Two or four digits of the year, and whether day 1 is
+     * the first of January, are left open; as a fraction of a year it would be something else.
      */
     double epoch;
 } cubeacp_sgp4_orbit_parameters_t;

@@ -20,20 +20,20 @@
 typedef struct {
     /**
      * Star1OX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the orbit frame.
-     * @note Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of
-     * which it is one component; names abbreviate body and orbit to a letter.
+     * @note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of which it
+     * is one component; names abbreviate body and orbit to a letter.
      */
     int16_t star1_orbit_x;
     /**
      * Star1OY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the orbit
      * frame.
-     * @note Note ACP-091 (certain): see Star1OX.
+     * @note ACP-091 (certain): see Star1OX.
      */
     int16_t star1_orbit_y;
     /**
      * Star1OZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the orbit
      * frame.
-     * @note Note ACP-091 (certain): see Star1OX.
+     * @note ACP-091 (certain): see Star1OX.
      */
     int16_t star1_orbit_z;
 } cubeacp_star_1_orbit_vector_t;

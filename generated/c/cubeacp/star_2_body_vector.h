@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * Star2BX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the body frame.
-     * @note Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of
-     * which it is one component; names abbreviate body and orbit to a letter.
+     * @note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of which it
+     * is one component; names abbreviate body and orbit to a letter.
      */
     int16_t star2_body_x;
     /**
      * Star2BY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the body frame.
-     * @note Note ACP-091 (certain): see Star2BX.
+     * @note ACP-091 (certain): see Star2BX.
      */
     int16_t star2_body_y;
     /**
      * Star2BZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the body frame.
-     * @note Note ACP-091 (certain): see Star2BX.
+     * @note ACP-091 (certain): see Star2BX.
      */
     int16_t star2_body_z;
 } cubeacp_star_2_body_vector_t;

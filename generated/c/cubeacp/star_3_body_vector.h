@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * Star3BX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the body frame.
-     * @note Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of
-     * which it is one component; names abbreviate body and orbit to a letter.
+     * @note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of which it
+     * is one component; names abbreviate body and orbit to a letter.
      */
     int16_t star3_body_x;
     /**
      * Star3BY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the body frame.
-     * @note Note ACP-091 (certain): see Star3BX.
+     * @note ACP-091 (certain): see Star3BX.
      */
     int16_t star3_body_y;
     /**
      * Star3BZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the body frame.
-     * @note Note ACP-091 (certain): see Star3BX.
+     * @note ACP-091 (certain): see Star3BX.
      */
     int16_t star3_body_z;
 } cubeacp_star_3_body_vector_t;

@@ -21,19 +21,19 @@
 typedef struct {
     /**
      * Catalogue Star 3: bits 0 to 15, raw 0 to 65535. Number in the star catalogue.
-     * @note Note ACP-117 (open): Catalogue number or catalogue index. The frames are described with an index, their
-     * fields with a number of a catalogue that is not named.
+     * @note ACP-117 (open): Catalogue number or catalogue index. The frames are described with an index, their fields
+     * with a number of a catalogue that is not named.
      */
     uint16_t catalogue_star_3;
     /**
      * Centroid X Star 3: bits 16 to 31, raw -32768 to 32767.
-     * @note Note ACP-116 (open): Star centroids have no scale. Signed 16-bit centroids without pixel, angle or factor;
-     * the configuration has the image centre as a float in pixels.
+     * @note ACP-116 (open): Star centroids have no scale. Signed 16-bit centroids without pixel, angle or factor; the
+     * configuration has the image centre as a float in pixels.
      */
     int16_t centroid_x_star_3;
     /**
      * Centroid Y Star 3: bits 32 to 47, raw -32768 to 32767.
-     * @note Note ACP-116 (open): see Centroid X Star 3.
+     * @note ACP-116 (open): see Centroid X Star 3.
      */
     int16_t centroid_y_star_3;
 } cubeacp_star_3_raw_data_t;

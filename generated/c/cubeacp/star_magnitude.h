@@ -21,18 +21,18 @@
 typedef struct {
     /**
      * Magnitude Star 1: bits 0 to 15, raw 0 to 65535. Instrument magnitude.
-     * @note Note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16 bits without a factor can
-     * be neither fractional nor negative.
+     * @note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16 bits without a factor can be
+     * neither fractional nor negative.
      */
     uint16_t magnitude_star_1;
     /**
      * Magnitude Star 2: bits 16 to 31, raw 0 to 65535. Instrument magnitude.
-     * @note Note ACP-092 (open): see Magnitude Star 1.
+     * @note ACP-092 (open): see Magnitude Star 1.
      */
     uint16_t magnitude_star_2;
     /**
      * Magnitude Star 3: bits 32 to 47, raw 0 to 65535. Instrument magnitude.
-     * @note Note ACP-092 (open): see Magnitude Star 1.
+     * @note ACP-092 (open): see Magnitude Star 1.
      */
     uint16_t magnitude_star_3;
 } cubeacp_star_magnitude_t;

@@ -8,7 +8,7 @@
  * Star Performance2: telemetry 231, 6 bytes. Table 174.
  * Quality of the star measurement, frame 2.
  * Bit 64 of the log mask.
- * @note Note ACP-096 (certain): Star Performance2 has the description of Star Performance1. Both are described as
+ * @note ACP-096 (certain): Star Performance2 has the description of Star Performance1. Both are described as
  * performance parameters of the star measurement; the second holds flags, a period and confidences.
  */
 
@@ -29,8 +29,8 @@ typedef struct {
     bool identification_success;
     /**
      * AttitudeSuccess: bit 3.
-     * @note Note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags before it have blanks, as
-     * its description has.
+     * @note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags before it have blanks, as its
+     * description has.
      */
     bool attitude_success;
     /** Processing Time Error: bit 4. */
@@ -43,8 +43,7 @@ typedef struct {
     bool comms_error;
     /**
      * Sample Period: bits 8 to 23, raw 0 to 65535.
-     * @note Note ACP-113 (open): Sample period of the star tracker has no unit. Other times of the star tracker are in
-     * ms.
+     * @note ACP-113 (open): Sample period of the star tracker has no unit. Other times of the star tracker are in ms.
      */
     uint16_t sample_period;
     /**

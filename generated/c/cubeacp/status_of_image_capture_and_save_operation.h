@@ -6,8 +6,8 @@
 /**
  * @file
  * Status of Image Capture and Save Operation: telemetry 233, 2 bytes. Table 176.
- * @note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request
- * sent to the wrong program is taken for another one.
+ * @note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request sent
+ * to the wrong program is taken for another one.
  */
 
 #include "../icdgen.h"
@@ -24,8 +24,8 @@ typedef struct {
     uint8_t percentage_complete;
     /**
      * Status: bits 8 to 15.
-     * @note Note ACP-124 (open): Image status: no value for busy or done. The status of the operation lists errors
-     * only, so No Error stands for not started, running and finished.
+     * @note ACP-124 (open): Image status: no value for busy or done. The status of the operation lists errors only, so
+     * No Error stands for not started, running and finished.
      */
     cubeacp_im_save_status_t status;
 } cubeacp_status_of_image_capture_and_save_operation_t;

@@ -23,20 +23,20 @@
 typedef struct {
     /**
      * Geocentric longitude of target: bits 0 to 31, 32-bit float, in deg.
-     * @note Note ACP-138 (open): Target is geocentric, position is geodetic. The target is given by geocentric latitude
-     * and altitude, the satellite by WGS-84 ones; and longitude comes first here, latitude there. What a geocentric
+     * @note ACP-138 (open): Target is geocentric, position is geodetic. The target is given by geocentric latitude and
+     * altitude, the satellite by WGS-84 ones; and longitude comes first here, latitude there. What a geocentric
      * altitude is measured from is not said.
      */
     float geocentric_longitude_of_target;
     /**
      * Geocentric latitude of target: bits 32 to 63, 32-bit float, in deg.
-     * @note Note ACP-138 (open): see Geocentric longitude of target.
+     * @note ACP-138 (open): see Geocentric longitude of target.
      */
     float geocentric_latitude_of_target;
     /**
      * Geocentric altitude of target: bits 64 to 95, 32-bit float, in m.
      * @note Erratum ACP-139 (certain): meter is m. The unit is spelt out in one field.
-     * @note Note ACP-138 (open): see Geocentric longitude of target.
+     * @note ACP-138 (open): see Geocentric longitude of target.
      */
     float geocentric_altitude_of_target;
 } cubeacp_tracking_controller_target_reference_t;

@@ -24,14 +24,14 @@
 typedef struct {
     /**
      * Log Selection: bytes 0 to 9. Mask of up to 80 telemetry frames.
-     * @note Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned. Seventeen bits of the mask have
-     * no frame: 2, 5, 6 and 66 to 79. What a log with one of them set holds is not said.
+     * @note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned. Seventeen bits of the mask have no
+     * frame: 2, 5, 6 and 66 to 79. What a log with one of them set holds is not said.
      */
     uint8_t log_selection[10];
     /**
      * Log Period: bits 80 to 95, raw 0 to 65535. 0: logging disabled.
-     * @note Note ACP-183 (open): Log period has no unit. Zero switches logging off; seconds or iterations of the loop
-     * are both possible, and equal only while the loop runs at 1 Hz.
+     * @note ACP-183 (open): Log period has no unit. Zero switches logging off; seconds or iterations of the loop are
+     * both possible, and equal only while the loop runs at 1 Hz.
      */
     uint16_t log_period;
 } cubeacp_uart_log_configuration_t;

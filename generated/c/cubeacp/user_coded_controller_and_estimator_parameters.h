@@ -22,13 +22,13 @@
 typedef struct {
     /**
      * User Coded Controller Settings: bytes 0 to 47.
-     * @note Note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes without types; what they
-     * hold depends on code that the user supplies.
+     * @note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes without types; what they hold
+     * depends on code that the user supplies.
      */
     uint8_t user_coded_controller_settings[48];
     /**
      * User Coded Estimator Settings: bytes 48 to 95.
-     * @note Note ACP-178 (open): see User Coded Controller Settings.
+     * @note ACP-178 (open): see User Coded Controller Settings.
      */
     uint8_t user_coded_estimator_settings[48];
 } cubeacp_user_coded_controller_and_estimator_parameters_t;

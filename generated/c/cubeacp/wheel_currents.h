@@ -21,23 +21,23 @@
 typedef struct {
     /**
      * Wheel1Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): Wheel currents: by number, described by axis. The frame is described as XYZ wheel
-     * currents, its fields are numbered, and names run together although their descriptions do not.
-     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of 0.01 mA sixteen bits
-     * reach 655.35 mA, which a wheel motor may well exceed. All other currents have steps of 0.1 mA and more. The
-     * factor is held as printed.
+     * @note ACP-083 (open): Wheel currents: by number, described by axis. The frame is described as XYZ wheel currents,
+     * its fields are numbered, and names run together although their descriptions do not.
+     * @note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of 0.01 mA sixteen bits reach
+     * 655.35 mA, which a wheel motor may well exceed. All other currents have steps of 0.1 mA and more. The factor is
+     * held as printed.
      */
     uint16_t wheel1_current;
     /**
      * Wheel2Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): see Wheel1Current.
-     * @note Note ACP-084 (open): see Wheel1Current.
+     * @note ACP-083 (open): see Wheel1Current.
+     * @note ACP-084 (open): see Wheel1Current.
      */
     uint16_t wheel2_current;
     /**
      * Wheel3Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): see Wheel1Current.
-     * @note Note ACP-084 (open): see Wheel1Current.
+     * @note ACP-083 (open): see Wheel1Current.
+     * @note ACP-084 (open): see Wheel1Current.
      */
     uint16_t wheel3_current;
 } cubeacp_wheel_currents_t;

@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * Commanded X Wheel Speed: bits 0 to 15, raw -32768 to 32767, in rpm.
-     * @note Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds. The descriptions are those of
-     * the measured speeds; the names tell the difference. The telecommand names them again in another way.
+     * @note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds. The descriptions are those of the
+     * measured speeds; the names tell the difference. The telecommand names them again in another way.
      */
     int16_t commanded_x_wheel_speed;
     /**
      * Commanded Y Wheel Speed: bits 16 to 31, raw -32768 to 32767, in rpm.
-     * @note Note ACP-072 (certain): see Commanded X Wheel Speed.
+     * @note ACP-072 (certain): see Commanded X Wheel Speed.
      */
     int16_t commanded_y_wheel_speed;
     /**
      * Commanded Z Wheel Speed: bits 32 to 47, raw -32768 to 32767, in rpm.
-     * @note Note ACP-072 (certain): see Commanded X Wheel Speed.
+     * @note ACP-072 (certain): see Commanded X Wheel Speed.
      */
     int16_t commanded_z_wheel_speed;
 } cubeacp_wheel_speed_commands_t;

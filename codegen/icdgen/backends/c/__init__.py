@@ -12,7 +12,7 @@ from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
 from icdgen.backends.c.statement import call, head
-from icdgen.backends.c.text import comment, described, literal, noted, prose
+from icdgen.backends.c.text import FILE, comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, text_comment, words
@@ -82,7 +82,7 @@ def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, objec
     headers = (f"{name}.h" if folder == one.node.name else f"../{folder}/{name}.h" for folder, name in used)
     about = one.comment
     return {
-        "about": comment(["@file", about.head, *about.rest, *noted(about)]),
+        "about": comment([FILE, about.head, *about.rest, *noted(about)]),
         "includes": ["../icdgen_wide.h" if one.has_wide_steps else "../icdgen.h", *dict.fromkeys((*headers, *more))],
         "constants": constants.of_fields(one),
         "initial": constants.initial(one),
@@ -122,7 +122,7 @@ def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
 
     return {
         "node": node.name,
-        "about": comment(["@file", f"{words(node.model.title)}: how its messages travel."]),
+        "about": comment([FILE, f"{words(node.model.title)}: how its messages travel."]),
         "sizes": links.sizes(link),
         "tables": links.tables(link),
     }
@@ -137,7 +137,7 @@ def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
     headers = sorted({*(f"../{name}.h" for name in node.model.includes), *(f"{one.name}.h" for one in node.messages)})
     return {
         "node": node.name,
-        "about": comment(["@file", f"{words(node.model.title)}: a client that takes its messages only."]),
+        "about": comment([FILE, f"{words(node.model.title)}: a client that takes its messages only."]),
         "includes": ["link.h", *headers],
         "buses": [bus for bus, is_known in buses if is_known],
         "telecommands": [(one, one.telecommand_id_name) for one in node.telecommands],
@@ -151,6 +151,6 @@ def _node(node: NodeDescription) -> dict[str, object]:
     headers += [f"{node.name}/{one.name}.h" for one in node.composites]
     headers += [f"{node.name}/link.h", f"{node.name}/client.h"] if node.is_linked else []
     return {
-        "about": comment(["@file", f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),
+        "about": comment([FILE, f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),
         "includes": ["icdgen.h", *headers],
     }

@@ -55,14 +55,16 @@ class SetDetumblingControlParameters(_base.Message):
 
     wy-ref.
 
-    Must be below 0 deg/s.
+    Must be below 0 deg/s, which setters do not check.
 
     Note ACP-162 (certain): Limits of a sign in words only. Two references must always
     be smaller than 0; the types allow the opposite, and what the program does with it
     is not said.
     """
     spin_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
-    """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s."""
+    """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s, which
+    setters do not check.
+    """
     spin_rate_mdeg_per_s: int = _base.whole(1, 0)
     """Reference spin rate in thousandths of deg/s, exact: -32768 to 32767."""
 
