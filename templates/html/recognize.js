@@ -127,7 +127,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
       if (ids[id] === undefined) continue;
       const read = withChecksum(index, speaker, what, id, ids[id], data);
       if (read) yield read;
-      if (what === "telemetry" && !data.length && lengthOf(index, ids[id])) yield reading(index, speaker, "request", ids[id], id);
+      if (what === "telemetry" && !data.length && !fits(index, ids[id], data)) yield reading(index, speaker, "request", ids[id], id);
     }
     const [size, idAt, errorAt] = speaker.acknowledge ?? [];
     if (body.length === size && speaker.telemetry[id] === undefined && speaker.telecommands[body[idAt]] !== undefined) {
@@ -145,6 +145,19 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
 
   const lengthOf = (index, number) => index.messages[number][2];
 
+  /** Whether a message can have these data: by their number, and by what they say of it where frames differ in length. */
+  function fits(index, number, data) {
+    const [length, tail] = [lengthOf(index, number), index.messages[number][4]];
+    if (!tail) return data.length === length;
+    const count = (data.length - tail.least) / tail.step;
+    if (data.length < tail.least || data.length > length || !Number.isInteger(count)) return false;
+    const told = tail.pieces.reduce((sum, [byte, shift, bits, at]) => sum + ((data[byte] >> shift) & ((1 << bits) - 1)) * 2 ** at, 0);
+    return !tail.pieces.length || told === count;
+  }
+
+  /** Bytes of a message, for people. */
+  const lengthText = (index, number) => (index.messages[number][4] ? `${index.messages[number][4].least} to ` : "") + lengthOf(index, number);
+
   function reading(index, speaker, what, number, id, data = new Uint8Array(), remarks = [], checked = false) {
     const [message, url, , owner] = index.messages[number];
     return { what, message, node: speaker.node, title: speaker.title, url, id, data, checked, remarks, owner, key: `${what} ${url}` };
@@ -153,7 +166,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
   /** The message, if the bytes are as many as it has, or the right checksum follows them. */
   function withChecksum(index, speaker, what, id, number, data) {
     const length = lengthOf(index, number);
-    if (data.length === length) return reading(index, speaker, what, number, id, data);
+    if (fits(index, number, data)) return reading(index, speaker, what, number, id, data);
     if (!frames.check(speaker.crc, length, id, data)?.fits) return null;
     return reading(index, speaker, what, number, id, data.slice(0, length), ["CRC is right"], true);
   }
@@ -233,7 +246,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
       const right = frames.check(speaker.crc, lengthOf(index, number), id, data)?.right;
       if (right) return new Error(`${index.messages[number][0]}: as CRC ${frames.hex(right)} would be right, not ${frames.hex(data.slice(-right.length))}`);
     }
-    const told = [...known.values()].map(({ number }) => `${index.messages[number][0]} has ${lengthOf(index, number)} bytes`);
+    const told = [...known.values()].map(({ number }) => `${index.messages[number][0]} has ${lengthText(index, number)} bytes`);
     const [{ id, data }] = known.values();
     return new Error(`${told.join(" or ")}, ${data.length} given after the id ${id}`);
   }

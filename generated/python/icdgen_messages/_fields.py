@@ -22,7 +22,7 @@ class FieldInfo:
     __slots__ = (
         "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
         "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
-        "elements", "struct",
+        "elements", "is_open", "struct",
     )  # fmt: skip
 
     def __init__(
@@ -47,6 +47,7 @@ class FieldInfo:
         whole: str = "",
         default: _lazy.Any = None,
         elements: int = 0,
+        is_open: bool = False,
         struct: _lazy.Optional[type[_lazy.Struct]] = None,
     ) -> None:
         self.attribute = attribute
@@ -91,6 +92,8 @@ class FieldInfo:
 
         0 if it is no array.
         """
+        self.is_open = is_open
+        """Whether frames hold up to so many elements, or bytes: see `Message.TAIL`."""
         self.struct = struct
         """The class of what stands here, where that is a struct; the offsets in it begin at 0."""
 
@@ -129,7 +132,10 @@ class FieldInfo:
         for key in ("attribute", "name"):
             told[key] += f"[{index}]"
         told["at"] += index * self.bits
-        told["default"] = None if self.default is None else self.default[index]
+        if self.is_open or self.default is None:
+            told["default"] = None
+        else:
+            told["default"] = self.default[index]
         return FieldInfo(**{**told, "elements": 0})
 
     @property
@@ -187,6 +193,41 @@ class FieldInfo:
         return f"FieldInfo({', '.join(values)})"
 
 
+def has_elements(info: FieldInfo, values: _lazy.Any) -> bool:
+    """Whether there are as many values as an array takes."""
+    if not hasattr(values, "__getitem__") or not hasattr(values, "__len__"):
+        return False
+    count = len(values)
+    return count <= info.elements if info.is_open else count == info.elements
+
+
+def elements_of(info: FieldInfo) -> str:
+    """``6 values``: how many an array takes."""
+    return f"{'up to ' if info.is_open else ''}{info.elements} values"
+
+
+class Tail:
+    """The end of a message whose frames differ in length.
+
+    A frame is the beginning of the longest one, which has ``LENGTH`` bytes.
+    """
+
+    __slots__ = ("part", "counter", "step", "most")
+
+    def __init__(self, part: str, counter: str, step: int, most: int) -> None:
+        self.part = part
+        """The attribute that holds it: a tuple, or `bytes`."""
+        self.counter = counter
+        """The attribute that says how many elements it has.
+
+        Empty if only the length of the frame does.
+        """
+        self.step = step
+        """Bytes of an element."""
+        self.most = most
+        """The most elements."""
+
+
 class Form:
     """Another attribute of the field that is declared before it: its value in another form."""
 
@@ -240,8 +281,8 @@ def _array_property(info: FieldInfo, form: Form) -> property:
         return tuple((raw * p + c) / q for raw in getattr(self, attribute))
 
     def set_nearest(self: Any, values: Any) -> None:
-        if not hasattr(values, "__len__") or len(values) != info.elements:
-            raise RangeError(attribute, f"{info.elements} values", values)
+        if not has_elements(info, values):
+            raise RangeError(attribute, elements_of(info), values)
         found = (
             nearest_raw(value, f"{attribute}[{index}]", terms, info.raw_range)
             for index, value in enumerate(values)
@@ -262,7 +303,8 @@ def _text_property(info: FieldInfo) -> property:
     def set_text(self: Any, value: str) -> None:
         from ._codec import text_bytes
 
-        setattr(self, attribute, text_bytes(value, attribute, size))
+        raw = text_bytes(value, attribute, size)
+        setattr(self, attribute, raw[: len(value)] if info.is_open else raw)
 
     return property(get_text, set_text)
 
@@ -273,9 +315,9 @@ def field(
     """A field: the manual's name, offset and width in bits, type, and its first value.
 
     What else is told of it goes by the names of `FieldInfo`; the enumeration is that of
-    the default.
+    the default, unless it is told, too.
     """
-    if type == "enum":
+    if type == "enum" and "enum" not in told:
         one = default[0] if told.get("elements") else default
         told["enum"] = one.__class__
     return FieldInfo("", name, at, bits, type, default=default, **told)

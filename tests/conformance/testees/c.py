@@ -53,6 +53,7 @@ class MessageRow(NamedTuple):
     length: str
     ids: list[str]
     misfit: bool
+    is_open: bool
     fields: list[FieldRow]
 
 
@@ -77,6 +78,7 @@ class Dispatcher(NamedTuple):
     direction: str
     name: str
     routes: list[Route]
+    is_open: bool  # frames of some of its messages differ in length
 
 
 class CTesteeBackend:
@@ -133,7 +135,9 @@ class _Rows:
 
     def dispatcher(self, direction: str, messages: list[tuple[MessageDescription, str]]) -> Dispatcher:
         routes = [Route(names.constant(one, id), names.stem(one)) for one, id in messages]
-        return Dispatcher(direction, f"{self.node.name}_{direction}", routes)
+        return Dispatcher(
+            direction, f"{self.node.name}_{direction}", routes, any(one.tail is not None for one, _ in messages)
+        )
 
     def message(self, message: MessageDescription) -> MessageRow:
         return MessageRow(
@@ -141,6 +145,7 @@ class _Rows:
             length=names.constant(message, "length"),
             ids=[names.constant(message, id.name) for id in message.ids],
             misfit=message.is_narrow,
+            is_open=message.tail is not None,
             fields=[self.field(field) for field in (*message.fields, *message.views)],
         )
 

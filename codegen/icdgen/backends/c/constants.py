@@ -36,6 +36,7 @@ def initial(message: Composite[Any]) -> list[str]:
     return [
         f"message->{field.member} = {names.constant(field.declaration.message, one.name)};"
         for field in message.fields
+        if not field.is_open
         for one in field.constants
         if one.key == "const"
     ]

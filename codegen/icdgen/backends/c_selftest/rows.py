@@ -53,6 +53,17 @@ class FieldRow(NamedTuple):
     text: Accessors | None
 
 
+class TailRow(NamedTuple):
+    """What there is of a message whose frames differ in length."""
+
+    least: int
+    counter: int
+    most: int
+    lengths: list[str]
+    frames: list[str]
+    frame_lengths: list[int]
+
+
 class MessageRow(NamedTuple):
     """A message with its vectors: the reason for each, and its bytes, which are the frame, then the packed raw values."""
 
@@ -65,6 +76,7 @@ class MessageRow(NamedTuple):
     texts: list[str]
     fields: list[FieldRow]
     refused_lengths: list[int]
+    tail: TailRow | None
 
 
 def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
@@ -111,13 +123,14 @@ class _Rows:
 
     def lengths(self, direction: Direction, id_bits: int) -> list[str]:
         """Some ids and the lengths of their messages, -1 where there is none."""
-        lengths = {getattr(one.model, f"{direction.kind}_id"): one.model.length for one, _ in direction.messages}
-        return [f"{{{id}u, {lengths.get(id, -1)}}}" for id in worth_asking(lengths, id_bits)]
+        lengths = {getattr(one.model, f"{direction.kind}_id"): one.model for one, _ in direction.messages}
+        known = ((id, lengths.get(id)) for id in worth_asking(lengths, id_bits))
+        return [f"{{{id}u, {one.length}, {one.least}u}}" if one else f"{{{id}u, -1, 0u}}" for id, one in known]
 
     def message(self, message: MessageDescription, vectors: MessageVectors) -> MessageRow:
         kept = bytes(message.model.length)
         for row in vectors.rows:  # reserved bits are those that no vector keeps
-            kept = bytes(a | b for a, b in zip(kept, row.encoded, strict=True))
+            kept = bytes(a | b for a, b in zip(kept, row.encoded.ljust(len(kept), b"\0"), strict=True))
         tables: dict[str, str] = {}
         fields = [self.field(field, vectors, tables) for field in message.all_fields]
         size = message.model.length + sum(field.packed for field in fields)
@@ -132,10 +145,11 @@ class _Rows:
             texts=[f"{_text(text)}," for row in vectors.rows for text in row.texts.values()],
             fields=fields,
             refused_lengths=list(vectors.lengths),
+            tail=_tail(message, vectors) if message.tail is not None else None,
         )
 
     def vector(self, row: Row, fields: list[FieldRow]) -> list[str]:
-        data = bytearray(row.frame)
+        data = bytearray(row.frame.ljust(fields[0].field.message.model.length if fields else 0, b"\0"))
         for field in fields:
             value = row.raw[field.field.model.name]
             if isinstance(value, bytes):
@@ -168,6 +182,20 @@ class _Rows:
             scaled=_scaled(one, vectors.settings.get(field.name)) if field.scale else None,
             text=_texts(one, vectors.settings[field.name]) if one.is_text else None,
         )
+
+
+def _tail(message: MessageDescription, vectors: MessageVectors) -> TailRow:
+    tail, length = message.tail, message.model.length
+    assert tail is not None
+    frames = b"".join(frame.ljust(length, b"\0") for frame in vectors.miscounted)
+    return TailRow(
+        least=tail.least,
+        counter=next(place for place, one in enumerate(message.all_fields) if one.model == tail.counter.model),
+        most=tail.most,
+        lengths=in_rows((str(len(row.frame)) for row in vectors.rows), BYTES_IN_ROW),
+        frames=_bytes(frames),
+        frame_lengths=[len(frame) for frame in vectors.miscounted],
+    )
 
 
 def _accessors(field: FieldDescription, end: str, type: str, rows: list[str]) -> Accessors:

@@ -51,6 +51,8 @@ def _of_field(field: FieldDescription) -> Iterator[str]:
 
 def _fields(one: Composite[Any], scope: str) -> Iterator[Identifier]:
     for field in one.all_members:
+        if field.model.implied:
+            continue
         for name in (*_of_field(field), *(constant.name.upper() for constant in field.constants)):
             yield field.identifier(scope, name)
             if name in names.IN_MESSAGE:

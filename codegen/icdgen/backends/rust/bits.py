@@ -20,6 +20,8 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3) -> str:
     """
     if field.struct is not None:
         return _structs(field, field.struct, tables, depth)
+    if field.model.implied:
+        return "0"
     if field.count:
         return _array(field, depth) if _is_run(field) else _listed(field, tables, depth)
     one, row = field.model, field.pieces
@@ -164,13 +166,18 @@ def fitting(field: FieldDescription) -> list[str]:
         return [f"for part in &self.{field_name(field)} {{", f"{STEP}part.fit()?;", "}"]
     raw = ".raw()" if field.enum is not None else ""
     if field.count:
-        lines = f"for value in self.{field_name(field)} {{", f"{STEP}{field.name.upper()}.fit(value{raw})?;", "}"
+        values = f"self.{field_name(field)}"
+        if field.is_open:
+            values = f"self.{field_name(field)}().iter().copied()"
+        lines = f"for value in {values} {{", f"{STEP}{field.name.upper()}.fit(value{raw})?;", "}"
         return list(lines)
     return [f"{field.name.upper()}.fit(self.{field_name(field)}{raw})?;"]
 
 
 def writing(field: FieldDescription) -> list[str]:
     """Statements that put the raw value into ``bytes``, without the bits that its field has no room for."""
+    if field.model.implied:
+        return []
     if field.count:
         return _put_run(field) if _is_run(field) else [line for one in field.elements for line in writing(one)]
     one, row, source = field.model, field.pieces, f"self.{field_name(field)}"

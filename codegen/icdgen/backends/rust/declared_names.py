@@ -13,6 +13,7 @@ from icdgen.describe.description import Composite
 from icdgen.naming import DEVICES
 
 _METHODS = ("from_bytes", "from_array", "to_bytes", "default")
+_OPEN_METHODS = ("from_longest", "size")
 _CONSTANTS = ("NAME", "LENGTH", "ID", "SET_ID", "GET_ID")
 _METHODS_OF_STRUCTS = ("fit", "rows", "default")
 _CONSTANTS_OF_STRUCTS = ("NAME", "FIELDS")
@@ -71,10 +72,12 @@ def _members(
 ) -> Iterator[Identifier]:
     where = f"{message.node.name}::{message.model.name}"
     fields, methods, associated = f"fields of {where}", f"methods of {where}", f"constants of {where}"
-    yield from _ours(methods, used_methods)
+    yield from _ours(methods, (*used_methods, *(_OPEN_METHODS if message.tail is not None else ())))
     yield from _ours(associated, used_constants)
     for field in message.all_members:
         is_view = field.model.view
+        if message.tail is not None and field.is_open:
+            yield field.identifier(methods, names.field_name(field))
         yield field.identifier(methods if is_view else fields, names.field_name(field))
         if field.has_physical:
             yield field.identifier(methods, field.physical_name)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 # Keys of a field that only few fields have.
 RARE = ("enum", "unit", "formula", "formula_for", "const", "special", "min", "max", "above", "below", "bitfields",
-    "byte_order", "bit_order", "count", "view",
+    "byte_order", "bit_order", "count", "view", "up_to",
 )  # fmt: skip
 
 Owner = Message | Struct
@@ -53,7 +53,9 @@ class Context:
         self.messages: list[tuple[Message, Node]] = [(m, n) for n in icd.nodes for m in n.messages]
         self.structs: list[tuple[Struct, Node]] = [(one, n) for n in icd.nodes for one in n.structs]
         self.owners: list[tuple[Owner, Node]] = [*self.messages, *self.structs]  # of fields
-        self.members: list[Row] = [(f, m, n) for m, n in self.owners for f in m.members]  # an array once
+        self.members: list[Row] = [
+            (f, m, n) for m, n in self.owners for f in m.members if not f.implied
+        ]  # an array once
         self.fields: list[Row] = [row for row in self.members if row[0].struct is None]
         self.having: dict[str, list[Row]] = {key: [] for key in RARE}  # fields that have the key
         having = self.having

@@ -64,7 +64,7 @@ def _sound(ctx: Context) -> Icd:
             if not has_faults((f,))
             and not any(id(s.struct) in wrong or (s.member and id(s.member.source) in members) for s in f.path)
         )
-        return message if len(kept) == len(message.fields) else replace(message, fields=kept)
+        return message if len(kept) == len(message.fields) else message.with_fields(kept)
 
     def sound_node(node: Node) -> Node:
         messages = tuple(sound(m) for m in node.messages if id(m.source) not in twins)

@@ -11,7 +11,8 @@ from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.duplicates import names_twice
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import close_to, line_of, quote
+from icdgen.icd.rules.wording import line_of, quote
+from icdgen.suggest import close_to
 
 _OF_MEMBERS = frozenset({"at", "name", "identifier", "struct", "count", "summary"})
 """Keys of a struct where it stands."""

@@ -36,6 +36,7 @@ typedef struct {
     size_t field_count;
     void (*init)(void *message);
     const char *(*misfit)(const void *message); /* NULL if every value of every member fits */
+    size_t (*frame_size)(const void *message);  /* NULL unless frames differ in length */
 } testee_message_t;
 
 /* A message that is reached under an id. */
@@ -54,6 +55,7 @@ typedef struct {
     icd_status_t (*decode)(void *any, uint32_t id, const uint8_t *buffer, size_t length);
     icd_status_t (*encode)(const void *any, uint8_t *buffer, size_t capacity);
     icd_status_t (*length)(uint32_t id, size_t *length);
+    icd_status_t (*frame_size)(const void *any, size_t *size); /* NULL if no frames differ in length */
     const char *(*name)(uint32_t id);
 } testee_dispatcher_t;
 

@@ -73,6 +73,8 @@ def _encode(node: Any, words: Words) -> str:
     try:
         for held in _held(message):
             _set(held, words)
+        if message.TAIL is not None:
+            _cut(message, words)
         return _described(message)
     except RangeError as error:
         raise Refusal(f"range field={_hex(names[error.field])}") from None
@@ -90,6 +92,8 @@ def _set(held: Held, words: Words) -> None:
             setattr(owner, info.physical, bytes.fromhex(word[1:]).decode())
         elif word[0] == "p":
             setattr(owner, info.physical, _floats.float64(int(word[1:])))
+        elif info.is_open and len(word) != 1 + info.bits // 4:
+            raise Refusal(f"range field={_hex(held.name)}")
         else:
             setattr(owner, info.attribute, _raw(info, word[1:]))
     except RangeError:
@@ -134,6 +138,29 @@ def _held(owner: Any, head: str = "") -> Iterator[Held]:
             yield from _held(one, f"{name}[{index}]." if info.elements else f"{name}.")
 
 
+def _cut(message: Message, words: Words) -> None:
+    """Leaves the elements that are to be in the frame."""
+    tail: Any = message.TAIL
+    if tail.counter:
+        count = getattr(message, tail.counter)
+    else:
+        count = int(next(words)[1:])
+        if not 0 <= count <= tail.most:
+            raise Refusal(f"range field={_hex(_implied(message).name)}")
+    values = getattr(message, tail.part)
+    if isinstance(values, bytes):
+        values = values.ljust(tail.most, b"\0")
+    setattr(message, tail.part, values[:count])
+
+
+def _implied(message: Message) -> FieldInfo:
+    """The number of elements as a field, where no field of the frame has it."""
+    tail: Any = message.TAIL
+    info = next(one for one in message.FIELDS if one.attribute == tail.part)
+    name = f"{info.name} {'Count' if info.elements else 'Size'}"
+    return FieldInfo("", name, 0, 8, "uint")
+
+
 class Element:
     """A field, or an element of an array."""
 
@@ -143,23 +170,40 @@ class Element:
 
     def get(self, attribute: str) -> Any:
         """Its value."""
-        value = getattr(self.owner, attribute)
-        return value[self.index] if self.info.elements else value
+        info, owner = self.info, self.owner
+        if not attribute:
+            return len(getattr(owner, owner.TAIL.part))
+        value = getattr(owner, attribute)
+        if not info.elements:
+            is_cut = info.is_open and attribute == info.attribute
+            return value.ljust(info.bits // 8, b"\0") if is_cut else value
+        if self.index < len(value):
+            return value[self.index]
+        p, c, q = info.scale  # it is not in the frame
+        if attribute == info.physical:
+            return c / q
+        return info.enum(0) if info.enum else 0.0 if info.type == "float" else 0
 
     def set(self, attribute: str, value: Any) -> None:
         """Sets it, and leaves the other elements as they are."""
         if self.info.elements:
-            values = list(getattr(self.owner, attribute))
+            given = list(getattr(self.owner, attribute))
+            values = [given[i] if i < len(given) else 0 for i in range(self.index + 1)]
+            values += given[self.index + 1 :]
             values[self.index] = value
             value = tuple(values)
         setattr(self.owner, attribute, value)
 
 
 def _elements(message: Message) -> list[Element]:
-    views = (Held(message, info, info.name) for info in message.VIEWS)
+    found = list(_held(message))
+    if message.TAIL is not None and not message.TAIL.counter:
+        info = _implied(message)
+        found.append(Held(message, info, info.name))
+    found += (Held(message, info, info.name) for info in message.VIEWS)
     return [
         Element(held, index)
-        for held in (*_held(message), *views)
+        for held in found
         for index in range(held.info.elements or 1)
     ]
 
