@@ -9,10 +9,10 @@ from __future__ import annotations
 from icdgen.describe.description import (
     FieldDescription,
     MessageDescription,
-    NodeDescription,
     StructDescription,
 )
 from icdgen.describe.enums import EnumDescription
+from icdgen.describe.nodes import NodeDescription
 from icdgen.describe.whole import Description, describe
 
 __all__ = [

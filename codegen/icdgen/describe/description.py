@@ -16,7 +16,6 @@ from icdgen.describe.errata import Thing, tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.describe.wholes import part_of_unit
-from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Enum, Field, Icd, Message, Node, Struct
 from icdgen.icd.paths import Step, placed
 
@@ -29,7 +28,9 @@ class Whole(Protocol):
     @property
     def id_bits(self) -> int: ...
 
-    def node(self, node: str | Node) -> NodeDescription: ...
+    def log_bits(self, node: Node) -> dict[int, int]: ...
+
+    def spoken(self, node: Node) -> tuple[MessageDescription, ...]: ...
 
     def message(self, message: Message) -> MessageDescription: ...
 
@@ -371,7 +372,7 @@ class MessageDescription(Composite[Message]):
         """The messages that it repeats, each with the bit at which it begins, in the order of the ICD."""
         if not self.model.contains:
             return ()
-        known = {one.model.name: one for one in self._description.node(self.node).spoken}
+        known = {one.model.name: one for one in self._description.spoken(self.node)}
         return tuple((known[one.message], one.at) for one in self.model.contains if one.message in known)
 
     @cached_property
@@ -402,83 +403,6 @@ class MessageDescription(Composite[Message]):
 
     @cached_property
     def comment(self) -> Comment:
-        bits = self._description.node(self.node).log_bits
+        bits = self._description.log_bits(self.node)
         telemetry_id = self.model.telemetry_id
         return message_comment(self.model, None if telemetry_id is None else bits.get(telemetry_id))
-
-
-class Direction(NamedTuple):
-    """What a node speaks in one direction: messages, each with the name of its id there (``id``, ``set_id`` or ``get_id``)."""
-
-    kind: str  # "telecommand" | "telemetry"
-    messages: tuple[tuple[MessageDescription, str], ...]
-
-
-class NodeDescription:
-    """A node (``model``) of the set."""
-
-    def __init__(self, description: Whole, node: Node) -> None:
-        self._description, self.model, self.name = description, node, node.name
-
-    def identifier(self, scope: str, name: str) -> Identifier:
-        """A name that generated code declares for it."""
-        return Identifier(scope, name, f"node `{self.name}`", self.model.source)
-
-    @cached_property
-    def messages(self) -> tuple[MessageDescription, ...]:
-        """Those that it declares."""
-        return tuple(map(self._description.message, self.model.messages))
-
-    @cached_property
-    def enums(self) -> tuple[EnumDescription, ...]:
-        """Those that it declares."""
-        return tuple(map(self._description.enum, self.model.enums))
-
-    @cached_property
-    def structs(self) -> tuple[StructDescription, ...]:
-        """Those that it declares, each after those that it has in it."""
-        return tuple(map(self._description.struct, self.model.structs))
-
-    @property
-    def composites(self) -> tuple[Composite[Any], ...]:
-        """Structs and messages that it declares, each after those that it has in it."""
-        return (*self.structs, *self.messages)
-
-    @cached_property
-    def spoken(self) -> tuple[MessageDescription, ...]:
-        """All messages that it speaks: those of included nodes first."""
-        return tuple(map(self._description.message, self._description.icd.messages_of(self.model)))
-
-    @property
-    def telecommands(self) -> tuple[MessageDescription, ...]:
-        """Those of `spoken` that can be sent to it."""
-        return tuple(one for one in self.spoken if one.model.telecommand_id is not None)
-
-    @property
-    def telemetry(self) -> tuple[MessageDescription, ...]:
-        """Those of `spoken` that can be requested from it."""
-        return tuple(one for one in self.spoken if one.model.telemetry_id is not None)
-
-    @property
-    def directions(self) -> tuple[Direction, ...]:
-        """Telecommands, then telemetry; without one of which it has none."""
-        found = (
-            Direction("telecommand", tuple((one, one.telecommand_id_name) for one in self.telecommands)),
-            Direction("telemetry", tuple((one, one.telemetry_id_name) for one in self.telemetry)),
-        )
-        return tuple(direction for direction in found if direction.messages)
-
-    @property
-    def is_linked(self) -> bool:
-        """Whether it is known how its messages travel."""
-        return bool(self._description.icd.protocol_of(self.model))
-
-    @property
-    def id_bits(self) -> int:
-        """Those of the set: see `Description.id_bits`."""
-        return self._description.id_bits
-
-    @cached_property
-    def log_bits(self) -> dict[int, int]:
-        """Telemetry id -> the bit of the log mask that selects it."""
-        return {row.id: row.bit for row in self.model.loggable}

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from icdgen.describe.description import MessageDescription, NodeDescription, StructDescription
+from icdgen.describe.description import MessageDescription, StructDescription
 from icdgen.describe.enums import EnumDescription, enum_widths
+from icdgen.describe.nodes import NodeDescription
 from icdgen.describe.storage import holding
 from icdgen.icd.model import Enum, Icd, Message, Node, Struct
 
@@ -31,6 +32,14 @@ class Description:
     def node(self, node: str | Node) -> NodeDescription:
         """The description of a node, by its name or of the node itself. Raises `KeyError`."""
         return self._nodes[node if isinstance(node, str) else node.name]
+
+    def log_bits(self, node: Node) -> dict[int, int]:
+        """See `NodeDescription.log_bits`."""
+        return self.node(node).log_bits
+
+    def spoken(self, node: Node) -> tuple[MessageDescription, ...]:
+        """See `NodeDescription.spoken`."""
+        return self.node(node).spoken
 
     def message(self, message: Message) -> MessageDescription:
         """The description of a message, whoever speaks it."""

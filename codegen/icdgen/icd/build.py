@@ -11,6 +11,7 @@ from typing import TypeVar
 
 from icdgen.icd import division, formula, model, tails, wire_ids
 from icdgen.icd.errata import Applied
+from icdgen.icd.implied import implied_count
 from icdgen.icd.located import Map, plain
 from icdgen.icd.units import STANDARD, Unit
 
@@ -187,7 +188,7 @@ class Builder:
         end = replace(end, bits=8 * most) if "size" in item else replace(end, count=most)
         if counter is not None:
             return tail, end.elements
-        implied = model.implied_count(end, message["length"] + most * tail.step)
+        implied = implied_count(end, message["length"] + most * tail.step)
         return replace(tail, counter=implied.name), (*end.elements, implied)
 
     def fields(self, around: Orders, item: Map) -> tuple[model.Field, ...]:

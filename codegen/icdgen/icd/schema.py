@@ -127,8 +127,6 @@ def _rule_at(path: list[Any]) -> dict[str, Any]:
     """The sub-schema that failed: the path without its last keyword, references followed."""
     node: Any = _schema()
     for step in path[:-1]:
-        if step in ("then", "else") and "properties" in node and "properties" not in node[step]:
-            continue  # which keys there must be depends on another
         if isinstance(node, dict) and step not in node and "$ref" in node:
             node = _follow(node)
         if step == "$ref":

@@ -14,6 +14,7 @@ from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError
 from icdgen.icd import model, schema, source
 from icdgen.icd.formula import Scale
+from icdgen.icd.implied import implied_count
 from icdgen.icd.located import Map, Seq, plain
 from icdgen.icd.units import STANDARD, Unit
 from icdgen.show import machine
@@ -173,7 +174,7 @@ class _Reader:
         counter = told.get("counter")
         if counter is None:
             end = next(one for one in members if one.name == told["part"])
-            implied = model.implied_count(end, item["length"])
+            implied = implied_count(end, item["length"])
             counter, fields = implied.name, (*fields, implied)
         return {"fields": fields, "tail": model.Tail(told["part"], counter, told["step"], told["most"])}
 
