@@ -24,17 +24,38 @@ __all__ = [
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from inspect import Signature
-    from typing import Callable, ClassVar, Literal
+    from typing import Any, Callable, ClassVar, Generic, Literal
 
-    from typing_extensions import ParamSpec, dataclass_transform
+    from typing_extensions import ParamSpec, Self, TypeVar, dataclass_transform
 
     from ._hints import S
 
     P = ParamSpec("P")
+    N_contra = TypeVar("N_contra", contravariant=True, default=Any)
+
+    class Spoken(Generic[N_contra]):
+        """What type checkers are told of which node speaks a message."""
+
+        @classmethod
+        def _made(cls) -> Self: ...
+
+        @staticmethod
+        def _spoken_by(node: N_contra, /) -> None: ...
+
 else:
 
     def dataclass_transform(**_):
         return lambda cls: cls
+
+    N_contra = None
+
+    class Spoken:
+        """Nothing, when the program runs."""
+
+        __slots__ = ()
+
+        def __class_getitem__(cls, node):
+            return cls
 
 
 @dataclass_transform(
@@ -218,7 +239,7 @@ class Struct(metaclass=MessageType):
         return f"{type(self).__name__}({', '.join(values)})"
 
 
-class Message(Struct):
+class Message(Spoken[N_contra], Struct):
     """A message that travels: a frame of ``LENGTH`` bytes, under an id."""
 
     __slots__ = ()

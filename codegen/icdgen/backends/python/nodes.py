@@ -55,6 +55,12 @@ def listing(names: Iterable[str]) -> str:
     return exploded("[", [literal(name) for name in names], "]")
 
 
+def spoken(node: NodeDescription, description: Description) -> dict[str, object]:
+    """The nodes whose messages it speaks, too, as the bases of a class."""
+    included = [one.name for one in reversed(description.icd.included(node.model))]
+    return {"included": included, "bases": f"({', '.join(f'_{name}' for name in included)})" if included else ""}
+
+
 def mapping(pairs: Sequence[tuple[str | int, str]]) -> str:
     """A dictionary of names."""
     rows = (f"{literal(key) if isinstance(key, str) else key}: {literal(value)}" for key, value in pairs)
