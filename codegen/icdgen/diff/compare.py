@@ -23,7 +23,8 @@ from icdgen.diff.layers import LAYERS
 from icdgen.diff.match import match
 from icdgen.diff.pairs import Match, MessagePair, NodePair, Pair
 from icdgen.diff.rule import REGISTERED, Check, Found, Rule
-from icdgen.icd.model import Erratum, Icd
+from icdgen.icd.annex import Erratum
+from icdgen.icd.model import Icd
 
 RULES: dict[str, Rule] = dict(sorted(REGISTERED.items()))
 _CHECKS: dict[tuple[str, str], dict[Check, str]] = {}  # and the code of what it finds, unless it names another

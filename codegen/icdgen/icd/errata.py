@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Set
 
 from icdgen.diagnostics import Finding, Place
+from icdgen.icd.annex import Erratum
 from icdgen.icd.located import Map, Seq, unread
-from icdgen.icd.model import Erratum
 from icdgen.suggest import close_to
 
 _AGAIN = "look at the manual again, then update or remove the entry"

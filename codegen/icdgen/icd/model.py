@@ -12,6 +12,8 @@ from fractions import Fraction
 from typing import Any
 
 from icdgen.frozen import dataclass
+from icdgen.icd.annex import Erratum, Loggable, Missing
+from icdgen.icd.curve import Curve, leads_back
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, unread
 from icdgen.icd.paths import Step, lines_of, members_of, name_of, placed
@@ -22,33 +24,6 @@ TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configurati
 # Where the ICD gives no other numbers.
 CAN_DATA_BYTES = 8  # of a packet
 CAN_PACKETS = 256  # of an extended message
-
-
-@dataclass(frozen=True, slots=True)
-class Erratum:
-    """A decision about a fault of the manual; or a note, which holds and accepts nothing: ``why`` is what it says."""
-
-    id: str
-    title: str
-    why: str
-    evidence: str
-    confidence: str  # "certain" | "likely" | "open"; a note may do without: ""
-    tables: tuple[int, ...] = ()
-    printed: tuple[tuple[str, object], ...] = ()
-    held: tuple[tuple[str, object], ...] = ()
-    changes: bool = False
-    is_note: bool = False
-    source: Map = field(default_factory=unread, compare=False, repr=False)
-
-    @property
-    def label(self) -> str:
-        """What it is called in comments and on pages."""
-        return "Note" if self.is_note else "Erratum"
-
-    @property
-    def sureness(self) -> str:
-        """Its confidence in brackets behind a name, if it has one."""
-        return f" ({self.confidence})" if self.confidence else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +100,8 @@ class Field:
     enum: Enum | None = None
     unit: Unit | None = None
     formula: str = ""  # as held, for documentation
-    scale: Scale | None = None  # None: the physical value is the raw value
+    scale: Scale | None = None  # of a number, where the formula is a line
+    curve: Curve | None = None  # of any other formula, and of one on floats; without either, it is the raw value
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
@@ -182,6 +158,16 @@ class Field:
         if not self.path:
             return self.identifier
         return ".".join(step.alias for step in self.path) if any(step.identifier for step in self.path) else None
+
+    @property
+    def has_formula(self) -> bool:
+        """Whether its physical value is computed from the raw one."""
+        return self.scale is not None or self.curve is not None
+
+    @property
+    def leads_back(self) -> bool:
+        """Whether a physical value gives the nearest raw one: always, but with some polynomials."""
+        return self.curve is None or leads_back(self.curve, self.type == "float", self.raw_min, self.raw_max)
 
     @property
     def is_bytes(self) -> bool:
@@ -356,27 +342,6 @@ class Message:
     def ids(self) -> tuple[int, ...]:
         """All wire ids: one, or set id and get id."""
         return tuple(i for i in (self.id, self.set_id, self.get_id) if i is not None)
-
-
-@dataclass(frozen=True, slots=True)
-class Loggable:
-    """One bit of the log mask (bit 0: least significant bit of the first byte) and the frame it selects."""
-
-    bit: int
-    id: int
-    name: str = ""
-    errata: tuple[Erratum, ...] = ()
-    source: Map = field(default_factory=unread, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Missing:
-    """A message that the manual mentions and does not describe."""
-
-    kind: str
-    id: int
-    name: str
-    why: str
 
 
 @dataclass(frozen=True, slots=True)

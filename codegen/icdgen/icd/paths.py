@@ -66,6 +66,11 @@ def placed(member: Field, element: Field, fields: Iterable[Field]) -> tuple[Fiel
     )
 
 
+def has_struct(fields: Iterable[Field], struct: object) -> bool:
+    """Whether a struct stands somewhere in what has these fields."""
+    return any(step.struct is struct for field in fields for step in field.path)
+
+
 def members_of(fields: tuple[Field, ...]) -> tuple[Field, ...]:
     """Fields as they are declared: an array stands as one, and so does a struct."""
     if not any(field.path for field in fields):

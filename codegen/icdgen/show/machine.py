@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from icdgen.describe.bounds import bounds
+from icdgen.icd.annex import Erratum, Loggable
 from icdgen.icd.located import plain
-from icdgen.icd.model import Enum, Erratum, Field, Icd, Limits, Loggable, Member, Message, Node, Struct
+from icdgen.icd.model import Enum, Field, Icd, Limits, Member, Message, Node, Struct
 
 FORMAT = 1
 SCHEMA = Path(__file__).parent.with_name("show.schema.json")
@@ -109,7 +110,8 @@ def _field(field: Field) -> _Object:
         unit=field.unit.symbol if field.unit else None,
         scale=str(scale.factor) if scale else None,
         scale_offset=str(scale.offset) if scale and scale.offset else None,
-        formula=field.formula if scale else None,
+        coefficients=list(field.curve.coefficients) if field.curve else None,
+        formula=field.formula if field.has_formula else None,
         special=[_attributes(one) for one in field.special],
         limits=_limits(field.limits),
         view=True if field.view else None,

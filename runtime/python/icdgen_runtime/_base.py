@@ -4,7 +4,18 @@ from __future__ import annotations
 
 # Itself: what annotations name is loaded when they are evaluated.
 from . import _lazy
-from ._fields import FieldInfo, Form, Tail, field, part, scaled, text, whole
+from ._fields import (
+    FieldInfo,
+    Form,
+    Tail,
+    curve,
+    curve_only,
+    field,
+    part,
+    scaled,
+    text,
+    whole,
+)
 
 __all__ = [
     "FieldInfo",
@@ -12,7 +23,10 @@ __all__ = [
     "MessageType",
     "Struct",
     "Tail",
+    "curve",
+    "curve_only",
     "field",
+    "on_curve",
     "part",
     "scaled",
     "text",
@@ -58,7 +72,8 @@ else:
 
 
 @dataclass_transform(
-    kw_only_default=True, field_specifiers=(field, part, scaled, whole, text)
+    kw_only_default=True,
+    field_specifiers=(field, part, scaled, curve, curve_only, whole, text),
 )
 class MessageType(type):
     """Makes the class of a message or a struct: a dataclass with slots, of fields that `field` declares.
@@ -167,7 +182,7 @@ class Struct(metaclass=MessageType):
             Raises `RangeError`, and `TypeError` for a raw value that has a physical one.
             """
             for info in cls.FIELDS:
-                if info.physical and info.attribute in values:
+                if info.physical and info.leads_back and info.attribute in values:
                     raise TypeError(
                         f"from_physical takes {info.physical}, not {info.attribute}"
                     )
@@ -329,3 +344,10 @@ def view(message: Message, attribute: str, kind: type[_lazy.T]) -> _lazy.T:
 
     value: _lazy.T = seen(message, attribute, kind)
     return value
+
+
+def on_curve(coefficients: tuple[float, ...], raw: float) -> float:
+    """The physical value of a view, by a polynomial whose constant stands first."""
+    from ._curves import on_curve as found
+
+    return found(coefficients, raw)

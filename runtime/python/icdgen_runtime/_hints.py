@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Union, cast
 
+from . import _lazy
+
 if TYPE_CHECKING:
     from typing_extensions import TypeVar as TypeVarWithDefault
-
-    from ._base import Message, Struct
 
     N = TypeVarWithDefault("N", default=Any)
 else:
@@ -20,8 +20,8 @@ Buffer = Union[bytes, bytearray, memoryview]
 Frames = Union[Buffer, Iterable[Buffer]]
 """Many frames: one after the other, or a list of them."""
 
-M = TypeVar("M", bound="Message")
-S = TypeVar("S", bound="Struct")
+M = TypeVar("M", bound="_lazy.Message")
+S = TypeVar("S", bound="_lazy.Struct")
 T = TypeVar("T")
 M_co = TypeVar("M_co", covariant=True)
 N_contra = TypeVar("N_contra", contravariant=True)
@@ -50,6 +50,6 @@ def class_of(message: KindOf[Any, M]) -> type[M]:
     return cast("type[M]", message)
 
 
-def message_of(message: SpokenBy[Any]) -> Message:
+def message_of(message: SpokenBy[Any]) -> _lazy.Message:
     """The message that it is."""
-    return cast("Message", message)
+    return cast("_lazy.Message", message)

@@ -108,14 +108,14 @@ def _field(field: FieldDescription) -> FieldEntry:
     if field.is_text:
         get, set = (f"|m| {within}.{field.physical_name}()", f"|m, text| {within}.set_{field.physical_name}(text)")
         text = f"Some(Text {{ get: {get}, set: {set} }})"
-    if field.steps is not None:
+    if field.is_scaled:
         get, set = f"{within}.{field.physical_name}", f"{within}.set_{field.physical_name}"
         index = field.model.index
         if index is None:
             get, set = f"|m| {get}()", f"|m, value| {set}(value)"
         else:
             get, set = f"|m| {get}({index}).unwrap_or_default()", f"|m, value| {set}({index}, value)"
-        set = "|_, _| Ok(())" if field.model.view else set
+        set = set if field.is_set else "|_, _| Ok(())"
         scale = f"Some(Scale {{ get: {get}, set: {set} }})"
     owner = field.declaration.message
     type = "Self" if owner is field.message else f"{CRATE}::{owner.node.name}::{names.type_name(owner)}"

@@ -9,8 +9,9 @@ from functools import cached_property
 from icdgen.backends.assurance import changes
 from icdgen.backends.assurance.changes import Change
 from icdgen.backends.assurance.noticing import MessageWatch
+from icdgen.icd.annex import Erratum
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Erratum, Field, Icd, Member, Message, Node, Struct
+from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node, Struct
 from icdgen.vectors.lines import NodeLines, lines
 from icdgen.vectors.make import NodeVectors, make
 from icdgen.vectors.write import text
@@ -108,9 +109,6 @@ class Trace:
                     continue
                 found = changes.of_field(field, message, node)
                 own = tuple(Traced(change, _noticed(node, watch.member(place, field, now))) for change, now in found)
-                if message.tail is not None and message.tail.name == field.name:
-                    ends = changes.of_end(message)
-                    own += tuple(Traced(change, _noticed(node, watch.end(now))) for change, now in ends)
                 yield Element("field", node, message, field, row, own)
                 place += len(field.elements)
 

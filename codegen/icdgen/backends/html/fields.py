@@ -9,7 +9,8 @@ from icdgen import layout
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.sections import Section
-from icdgen.icd.model import Enum, Erratum, Field, Member, Message, Node
+from icdgen.icd.annex import Erratum
+from icdgen.icd.model import Enum, Field, Member, Message, Node
 from icdgen.show.fields import remarks
 
 
@@ -105,7 +106,7 @@ def _row(key: int, field: Field, links: Links, anchor: str) -> FieldRow:
         unit=field.unit.symbol if field.unit else "",
         unit_url=links.unit(field.unit) if field.unit else "",
         unit_title=field.unit.quantity if field.unit else "",
-        formula=field.formula if field.scale else "",
+        formula=field.formula if field.has_formula else "",
         summary=field.summary,
         notes=tuple(_notes(field)),
         errata=field.errata,

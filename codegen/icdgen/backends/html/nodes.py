@@ -5,7 +5,8 @@ from __future__ import annotations
 from icdgen.backends.html import examples, protocol, texts, wire
 from icdgen.backends.html.relations import Place, Relations, document, manual
 from icdgen.describe.errata import errata_of_message
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Erratum, Loggable, Message, Node
+from icdgen.icd.annex import Erratum, Loggable
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.wire_ids import DEFAULT_BITS
 
 _KINDS = {TELECOMMAND: "Telecommands", TELEMETRY: "Telemetry", CONFIGURATION: "Configuration"}
@@ -31,7 +32,7 @@ def home(relations: Relations) -> dict[str, object]:
         (f"{len(errata):,}", "known errata"),
         (f"{notes:,}", "notes"),
     ]
-    example = next((m for m in messages if m.telemetry_id is not None and any(f.scale for f in m.fields)), None)
+    example = next((m for m in messages if m.telemetry_id is not None and any(f.has_formula for f in m.fields)), None)
     return {
         "totals": totals,
         "cards": [_card(relations, node) for node in icd.nodes],

@@ -68,13 +68,15 @@ def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]
     narrow = [field for field in fields if (field.struct or field).is_narrow]
     scales = [field for field in one.all_members if has_constant(field)]
     has_text = any(field.is_text for field in fields)
-    has_elements = any(field.count and field.steps is not None for field in fields)
+    has_elements = any(field.count and field.is_scaled for field in fields)
+    curves = [field for field in one.all_members if field.curve is not None]
     imported |= {
         "element_of": has_elements,
         "put_element": has_elements,
         "text": has_text,
         "text_array": has_text,
         "Big": one.has_wide_steps,
+        "Curve": bool(curves),
         "Scale": any(field.steps is None or not field.steps.is_wide for field in scales),
         "Wide": one.has_wide_steps,
     }
@@ -83,6 +85,7 @@ def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]
         "constants": constants.of_fields(one),
         "fits": [line for field in narrow for line in bits.fitting(field)],
         "scales": scales,
+        "curves": curves,
         "default": None if has_default else _literal(fields, [_fresh(field) for field in fields]),
         "derives": ", ".join(derived + ([] if one.has_floats else ["Eq", "Hash"])),
         "imports": f"{{{', '.join(names)}}}" if len(names) > 1 else names[0],

@@ -12,7 +12,8 @@ from typing import Any, TypeVar
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError
-from icdgen.icd import model, schema, source
+from icdgen.icd import annex, model, schema, source
+from icdgen.icd.curve import Curve
 from icdgen.icd.formula import Scale
 from icdgen.icd.implied import implied_count
 from icdgen.icd.located import Map, Seq, plain
@@ -119,7 +120,7 @@ class _Reader:
         self.enums: dict[str, model.Enum] = {}
         self.structs: dict[str, model.Struct] = {}
         self.units: dict[str, Unit] = dict(STANDARD)
-        self.errata: dict[str, model.Erratum] = {}
+        self.errata: dict[str, annex.Erratum] = {}
 
     def node(self, item: Map) -> model.Node:
         get = item.get
@@ -146,14 +147,14 @@ class _Reader:
             vocabulary=tuple(get("vocabulary", ())),
             units=units,
             protocol=plain(get("protocol", {})),
-            loggable=tuple(self.row(model.Loggable, row) for row in item["loggable"]),
-            missing=tuple(model.Missing(**_as_it_is(model.Missing, one)) for one in get("missing", ())),
+            loggable=tuple(self.row(annex.Loggable, row) for row in item["loggable"]),
+            missing=tuple(annex.Missing(**_as_it_is(annex.Missing, one)) for one in get("missing", ())),
             errata=tuple(self.errata.values()),
             file=item.place.file,
             source=item,
         )
 
-    def about(self, item: Map) -> tuple[model.Erratum, ...]:
+    def about(self, item: Map) -> tuple[annex.Erratum, ...]:
         return tuple(self.errata[id] for key in ("errata", "notes") for id in item.get(key, ()) if id in self.errata)
 
     def row(self, kind: Callable[..., Thing], item: Map, **more: object) -> Thing:
@@ -206,6 +207,7 @@ class _Reader:
             unit=self.units.get(item.get("unit", "")),
             formula=item.get("formula", ""),
             scale=_scale(item),
+            curve=Curve(tuple(map(float, item["coefficients"]))) if "coefficients" in item else None,
             special=tuple(model.Special(**_as_it_is(model.Special, one)) for one in item.get("special", ())),
             limits=model.Limits(**limits) if "limits" in item else None,
             view=item.get("view", False),
@@ -225,10 +227,10 @@ def _scale(item: Map) -> Scale | None:
     return Scale(factor, Fraction(item.get("scale_offset", "0")))
 
 
-def _erratum(item: Map) -> model.Erratum:
+def _erratum(item: Map) -> annex.Erratum:
     is_note = "what" in item
-    return model.Erratum(
-        **{"confidence": "", **_as_it_is(model.Erratum, item)},
+    return annex.Erratum(
+        **{"confidence": "", **_as_it_is(annex.Erratum, item)},
         why=item["what" if is_note else "why"],
         tables=tuple(item.get("tables", ())),
         printed=tuple(item.get("printed", {}).items()),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.icd import division
+from icdgen.icd import division, tails
 from icdgen.icd.located import Map
 from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context, mappings
@@ -92,7 +92,15 @@ def struct_says(ctx: Context) -> Iterator[Fault]:
             if key not in _OF_MEMBERS:
                 message = f"{quote(row['name'])} is a struct, which has no `{key}`: its fields have"
                 yield Fault(row, row.at(key), message, f"move it to the fields of {quote(row['struct'])}, or remove it")
+        if tails.is_open(row):
+            message = f"{quote(row['name'])} has no fixed `count`, and the elements of an open end are numbers"
+            yield Fault(row, row.at("count"), message, "write how many there are, or describe an element as numbers")
     for struct, _ in ctx.structs:
+        for row in mappings(struct.source.get("fields")):
+            if tails.is_open(row) and isinstance(row.get("name"), str) and "struct" not in row:
+                message = f"{quote(row['name'])} has no fixed size, and a struct has no open end"
+                key = "size" if "size" in row else "count"
+                yield Fault(row, row.at(key), message, "only the last part of a message may be open")
         for field in struct.lines:
             if field.view:
                 message = f"{quote(field.name)} is a view, and a struct has none: there is no frame that it would read"
