@@ -158,15 +158,15 @@ structs:
     fields:
       - {at: 0, name: Match, struct: Odd, count: 2}
       - {at: 147, bits: 32, name: Across, type: float}
-      - {at: 184, bits: 32, name: Whole Float, type: float, byte_order: big}
+      - {at: 184, bits: 32, name: Whole Float, type: float, byte_order: big, formula: raw*57.29578}
       - {at: 216, bits: 64, name: Longest, type: int, special: [{value: -1, meaning: none}]}
-      - {at: 282, bits: 3, count: 3, name: Crossing, type: uint, byte_order: big}
+      - {at: 282, bits: 3, count: 3, name: Crossing, type: uint, byte_order: big, formula: raw^3 - 9*raw}
       - {at: 296, bits: 8, count: 2, name: Turns, type: enum, enum: Turn}
   - name: Row
     length: 40
     fields:
       - {at: 0, bits: 32, count: 9, name: Floats, type: float}
-      - {at: 288, bits: 8, name: One, type: uint}
+      - {at: 288, bits: 8, name: One, type: uint, formula: raw^2 + raw*0.5}
 messages:
   - name: Structs
     id: 0x01020308

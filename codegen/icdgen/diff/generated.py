@@ -118,7 +118,7 @@ class Generated:
 
     def retyped(self, pair: FieldPair) -> list[tuple[str, str, str]]:
         """Language, old and new type of the raw value, where they differ."""
-        if not _is_sound(pair.old) or not _is_sound(pair.new) or is_of_struct(pair.any):
+        if not _is_sound(pair.old) or not _is_sound(pair.new) or pair.is_of_struct:
             return []
         types = ((one, self._before.type_of(one, pair), self._under_old_owners.type_of(one, pair)) for one in LANGUAGES)
         return [(language, before, after) for language, before, after in types if before != after]
@@ -188,11 +188,6 @@ def _decisive(field: Field) -> object:
     enum = field.enum.name if field.enum is not None else None
     formula = field.scale, field.curve
     return field.type, field.bits, field.count, enum, field.unit, formula, field.special, field.limits, field.const
-
-
-def is_of_struct(field: Field) -> bool:
-    """Whether a struct declares its names, and no message."""
-    return any(step.struct is not None for step in field.path)
 
 
 def _is_sound(field: Field) -> bool:
@@ -268,7 +263,7 @@ class _Cut:
                 own.append(one)
                 continue
             part = fields[_place(one)]
-            if id(part) not in self.kept or not _is_sound(one) or is_of_struct(one):
+            if id(part) not in self.kept or not _is_sound(one) or part.is_of_struct:
                 continue
             enum = self.enums.get(id(one.enum), one.enum)
             field = self.marked(one, part, enum=enum)

@@ -289,8 +289,8 @@ _MESSAGES_LIKELY = ((_moved_message, _name, SAME_MESSAGE), (_renamed_message, _m
 
 
 def _printed(message: Message) -> list[Field]:
-    """The members that the ICD has lines for."""
-    return [one for one in message.members if not one.implied]
+    """The fields that the ICD has lines for, those of structs wherever they stand."""
+    return [one for one in message.lines if not one.implied]
 
 
 def _fields(pair: MessagePair) -> list[FieldPair]:
