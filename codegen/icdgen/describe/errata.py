@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from icdgen.icd.annex import Erratum
+from icdgen.icd.erratum import Erratum
 from icdgen.icd.model import Enum, Field, Member, Message, Struct
 
 Thing = Message | Struct | Field | Enum | Member

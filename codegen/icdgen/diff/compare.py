@@ -24,7 +24,7 @@ from icdgen.diff.layers import LAYERS
 from icdgen.diff.match import match
 from icdgen.diff.pairs import FieldPair, Match, MessagePair, NodePair, Pair
 from icdgen.diff.rule import REGISTERED, Check, Found, Rule
-from icdgen.icd.annex import Erratum
+from icdgen.icd.erratum import Erratum
 from icdgen.icd.model import Icd
 from icdgen.icd.rules.wording import listing, quote
 

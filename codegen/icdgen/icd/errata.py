@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Set
 
 from icdgen.diagnostics import Finding, Place
-from icdgen.icd.annex import Erratum
+from icdgen.icd.erratum import Erratum
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.suggest import close_to
 

@@ -12,8 +12,9 @@ from fractions import Fraction
 from typing import Any
 
 from icdgen.frozen import dataclass
-from icdgen.icd.annex import Erratum, Loggable, Missing
+from icdgen.icd.annex import Loggable, Missing
 from icdgen.icd.curve import Curve, leads_back
+from icdgen.icd.erratum import Erratum as Erratum
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, unread
 from icdgen.icd.paths import Step, lines_of, members_of, name_of, placed
@@ -69,10 +70,11 @@ class Enum:
 
 @dataclass(frozen=True, slots=True)
 class Special:
-    """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out'."""
+    """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out', or NaN for 'not known'."""
 
-    value: int
+    value: int  # of a float its bits
     meaning: str
+    number: str = ""  # of a float: `nan`, `inf`, `-inf`, or the shortest decimal
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +103,7 @@ class Field:
     unit: Unit | None = None
     formula: str = ""  # as held, for documentation
     scale: Scale | None = None  # of a number, where the formula is a line
-    curve: Curve | None = None  # of any other formula, and of one on floats; without either, it is the raw value
+    curve: Curve | None = None  # of any other formula, and of one on floats; without either it is the raw value
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
@@ -273,6 +275,7 @@ class Message:
     contains: tuple[Part, ...] = ()
     reserved: int = 0  # bytes at the end that are said to be reserved
     tail: Tail | None = None  # where frames differ in length
+    may_end_early: str = ""  # "zeros": frames may be sent without the zeros that they end with; else empty
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
@@ -280,6 +283,8 @@ class Message:
     @property
     def least(self) -> int:
         """Bytes of the shortest frame."""
+        if self.may_end_early:
+            return min(1, self.length)  # of zeros alone, one is sent
         return self.length - (self.tail.most * self.tail.step if self.tail else 0)
 
     @property

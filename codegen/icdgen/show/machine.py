@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from icdgen.describe.bounds import bounds
-from icdgen.icd.annex import Erratum, Loggable
+from icdgen.icd.annex import Loggable
+from icdgen.icd.erratum import Erratum
 from icdgen.icd.located import plain
 from icdgen.icd.model import Enum, Field, Icd, Limits, Member, Message, Node, Struct
 

@@ -30,6 +30,7 @@ __all__ = [
     "cubeacp",
     "cubemag",
     "cubewheel",
+    "is_special",
 ]
 
 TYPE_CHECKING = False
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from ._base import Message as Message
     from ._base import Struct as Struct
     from ._enumeration import OpenEnum as OpenEnum
+    from ._floats import is_special as is_special
 
 NODES = (
     "bootloader",
@@ -57,6 +59,7 @@ _HOMES = {
     "Message": "._base",
     "OpenEnum": "._enumeration",
     "Struct": "._base",
+    "is_special": "._floats",
 }
 
 

@@ -271,12 +271,14 @@ class Message(Spoken[N_contra], Struct):
         """The messages that it repeats: their nodes, their classes, and from which bit."""
         TAIL: ClassVar[Tail | None]
         """The end of frames that differ in length."""
+        ENDS_EARLY: ClassVar[bool]
+        """Whether frames may lack the zeros that they end with."""
         BYTE_ORDER: ClassVar[Literal["little", "big"]]
         BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
     else:
         IDS = PARTS = ()
         TABLE = TAIL = None
-        ACKNOWLEDGED = True
+        ENDS_EARLY, ACKNOWLEDGED = False, True
         BYTE_ORDER, BIT_ORDER = "little", "lsb0"
 
     @classmethod
@@ -318,7 +320,7 @@ class Message(Spoken[N_contra], Struct):
 
         The names are those of `as_dict`. What stands on whole bytes is a view of the
         frames, or of a copy of them if they can change. Raises `LengthError` if they
-        are not whole frames. Frames that differ in length are given one by one, as a
+        are not whole frames. Frames that differ in length, or end early, are given one by one, as a
         list; what ends them is an array of arrays, or of bytes. Needs numpy.
         """
         from . import _columns

@@ -121,7 +121,8 @@ def _field(field: FieldDescription) -> FieldEntry:
     type = "Self" if owner is field.message else f"{CRATE}::{owner.node.name}::{names.type_name(owner)}"
     known = [(one.key, f"{type}::{one.name.upper()}") for one in field.constants if one.key != "const"]
     if field.model.special:
-        special = f"|| vec![{', '.join(f'i128::from({name})' for key, name in known if key == 'special')}]"
+        bits = ".to_bits()" if field.model.type == "float" else ""
+        special = f"|| vec![{', '.join(f'i128::from({name}{bits})' for key, name in known if key == 'special')}]"
     if field.bounds:
         values = ", ".join(f'("{key}", {name} as f64)' for key, name in known if key != "special")
         limits = f"|| vec![{values}]"

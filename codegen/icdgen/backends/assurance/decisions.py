@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from icdgen.backends.assurance.paper import Cell, Group, Page, lines_of
 from icdgen.backends.assurance.places import Files
 from icdgen.backends.assurance.trace import Element
-from icdgen.icd.annex import Erratum
 from icdgen.icd.errata import section
+from icdgen.icd.erratum import Erratum
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Icd, Node
 

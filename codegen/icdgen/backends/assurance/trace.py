@@ -9,7 +9,7 @@ from functools import cached_property
 from icdgen.backends.assurance import changes
 from icdgen.backends.assurance.changes import Change
 from icdgen.backends.assurance.noticing import MessageWatch
-from icdgen.icd.annex import Erratum
+from icdgen.icd.erratum import Erratum
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node, Struct
 from icdgen.vectors.lines import NodeLines, lines

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.backends.python import names
-from icdgen.backends.python.fields import number
+from icdgen.backends.python.fields import constant
 from icdgen.describe import EnumDescription, MessageDescription, StructDescription
 from icdgen.describe.description import Composite
 from icdgen.describe.parts import parts_of
@@ -17,12 +17,12 @@ def values(message: MessageDescription) -> dict[str, object]:
     return {**shared(message), "parts": sorted(parts, key=lambda one: one[0])}
 
 
-def shared(one: Composite[Any]) -> dict[str, object]:
+def shared(composite: Composite[Any]) -> dict[str, object]:
     """The enumerations and structs that are imported for a message or a struct, and the constants of its fields."""
-    used_by: tuple[EnumDescription | StructDescription, ...] = (*one.enums, *one.structs)
+    used_by: tuple[EnumDescription | StructDescription, ...] = (*composite.enums, *composite.structs)
     return {
-        "imports": sorted(_import(used, one) for used in used_by),
-        "constants": [(constant, number(constant.value)) for field in one.all_members for constant in field.constants],
+        "imports": sorted(_import(used, composite) for used in used_by),
+        "constants": [(one, constant(one, field)) for field in composite.all_members for one in field.constants],
     }
 
 

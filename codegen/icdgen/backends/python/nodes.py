@@ -18,6 +18,7 @@ _OF_NODE = (
 )  # fmt: skip
 _OF_PACKAGE = (
     "NODES", "FieldInfo", "IcdError", "LengthError", "Message", "OpenEnum", "RangeError", "Struct", "UnknownIdError",
+    "is_special",
 )  # fmt: skip
 
 

@@ -30,7 +30,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "take": any("take!(" in reading for reading in (*readings, *(reading for _, reading in views))),
         "counted": tail is not None and not tail.counter.model.implied,
         "elements": tail is not None,
-        "longest": tail is not None,
+        "longest": tail is not None or bool(message.model.may_end_early),
         "present": tail is not None,
         "words": any("words(" in reading for reading in readings),
         "Coded": any(field.enum for field in message.all_fields),

@@ -32,7 +32,7 @@ class _Declared(NamedTuple):
 _NOTHING = _Declared({}, {})
 
 
-@rule("DIF125", "message")
+@rule("DIF127", "message")
 def structs_repeated_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     said = set()
     for part in pair.kept:

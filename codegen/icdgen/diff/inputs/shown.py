@@ -120,7 +120,7 @@ class _Reader:
         self.enums: dict[str, model.Enum] = {}
         self.structs: dict[str, model.Struct] = {}
         self.units: dict[str, Unit] = dict(STANDARD)
-        self.errata: dict[str, annex.Erratum] = {}
+        self.errata: dict[str, model.Erratum] = {}
 
     def node(self, item: Map) -> model.Node:
         get = item.get
@@ -154,7 +154,7 @@ class _Reader:
             source=item,
         )
 
-    def about(self, item: Map) -> tuple[annex.Erratum, ...]:
+    def about(self, item: Map) -> tuple[model.Erratum, ...]:
         return tuple(self.errata[id] for key in ("errata", "notes") for id in item.get(key, ()) if id in self.errata)
 
     def row(self, kind: Callable[..., Thing], item: Map, **more: object) -> Thing:
@@ -227,10 +227,10 @@ def _scale(item: Map) -> Scale | None:
     return Scale(factor, Fraction(item.get("scale_offset", "0")))
 
 
-def _erratum(item: Map) -> annex.Erratum:
+def _erratum(item: Map) -> model.Erratum:
     is_note = "what" in item
-    return annex.Erratum(
-        **{"confidence": "", **_as_it_is(annex.Erratum, item)},
+    return model.Erratum(
+        **{"confidence": "", **_as_it_is(model.Erratum, item)},
         why=item["what" if is_note else "why"],
         tables=tuple(item.get("tables", ())),
         printed=tuple(item.get("printed", {}).items()),
