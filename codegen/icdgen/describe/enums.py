@@ -6,10 +6,10 @@ from functools import cached_property
 
 from icdgen import naming
 from icdgen.describe.comments import Comment, enum_comment, member_comment
-from icdgen.describe.errata import tellers, told_elsewhere
+from icdgen.describe.errata import Thing, tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding
-from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
+from icdgen.icd.model import Enum, Icd, Member, Message, Node, Struct
 
 
 def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
@@ -18,8 +18,9 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
     for node in icd.nodes:
         for enum in node.enums:
             found[enum.node, enum.name] = max(found.get((enum.node, enum.name), 1), enum.bits)
-        for message in node.messages:
-            for field in message.fields:
+        every: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
+        for one in every:
+            for field in one.fields:
                 if field.enum is not None:
                     key = field.enum.node, field.enum.name
                     found[key] = max(found.get(key, 1), field.bits)
@@ -48,7 +49,7 @@ class EnumDescription(Named[Enum]):
         return naming.snake(naming.words(one.identifier or one.name, self.node.vocabulary))
 
     @cached_property
-    def tellers(self) -> dict[str, Message | Field | Enum | Member]:
+    def tellers(self) -> dict[str, Thing]:
         """By the ids of errata: which part of the enumeration tells of it."""
         return tellers((self.model, *(member.model for member in self.members)))
 
