@@ -314,7 +314,7 @@ icdgen: 1
 node: {name: open, title: Messages of variable length, byte_order: big, bit_order: msb0}
 enums:
   - name: Gauge
-    members: [{value: 0, to: 1, name: First}, {value: 300, name: Last},
+    members: [{value: 1, name: First}, {value: 300, name: Last},
               {value: 2, to: 255, name: "Between \\" */"}, {value: 400, to: 401, name: Two}]
   - name: Narrow Gauge
     members: [{value: -1, name: Before}, {value: 1, name: After}]
