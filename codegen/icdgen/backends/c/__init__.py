@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from icdgen.backends import Identifier
 from icdgen.backends.c import accessors, bits, constants, decoding, encoding, fields, names, parts, types
 from icdgen.backends.c.declared_names import declared_names
+from icdgen.backends.c.member_groups import in_groups
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
 from icdgen.backends.c.statement import call, head
@@ -76,7 +77,7 @@ class CBackend:
 def _message(message: MessageDescription) -> dict[str, object]:
     folders = sorted({field.enum.node.name for field in message.all_fields if field.enum is not None})
     enums = ("enums.h" if folder == message.node.name else f"../{folder}/enums.h" for folder in folders)
-    about = message.comment
+    about, groups = message.comment, in_groups(message.sent_fields)
     return {
         "about": comment([FILE, about.head, *about.rest, *noted(about)]),
         "includes": ["../icdgen_wide.h" if message.has_wide_steps else "../icdgen.h", *enums, *parts.headers(message)],
@@ -84,10 +85,11 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "initial": constants.initial(message),
         "declaration": types.declaration,
         "empty": decoding.EMPTY,
-        "decode": decoding.statements(message),
+        "decode": decoding.statements(message, groups),
         "excess": bits.excess,
+        "narrow": [(field, bits.excess(field)) for field in message.fields if field.is_narrow and not field.is_open],
         "excess_type": bits.excess_type(message),
-        "encode": encoding.statements(message),
+        "encode": encoding.statements(message, groups),
         **(_tail(message, message.tail) if message.tail else {}),
         "views": [accessors.view(field) for field in message.views],
         "whole_accessors": accessors.whole_accessors(message),

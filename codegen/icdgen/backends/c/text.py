@@ -45,7 +45,11 @@ def plain(text: str) -> str:
 @lru_cache(maxsize=8192)
 def prose(text: str) -> str:
     """`plain` text for a documentation comment: only backticks are markup, nothing is a command or HTML to Doxygen or clang."""
-    return _MARKUP.sub(r"\\\g<0>", plain(text))
+    return _MARKUP.sub(_escaped, plain(text))
+
+
+def _escaped(found: re.Match[str]) -> str:  # a template in the place of it is read anew for each text
+    return f"\\{found[0]}"
 
 
 def _spelled(paragraph: str) -> str:
