@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import NamedTuple
 
 from icdgen import layout, naming
@@ -18,6 +17,7 @@ from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.curve import Curve
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
+from icdgen.once import cached_property
 
 
 class FieldDescription(Named[Field]):
