@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from icdgen.describe.description import Description, FieldDescription
+from icdgen.describe.description import FieldDescription
+from icdgen.describe.whole import Description
 from icdgen.frozen import dataclass
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.once import cached_property

@@ -95,8 +95,10 @@ def _row(fields: Members, begin: int) -> Row | None:
     for field in fields[end:]:
         at += bits
         is_next = field.model.bits == bits and field.model.at == at
+        is_next = is_next and field.holder == first.holder  # a struct may end with padding
         if not (is_next and is_word(field) and field.storage.bits == bits and field.byte_order == first.byte_order):
             break
         end += 1
     row = fields[begin:end]
-    return Row(row) if len(row) >= LONG_ENOUGH or (len(row) > 1 and all(field.model.path for field in row)) else None
+    is_array = len(row) > 1 and all(field.model.index is not None for field in row)
+    return Row(row) if len(row) >= LONG_ENOUGH or is_array else None
