@@ -111,6 +111,9 @@ def _message(home: _Home, message: Message) -> Iterator[Mutant]:
                 yield on_message("id", f"{key} {number} -> {number + step}", **{key: number + step})
     for step in (-1, 1) if message.tail is None else ():  # an open end begins where it ends
         yield on_message("length", f"length {message.length} -> {message.length + step}", length=message.length + step)
+    for step in (-1, 1) if message.source.get("reserved") else ():
+        reserved, length = base["messages"][0]["reserved"] + step, message.length + step
+        yield on_message("reserved", f"reserved {reserved - step} -> {reserved}", reserved=reserved, length=length)
     for key, values in (("byte_order", ("little", "big")), ("bit_order", ("lsb0", "msb0"))):
         own = key in base["messages"][0]
         other = values[(base["messages"][0] if own else base["node"])[key] == values[0]]
