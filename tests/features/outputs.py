@@ -165,6 +165,13 @@ def words_of(icd: Icd, frames: dict[str, list[bytes]]) -> dict[str, list[list[st
     for message in node.messages:
         rows = [frame(icd, node, message, data).rows for data in _some(frames[message.name], WORDS)]
         found[message.name] = [[f"{row.field.name}={row.text}" for row in one if not row.field.view] for one in rows]
+        if any(row.field.special for row in rows[0]):
+            found[message.name].append(
+                [
+                    f"{row.field.name}={row.field.special[0].meaning if row.field.special else row.text}"
+                    for row in rows[0]
+                ]
+            )
     return found
 
 
@@ -246,7 +253,7 @@ def _columns(subject: Subject) -> object:
         ]
         if not frames:
             continue
-        given = frames if message.tail else b"".join(frames)
+        given = frames if len(message.lengths) > 1 else b"".join(frames)
         columns, table = cls.decode_many(given), cls.decode_table(given)
         assert len(table) == len(frames)
         said.append(
