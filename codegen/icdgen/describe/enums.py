@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 from icdgen.describe.comments import Comment, enum_comment, member_comment
 from icdgen.describe.errata import Thing, tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding
 from icdgen.icd.model import Enum, Icd, Member, Message, Node, Struct
+from icdgen.once import cached_property
 
 
 def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:

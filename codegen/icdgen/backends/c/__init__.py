@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from icdgen.backends import Identifier
 from icdgen.backends.c import accessors, bits, constants, decoding, encoding, fields, names, parts, types
 from icdgen.backends.c.declared_names import declared_names
+from icdgen.backends.c.member_groups import in_groups
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
 from icdgen.backends.c.statement import call, head
@@ -93,13 +94,15 @@ def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, objec
 
 
 def _message(message: MessageDescription) -> dict[str, object]:
+    groups = in_groups(message.sent_fields)
     return {
         **_composite(message, parts.headers(message)),
         "empty": decoding.EMPTY,
-        "decode": decoding.statements(message),
+        "decode": decoding.statements(message, groups),
         "excess": bits.excess,
+        "narrow": [(field, bits.excess(field)) for field in message.fields if field.is_narrow and not field.is_open],
         "excess_type": bits.excess_type(message),
-        "encode": encoding.statements(message),
+        "encode": encoding.statements(message, groups),
         **(_tail(message, message.tail) if message.tail else {}),
         "views": [accessors.view(field) for field in message.views],
         "parts": parts.parts(message),
