@@ -28,7 +28,7 @@ from tests.devices.definition import Definition, NotHeld, Values
 from tests.devices.mavlink import _read as mavlink_reads
 
 DEVICES = {path.stem: path for path in sorted((ROOT / "examples" / "devices").glob("*/*.yaml"))}
-LANGUAGES = ["python", *(name for name, tool in (("c", "gcc"), ("rust", "cargo")) if shutil.which(tool))]
+LANGUAGES = ["python", *(name for name, tool in (("c", "gcc"), ("rust-debug", "cargo")) if shutil.which(tool))]
 FRAMES = 40
 
 
