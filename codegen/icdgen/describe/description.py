@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple, Protocol, TypeVar
 
@@ -15,6 +16,7 @@ from icdgen.describe.enums import EnumDescription
 from icdgen.describe.errata import Thing, tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
+from icdgen.describe.tails import TailDescription
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.curve import Curve
 from icdgen.icd.model import Enum, Field, Icd, Message, Node, Struct
@@ -218,21 +220,6 @@ class Id(NamedTuple):
     comment: str
 
 
-class TailDescription(NamedTuple):
-    """The open end of a message: see `icdgen.icd.model.Tail`."""
-
-    part: FieldDescription  # the array as one, or the bytes or text
-    counter: FieldDescription  # how many elements there are; implied, or a field of the frame
-    least: int  # bytes of a frame without any element
-    step: int  # bytes of an element
-    most: int  # elements
-
-    @property
-    def is_bound(self) -> bool:
-        """Whether the integer that holds the count holds larger ones than there can be."""
-        return self.counter.storage.max > self.most
-
-
 Fielded = TypeVar("Fielded", bound=Message | Struct)
 
 
@@ -292,6 +279,11 @@ class Composite(Named[Fielded]):
     def sent(self) -> tuple[FieldDescription, ...]:
         """Members that have bits in the frame: without the count that only the length of the frame tells."""
         return self.members if self.tail is None else tuple(one for one in self.members if not one.model.implied)
+
+    @property
+    def sent_fields(self) -> tuple[FieldDescription, ...]:
+        """The fields that are read and written one by one."""
+        return self.fields
 
     @cached_property
     def leaves(self) -> tuple[FieldDescription, ...]:
@@ -373,12 +365,26 @@ class MessageDescription(Composite[Message]):
         part, counter = (
             next(one for one in self.members if one.model.name == name) for name in (tail.name, tail.counter)
         )
-        return TailDescription(part, counter, self.model.least, tail.step, tail.most)
+        return TailDescription(part, counter, self.model.least, tail.step, tail.most, self._element(part))
+
+    def _element(self, part: FieldDescription) -> StructDescription | None:
+        if part.struct is None:
+            return None
+        byte_order, bit_order = part.model.orders(self.node)
+        fields = (
+            replace(one, byte_order=one.byte_order or byte_order, bit_order=one.bit_order or bit_order)
+            for one in part.struct.model.fields
+        )
+        return StructDescription(self._description, replace(part.struct.model, fields=tuple(fields)), part.struct.node)
 
     @property
     def sent_fields(self) -> tuple[FieldDescription, ...]:
-        """Fields that have bits in the frame, each element of an array."""
-        return self.fields if self.tail is None else tuple(one for one in self.fields if not one.model.implied)
+        """Fields that have bits in the frame, each element of an array, but those of open structs: see `TailDescription.element`."""
+        if self.tail is None:
+            return self.fields
+        return tuple(
+            one for one in self.fields if not one.model.implied and not (self.tail.element is not None and one.is_open)
+        )
 
     @cached_property
     def contained(self) -> tuple[tuple[MessageDescription, int], ...]:

@@ -16,7 +16,8 @@ from icdgen.backends.c.text import FILE, comment, described, literal, noted, pro
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, text_comment, words
-from icdgen.describe.description import Composite, TailDescription
+from icdgen.describe.description import Composite
+from icdgen.describe.tails import TailDescription
 from icdgen.describe.numbers import byte_count, length_text
 from icdgen.icd.model import Icd
 
@@ -109,7 +110,23 @@ def _message(message: MessageDescription) -> dict[str, object]:
 
 def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, object]:
     """What the code of frames that differ in length needs."""
+    element = tail.element
+    of_element = (
+        None
+        if element is None
+        else {
+            "type": f"{names.stem(element)}_t",
+            "reading": names.reading(message, tail),
+            "writing": names.writing(message, tail),
+            "read": decoding.statements(element),
+            "write": encoding.statements(element),
+            "decode": decoding.of_elements(message, tail),
+            "encode": encoding.of_elements(message, tail),
+            "narrow": [one for one in element.fields if one.is_narrow],
+        }
+    )
     return {
+        "element": of_element,
         "size": encoding.size(message),
         "misfit_length": decoding.misfit_length(tail, names.constant(message, "length")),
         "miscounted": decoding.miscounted(tail),
