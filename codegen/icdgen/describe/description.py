@@ -229,6 +229,8 @@ class Composite(Named[Fielded]):
     def __init__(self, description: Whole, model: Fielded, node: Node, what: str) -> None:
         super().__init__(model, node.vocabulary, f"{what} `{model.name}`")
         self._description, self.node = description, node
+        self.seen_from = node
+        """The node in whose code it is read and written."""
 
     @cached_property
     def comment(self) -> Comment:
@@ -375,11 +377,13 @@ class MessageDescription(Composite[Message]):
             replace(one, byte_order=one.byte_order or byte_order, bit_order=one.bit_order or bit_order)
             for one in part.struct.model.fields
         )
-        return StructDescription(self._description, replace(part.struct.model, fields=tuple(fields)), part.struct.node)
+        found = StructDescription(self._description, replace(part.struct.model, fields=tuple(fields)), part.struct.node)
+        found.seen_from = self.node
+        return found
 
     @property
     def sent_fields(self) -> tuple[FieldDescription, ...]:
-        """Fields that have bits in the frame, each element of an array, but those of open structs: see `TailDescription.element`."""
+        """Fields that have bits in the frame, each element of an array, but those of open structs."""
         if self.tail is None:
             return self.fields
         return tuple(

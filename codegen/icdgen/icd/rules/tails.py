@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.icd import tails
 from icdgen.icd.located import Map
-from icdgen.icd.model import Node
-from icdgen.icd.model import Message
+from icdgen.icd.model import Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
