@@ -98,6 +98,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         **_composite(message, parts.headers(message)),
         "empty": decoding.EMPTY,
         "decode": decoding.statements(message),
+        "element": None,
         "excess": bits.excess,
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message),
