@@ -6,7 +6,7 @@ from typing import Any
 
 from icdgen.backends.c import bits
 from icdgen.backends.c.decoding import element_place
-from icdgen.backends.c.member_groups import Flags, Row, in_groups
+from icdgen.backends.c.member_groups import Flags, Groups, Row
 from icdgen.backends.c.names import stem, writing
 from icdgen.backends.c.statement import assigned_byte, call
 from icdgen.backends.lines import STEP
@@ -35,11 +35,11 @@ def of_elements(message: MessageDescription, tail: TailDescription) -> list[str]
     ]
 
 
-def statements(message: Composite[Any]) -> list[str]:
+def statements(message: Composite[Any], groups: Groups) -> list[str]:
     """Statements that write every byte of the frame once, in order, but for structs of an open end."""
     if message.tail is not None and message.tail.element is not None:
-        return _Frame(message, message.tail.least).in_order()
-    frame = _Frame(message, message.model.length)
+        return _Frame(message, groups, message.tail.least).in_order()
+    frame = _Frame(message, groups, message.model.length)
     unused = [] if message.fields else ["(void)message;"]
     if not message.fields and not message.model.length:
         unused.append("(void)buffer;")
@@ -49,12 +49,12 @@ def statements(message: Composite[Any]) -> list[str]:
 class _Frame:
     """What goes where: whole bytes by a statement, others as terms that are or-ed together."""
 
-    def __init__(self, message: Composite[Any], length: int) -> None:
+    def __init__(self, message: Composite[Any], groups: Groups, length: int) -> None:
         self.message, self.length = message, length
         self.whole: dict[int, tuple[int, str]] = {}  # first byte -> number of bytes, statement
         self.parts: dict[int, list[tuple[int, str]]] = {}  # byte -> (shift, term)
         self.joined: dict[int, list[str]] = {}  # byte -> statements that its terms need
-        for one in in_groups(message.sent_fields):
+        for one in groups:
             if isinstance(one, FieldDescription):
                 self._one(one)
             else:
