@@ -404,7 +404,7 @@ messages:
     fields:
       - {at: 0, bits: 16, name: Time, type: uint}
       - {at: 16, bits: 6, name: Number, type: uint}
-      - {at: 24, name: Match, struct: Element, count: Number, up_to: 33}
+      - {at: 24, name: Match, struct: Element, count: Number, up_to: 3}
   - name: Turned Structs
     set_id: 142
     get_id: 143
