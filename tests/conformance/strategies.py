@@ -251,7 +251,8 @@ def _open_end(draw, fields: list[dict], length: int, enums: list[dict], structs:
         )
     counters = [field for field in fields if _counts(field)]
     counter = draw(st.sampled_from([None, *counters]))
-    most = draw(st.integers(1, min(9, (1 << counter["bits"]) - 1) if counter else 9))
+    most = draw(st.integers(1, 2 if "struct" in element else 9))
+    most = min(most, (1 << counter["bits"]) - 1) if counter else most
     return end | element | {"count": counter["name"] if counter else "rest", "up_to": most}
 
 
