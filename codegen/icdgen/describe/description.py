@@ -13,9 +13,8 @@ from icdgen.describe.comments import Comment, field_comment, message_comment, st
 from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription
 from icdgen.describe.errata import Thing, tellers, told_elsewhere
-from icdgen.describe.named import Named
+from icdgen.describe.named import Id, Named
 from icdgen.describe.storage import Storage, storage_of
-from icdgen.describe.tails import TailDescription
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.curve import Curve
 from icdgen.icd.model import Enum, Field, Icd, Message, Node, Struct
@@ -212,12 +211,22 @@ class FieldDescription(Named[Field]):
         return field_comment(self.model, told, self.message.model.tail)
 
 
-class Id(NamedTuple):
-    """An id of a message; ``name`` is ``id``, ``set_id`` or ``get_id``."""
+class TailDescription(NamedTuple):
+    """The open end of a message: see `icdgen.icd.model.Tail`."""
 
-    name: str
-    value: int
-    comment: str
+    part: FieldDescription  # the array as one, or the bytes or text
+    counter: FieldDescription  # how many elements there are; implied, or a field of the frame
+    least: int  # bytes of a frame without any element
+    step: int  # bytes of an element
+    most: int  # elements
+    element: (
+        StructDescription | None
+    )  # what an element is made of, where that is a struct, in the orders that hold here
+
+    @property
+    def is_bound(self) -> bool:
+        """Whether the integer that holds the count holds larger ones than there can be."""
+        return self.counter.storage.max > self.most
 
 
 Fielded = TypeVar("Fielded", bound=Message | Struct)

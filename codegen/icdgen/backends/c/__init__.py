@@ -17,9 +17,8 @@ from icdgen.backends.c.text import FILE, comment, described, literal, noted, pro
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, text_comment, words
-from icdgen.describe.description import Composite
+from icdgen.describe.description import Composite, TailDescription
 from icdgen.describe.numbers import byte_count, length_text
-from icdgen.describe.tails import TailDescription
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:

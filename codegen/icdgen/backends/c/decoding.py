@@ -12,8 +12,7 @@ from icdgen.backends.c.text import WIDTH
 from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.description import Composite
-from icdgen.describe.tails import TailDescription
+from icdgen.describe.description import Composite, TailDescription
 
 EMPTY = "empty"
 """Member of the struct of a message without fields: C has no empty structs."""

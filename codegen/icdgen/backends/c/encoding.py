@@ -11,8 +11,7 @@ from icdgen.backends.c.names import stem, writing
 from icdgen.backends.c.statement import assigned_byte, call
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.description import Composite
-from icdgen.describe.tails import TailDescription
+from icdgen.describe.description import Composite, TailDescription
 
 
 def size(message: MessageDescription) -> str:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.describe import EnumDescription, MessageDescription
-from icdgen.describe.description import Composite
+from icdgen.describe.description import Composite, TailDescription
 from icdgen.describe.enums import MemberDescription
-from icdgen.describe.tails import TailDescription
 
 
 def stem(one: Composite[Any] | EnumDescription) -> str:

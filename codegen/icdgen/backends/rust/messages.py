@@ -9,8 +9,7 @@ from icdgen.backends.rust.names import own_name, struct_path
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
 from icdgen.describe import FieldDescription, MessageDescription, StructDescription
-from icdgen.describe.description import Composite
-from icdgen.describe.tails import TailDescription
+from icdgen.describe.description import Composite, TailDescription
 
 DERIVES_DEFAULT = 32  # elements of an array; longer ones do not
 
