@@ -59,9 +59,10 @@ const icdgenCodec = (() => {
     return least + Number(raw[counter]) * step;
   }
 
-  /** Whether a frame of so many bytes holds a field; bytes and text are there, if only in part. */
+  /** Whether a frame of so many bytes holds a field; open bytes and text are there, if only in part. */
   function isIn(field, size) {
-    return field.type === "bytes" || field.pieces.every(([byte]) => byte < size);
+    if (field.type === "bytes") return Boolean(field.isOpen) || field.first + field.bits / 8 <= size;
+    return field.pieces.every(([byte]) => byte < size);
   }
 
   /** The frame of raw values in the order of the fields; reserved bits are 0. Throws a CodecError for a value that does not fit; views have none. */

@@ -117,16 +117,17 @@
 
   /** Where frames differ in length: what was typed is in the frame, and open bytes or text are as long as typed. */
   function makeRoom(index, changed) {
-    const { part, counter, least, step } = plan.tail;
+    const { counter, least, step } = plan.tail;
     const [field, at] = [fields[index], fields.findIndex((one) => one.name === counter)];
-    if (field.name === part && field.type === "bytes") {
+    if (field.isOpen) {
       const filled = field.text && changed[index].length === field.bits / 8; // with NUL, by what was typed as text
       const typed = changed[index].subarray(0, filled ? codec.text(changed[index]).length : changed[index].length);
       changed[index] = new Uint8Array(Math.max(field.bits / 8, typed.length));
       changed[index].set(typed);
       changed[at] = BigInt(typed.length);
     } else if (!field.view && !codec.isIn(field, codec.sizeOf(plan, raw))) {
-      changed[at] = BigInt(Math.floor((Math.min(...field.pieces.map(([byte]) => byte)) - least) / step) + 1);
+      const first = field.type === "bytes" ? field.first : Math.min(...field.pieces.map(([byte]) => byte));
+      changed[at] = BigInt(Math.floor((first - least) / step) + 1);
     }
   }
 
@@ -166,7 +167,7 @@
   /** The value of a field as the frame holds it: bytes that are cut off are as many as there are; null for what is not there. */
   function shownOf(field, one, frame) {
     if (!plan.tail || field.implied) return one;
-    if (field.type === "bytes") return one.subarray(0, frame.length - field.first);
+    if (field.isOpen) return one.subarray(0, frame.length - field.first);
     return codec.isIn(field, frame.length) ? one : null;
   }
 

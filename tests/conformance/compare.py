@@ -36,7 +36,9 @@ def difference(expected: dict, line: bytes | None) -> str | None:
 def _is_array_of(name: object, element: object) -> bool:
     if isinstance(element, Maybe):
         element = element.value
-    return isinstance(element, str) and re.sub(r"\[\d+\]\Z", "", element.rpartition(".")[2]) == name
+    if not isinstance(element, str):
+        return False
+    return name in (re.sub(r"\[\d+\]\Z", "", element.rpartition(".")[2]), re.sub(r"\[\d+\]\.", "[].", element, count=1))
 
 
 def _difference(expected: object, actual: object, path: str) -> str | None:

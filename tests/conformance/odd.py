@@ -314,6 +314,23 @@ messages:
 OPEN = """\
 icdgen: 1
 node: {name: open, title: Messages of variable length, byte_order: big, bit_order: msb0}
+structs:
+  - name: Inner
+    length: 5
+    fields:
+      - {at: 0, bits: 12, name: Type, type: int, unit: V, formula: raw*0.25 - 3}
+      - {at: 12, bits: 1, count: 4, name: Flags, type: bool}
+      - {at: 16, bits: 16, name: Gauge, type: enum, enum: Gauge}
+      - {at: 32, bits: 8, name: Text, type: text}
+  - name: Element
+    length: 24
+    fields:
+      - {at: 0, name: Match, struct: Inner, count: 2}
+      - {at: 80, bits: 32, name: Loop, type: float, formula: raw*2.5, special: [{value: nan, meaning: none}]}
+      - {at: 114, bits: 10, name: Across, type: uint, byte_order: little, bit_order: lsb0, formula: raw^2 - 1}
+      - {at: 128, bits: 16, count: 2, name: Pair, type: int, const: 1}
+      - {at: 163, bits: 5, name: Low, type: uint, const: 3}
+      - {at: 168, bits: 24, name: Wide, type: int, byte_order: little, formula: raw*2^-70}
 enums:
   - name: Gauge
     members: [{value: 1, name: First}, {value: 300, name: Last},
@@ -382,6 +399,22 @@ messages:
     fields:
       - {at: 0, bits: 8, name: One, type: uint, const: 9}
       - {at: 8, bits: 40, name: Fives, type: uint, count: rest, up_to: 2, min: 4, special: [{value: 1099511627775, meaning: none}]}
+  - name: Open Structs
+    id: 141
+    kind: telecommand
+    length: 3
+    fields:
+      - {at: 0, bits: 16, name: Time, type: uint}
+      - {at: 16, bits: 6, name: Number, type: uint}
+      - {at: 24, name: Match, struct: Element, count: Number, up_to: 3}
+  - name: Turned Structs
+    set_id: 142
+    get_id: 143
+    kind: configuration
+    length: 0
+    byte_order: little
+    bit_order: lsb0
+    fields: [{at: 0, name: Inners, struct: Inner, count: rest, up_to: 3}]
   - name: Cut Off
     id: 140
     kind: telemetry

@@ -105,7 +105,7 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
             message["id"] = ids(first_id + number + (0 if message["kind"] == "telecommand" else 40))
         message["length"] = length
         if draw(st.integers(0, 3)) == 0:
-            fields = [*fields, draw(_open_end(fields, length, enums))]
+            fields = [*fields, draw(_open_end(fields, length, enums, structs))]
         elif draw(st.integers(0, 4)) == 0:
             message["reserved"] = draw(st.integers(1, 9))
             message["length"] += message["reserved"]
@@ -234,8 +234,8 @@ def _fields(
 
 
 @st.composite
-def _open_end(draw, fields: list[dict], length: int, enums: list[dict]) -> dict:
-    """What ends a message of variable length: elements that a field counts or that the frame ends, bytes or text."""
+def _open_end(draw, fields: list[dict], length: int, enums: list[dict], structs: list[dict]) -> dict:
+    """What ends a message of variable length: elements or structs that a field counts or that the frame ends, bytes or text."""
     end = {"at": 8 * length, **Names(draw, {field["name"] for field in fields}).one("end")}
     if draw(st.integers(0, 3)) == 0:
         return end | {
@@ -243,12 +243,16 @@ def _open_end(draw, fields: list[dict], length: int, enums: list[dict]) -> dict:
             "size": "rest",
             "up_to": draw(st.integers(1, 20)),
         }
-    element = draw(
-        _field(enums).filter(lambda one: one["type"] not in ("bool", "bytes", "text") and one["bits"] % 8 == 0)
-    )
+    if structs and draw(st.booleans()):
+        element = {"struct": draw(st.sampled_from(structs))["name"]}
+    else:
+        element = draw(
+            _field(enums).filter(lambda one: one["type"] not in ("bool", "bytes", "text") and one["bits"] % 8 == 0)
+        )
     counters = [field for field in fields if _counts(field)]
     counter = draw(st.sampled_from([None, *counters]))
-    most = draw(st.integers(1, min(9, (1 << counter["bits"]) - 1) if counter else 9))
+    most = draw(st.integers(1, 2 if "struct" in element else 9))
+    most = min(most, (1 << counter["bits"]) - 1) if counter else most
     return end | element | {"count": counter["name"] if counter else "rest", "up_to": most}
 
 

@@ -170,6 +170,12 @@ def _swaps(fields: list[dict]) -> Iterator[tuple[str, Change]]:
 
 
 def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
+    if "struct" in field and is_open(field):
+        for step in (-1, 1):
+            yield _number("up to", field, "up_to", step)
+        if field["count"] != "rest":
+            yield "counter", "up to the end", lambda f: f.update(count="rest")
+        return
     if "struct" in field:
         for key, steps in (("at", (-8, 8)), ("count", (-1, 1) if "count" in field else ())):
             for step in steps:

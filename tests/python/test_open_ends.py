@@ -87,3 +87,38 @@ def test_columns_hold_what_is_there(package, messages):
     assert messages.Narrow.decode_table([], physical=False)["samples"].to_pylist() == []
     with pytest.raises(package.module("_errors").IcdError, match="give them as a list"):
         messages.Narrow.decode_many(b"\0")
+
+
+def test_an_open_end_of_structs_is_as_long_as_the_frame(package, messages):
+    inner = messages.Inner(type=-2, gauge=300, text_text="x")
+    message = messages.TurnedStructs(inners=(inner, messages.Inner()))
+    frame = message.to_bytes()
+    assert len(frame) == 10 and messages.TurnedStructs.from_bytes(frame) == message
+    assert messages.TurnedStructs.from_bytes(b"").inners == () == messages.TurnedStructs().inners
+    assert messages.TurnedStructs.from_json(message.to_json(physical=True)) == message
+    errors = package.module("_errors")
+    inner.type = 1 << 11
+    with pytest.raises(errors.RangeError, match=r"inners\[0\].type takes integers"):
+        message.to_bytes()
+    with pytest.raises(errors.RangeError, match="inners takes up to 3 values"):
+        messages.TurnedStructs(inners=(messages.Inner(),) * 4).to_bytes()
+    with pytest.raises(errors.LengthError):
+        messages.TurnedStructs.from_bytes(bytes(7))
+
+
+def test_columns_of_an_open_end_of_structs_are_lists(messages):
+    frames = [
+        messages.TurnedStructs(inners=tuple(messages.Inner(type=n) for n in range(count))).to_bytes()
+        for count in (2, 0, 3)
+    ]
+    columns = messages.TurnedStructs.decode_many(frames, physical=True)
+    assert [row.tolist() for row in columns["inners.type_v"]] == [[-3.0, -2.75], [], [-3.0, -2.75, -2.5]]
+    assert [row.tolist() for row in columns["inners.flags[1]"]] == [[False] * 2, [], [False] * 3]
+    table = messages.TurnedStructs.decode_table(frames, physical=False)
+    assert table["inners.type"].to_pylist() == [[0, 1], [], [0, 1, 2]]
+    assert table["inners.text"].to_pylist() == [[b"\0"] * 2, [], [b"\0"] * 3]
+    assert messages.TurnedStructs.decode_table(frames, physical=True)["inners.text_text"].to_pylist() == [
+        ["", ""],
+        [],
+        ["", "", ""],
+    ]

@@ -33,6 +33,12 @@ def frame(icd, message, *values):
         ("Gauges", ["gauges=[Last, First]"], "0200012c0001"),
         ("Lengthy", ["fn=[1,2,3]"], "010203"),
         ("Fives", ["fives[0]=7"], "090000000007"),
+        ("Turned Structs", ["inners=[]"], ""),
+        (
+            "Turned Structs",
+            ["inners[0].type=-2.75", "inners[0].flags=[1,0,0,1]", "inners[0].gauge=Last", "inners[0].text=x"],
+            "01902c0178",
+        ),
     ],
 )
 def test_what_is_given_is_counted(icd, message, values, expected):
@@ -45,6 +51,9 @@ def test_what_is_given_is_counted(icd, message, values, expected):
         ("Narrow", ["number=3"], "no value for `Samples`"),
         ("Narrow", ["number=3", "samples=[0,0,0,0,0,0]"], "up to 5 values"),
         ("Narrow", ["number=3", "samples[1]=0"], "not all elements before it"),
+        ("Turned Structs", [], "no value for `Inners`"),
+        ("Turned Structs", ["inners[0].gauge=First"], r"no value for `Inners\[0\].Type`, `Inners\[0\].Flags\[0\]`"),
+        ("Turned Structs", ["inners=[1]"], "is made of structs"),
         ("Gauges", ["gauges=[First]", "gauges count=2"], "`Gauges Count` is 2, and 1 element of `Gauges` is given"),
         ("Payload", [f"data={'00' * 256}"], "up to 255 bytes"),
         ("Text", ["severity=1", f"match={'x' * 81}"], "80 ASCII characters"),
@@ -94,3 +103,13 @@ def test_a_frame_of_another_length_than_it_says_is_refused(icd, message, text, s
 def test_a_frame_is_found_by_its_id_if_its_count_is_right(icd):
     (found,) = recognize(icd, "86 0100 012c", "open")  # 134: Gauges
     assert found.message.name == "Gauges" and found.id == 134
+
+
+def test_structs_that_are_not_in_a_frame_are_not_shown(icd):
+    (found,) = recognize(icd, "01 90 2c 01 78", "open", "Turned Structs")
+    assert [row.field.name for row in found.frame.rows] == [
+        "Inners[0].Type",
+        *(f"Inners[0].Flags[{index}]" for index in range(4)),
+        "Inners[0].Gauge",
+        "Inners[0].Text",
+    ]

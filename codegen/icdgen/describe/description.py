@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from icdgen import layout, naming
@@ -12,7 +13,7 @@ from icdgen.describe.comments import Comment, field_comment, message_comment, st
 from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription
 from icdgen.describe.errata import Thing, tellers, told_elsewhere
-from icdgen.describe.named import Named
+from icdgen.describe.named import Id, Named
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.curve import Curve
@@ -210,14 +211,6 @@ class FieldDescription(Named[Field]):
         return field_comment(self.model, told, self.message.model.tail)
 
 
-class Id(NamedTuple):
-    """An id of a message; ``name`` is ``id``, ``set_id`` or ``get_id``."""
-
-    name: str
-    value: int
-    comment: str
-
-
 class TailDescription(NamedTuple):
     """The open end of a message: see `icdgen.icd.model.Tail`."""
 
@@ -226,6 +219,9 @@ class TailDescription(NamedTuple):
     least: int  # bytes of a frame without any element
     step: int  # bytes of an element
     most: int  # elements
+    element: (
+        StructDescription | None
+    )  # what an element is made of, where that is a struct, in the orders that hold here
 
     @property
     def is_bound(self) -> bool:
@@ -242,6 +238,8 @@ class Composite(Named[Fielded]):
     def __init__(self, description: Whole, model: Fielded, node: Node, what: str) -> None:
         super().__init__(model, node.vocabulary, f"{what} `{model.name}`")
         self._description, self.node = description, node
+        self.seen_from = node
+        """The node in whose code it is read and written."""
 
     @cached_property
     def comment(self) -> Comment:
@@ -292,6 +290,11 @@ class Composite(Named[Fielded]):
     def sent(self) -> tuple[FieldDescription, ...]:
         """Members that have bits in the frame: without the count that only the length of the frame tells."""
         return self.members if self.tail is None else tuple(one for one in self.members if not one.model.implied)
+
+    @property
+    def sent_fields(self) -> tuple[FieldDescription, ...]:
+        """The fields that are read and written one by one."""
+        return self.fields
 
     @cached_property
     def leaves(self) -> tuple[FieldDescription, ...]:
@@ -373,12 +376,28 @@ class MessageDescription(Composite[Message]):
         part, counter = (
             next(one for one in self.members if one.model.name == name) for name in (tail.name, tail.counter)
         )
-        return TailDescription(part, counter, self.model.least, tail.step, tail.most)
+        return TailDescription(part, counter, self.model.least, tail.step, tail.most, self._element(part))
+
+    def _element(self, part: FieldDescription) -> StructDescription | None:
+        if part.struct is None:
+            return None
+        byte_order, bit_order = part.model.orders(self.node)
+        fields = (
+            replace(one, byte_order=one.byte_order or byte_order, bit_order=one.bit_order or bit_order)
+            for one in part.struct.model.fields
+        )
+        found = StructDescription(self._description, replace(part.struct.model, fields=tuple(fields)), part.struct.node)
+        found.seen_from = self.node
+        return found
 
     @property
     def sent_fields(self) -> tuple[FieldDescription, ...]:
-        """Fields that have bits in the frame, each element of an array."""
-        return self.fields if self.tail is None else tuple(one for one in self.fields if not one.model.implied)
+        """Fields that have bits in the frame, each element of an array, but those of open structs."""
+        if self.tail is None:
+            return self.fields
+        return tuple(
+            one for one in self.fields if not one.model.implied and not (self.tail.element is not None and one.is_open)
+        )
 
     @cached_property
     def contained(self) -> tuple[tuple[MessageDescription, int], ...]:

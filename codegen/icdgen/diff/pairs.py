@@ -115,16 +115,16 @@ class FieldPair(SideBySide[Field]):
     @cached_property
     def same_bits(self) -> bool:
         """Whether both lie on the same bits, however these are numbered; of an open end, what they have in common."""
-        old, new = self.old, self.new
-        if self.is_open:
-            old, new = _first_of(old), _first_of(new)
-        return position(self.owner.old_node, old) == position(self.owner.new_node, new)
+        old, new = (_firsts_of(one) if self.is_open else (one,) for one in (self.old, self.new))
+        was = [position(self.owner.old_node, one) for one in old]
+        return was == [position(self.owner.new_node, one) for one in new]
 
     @property
     def is_open(self) -> bool:
         """Whether it is, or was, what ends a message of variable length."""
         sides = (self.owner.old, self.old), (self.owner.new, self.new)
-        return any(message.tail is not None and message.tail.name == one.name for message, one in sides)
+        names = ((message.tail, one.path[0].name if one.path else one.name) for message, one in sides)
+        return any(tail is not None and tail.name == name for tail, name in names)
 
     @property
     def is_of_struct(self) -> bool:
@@ -225,9 +225,11 @@ def orders(node: Node) -> tuple[str, str]:
     return node.byte_order, node.bit_order
 
 
-def _first_of(one: Field) -> Field:
-    """The first element, or byte."""
-    return replace(one, bits=8) if one.is_bytes else one.elements[0]
+def _firsts_of(one: Field) -> tuple[Field, ...]:
+    """The first element, or byte; of a field of a struct, what the first struct has of it."""
+    if one.is_bytes and not one.path:
+        return (replace(one, bits=8),)
+    return tuple(element for element in one.elements if not element.path or not element.path[0].index)
 
 
 def position(node: Node, one: Field) -> Position:

@@ -182,12 +182,16 @@ class Builder:
     def tail(self, message: Map) -> tuple[model.Tail | None, tuple[model.Field, ...]]:
         """The open end of a message, and its fields: the elements, and how many there are where no field says so."""
         items = [item for item in tails.open_parts(message) if id(item) not in self.broken]
-        if len(items) != 1 or any(tails.obstacles(message, items[0])):
+        known = {name: one.length for name, one in self.scope.structs.items()}
+        if len(items) != 1 or any(tails.obstacles(message, items[0], known)):
             return None, ()
         (item,) = items
-        most, bits, counter = item["up_to"], tails.unit(item), tails.counter_of(message, item)
+        most, bits, counter = item["up_to"], tails.unit(item, known), tails.counter_of(message, item)
+        if not bits:
+            return None, ()  # there is no such struct
         tail = model.Tail(item["name"], counter["name"] if counter else "", bits // 8, most)
-        end = self.field(item, orders(message))
+        struct = self.scope.structs.get(item.get("struct", ""))
+        end = self.field(item, orders(message)) if struct is None else self.standing(item, struct, orders(message))
         end = replace(end, bits=8 * most) if "size" in item else replace(end, count=most)
         if counter is not None:
             return tail, end.elements
@@ -235,7 +239,7 @@ class Builder:
             summary=item.get("summary", ""),
             byte_order=around[0],
             bit_order=around[1],
-            count=item.get("count", 0),
+            count=count if isinstance(count := item.get("count", 0), int) else 0,
             struct=struct,
             errata=self.applied.about(item),
             source=item,

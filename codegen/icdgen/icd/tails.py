@@ -5,7 +5,7 @@ In the model it has all its elements; `Message.tail` says how many of them a fra
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 from icdgen.icd.located import Map
@@ -14,6 +14,7 @@ REST = "rest"
 MOST_BYTES = 65535  # of a frame
 MOST_ELEMENTS = 1024  # as of any array
 _OCTETS = ("bytes", "text")
+Lengths = Mapping[str, int]  # bytes of the structs that a message may name
 
 
 class Obstacle(NamedTuple):
@@ -35,8 +36,10 @@ def open_parts(message: Map) -> list[Map]:
     return [item for item in _fields(message, is_open) if type(item.get("up_to", 0)) is int]
 
 
-def unit(item: Map) -> int:
-    """Bits of an element of an open part: of bytes and text 8."""
+def unit(item: Map, structs: Lengths) -> int:
+    """Bits of an element of an open part: of bytes and text 8; of a struct that there is not 0."""
+    if "struct" in item:
+        return 8 * structs.get(item["struct"], 0)
     bits: int = 8 if "size" in item else item["bits"]
     return bits
 
@@ -44,7 +47,8 @@ def unit(item: Map) -> int:
 def counter_of(message: Map, item: Map) -> Map | None:
     """The field that says how many elements there are; None where the end of the frame does, or there is none."""
     name = item.get("count", REST)
-    return None if name == REST else next((one for one in _fields(message) if one.get("name") == name), None)
+    found = None if name == REST else next((one for one in _fields(message) if one.get("name") == name), None)
+    return None if found is None or "struct" in found else found
 
 
 def _fields(message: Map, wanted: Callable[[Map], bool] | None = None) -> list[Map]:
@@ -55,8 +59,13 @@ def _fields(message: Map, wanted: Callable[[Map], bool] | None = None) -> list[M
         item
         for item in found
         if isinstance(item.get("name"), str)
-        and all(type(item.get(key)) is int for key in (("at",) if "size" in item else ("at", "bits")))
+        and all(type(item.get(key)) is int for key in ("at", "bits")[: 1 if _is_sized(item) else 2])
     ]
+
+
+def _is_sized(item: Map) -> bool:
+    """Whether something else than `bits` says how many there are."""
+    return "size" in item or isinstance(item.get("struct"), str)
 
 
 def faults_of_count(message: Map, item: Map) -> Iterator[Obstacle]:
@@ -107,7 +116,7 @@ def _odd(counter: Map, message: Map) -> str:
     return ""
 
 
-def faults_of_place(message: Map, item: Map) -> Iterator[Obstacle]:
+def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Obstacle]:
     """What is wrong with where it stands, and with what it is."""
     name, fixed = f"`{item['name']}`", 8 * message["length"]
     if _is_unknown(message, item):
@@ -129,8 +138,8 @@ def faults_of_place(message: Map, item: Map) -> Iterator[Obstacle]:
     elif "size" not in item and is_octets:
         text = f"{name} is `{item.get('type')}`, and the elements of an array are numbers"
         yield Obstacle(item, "count", text, "bytes or text up to the end of the frame: `size: rest`, without `bits`")
-    elif unit(item) % 8:
-        text = f"an element of {name} has {unit(item)} bits, and a frame ends with a byte"
+    elif unit(item, structs) % 8:
+        text = f"an element of {name} has {unit(item, structs)} bits, and a frame ends with a byte"
         yield Obstacle(item, "bits", text, "describe its bytes as elements, or count them")
     for key in ("view", "bitfields"):
         if item.get(key):
@@ -139,13 +148,13 @@ def faults_of_place(message: Map, item: Map) -> Iterator[Obstacle]:
     if "reserved" in message:
         text = f"`{message['name']}` ends with {name}, so there are no reserved bytes behind it"
         yield Obstacle(message, "reserved", text, "remove `reserved`")
-    longest = message["length"] + item.get("up_to", 0) * unit(item) // 8
+    longest = message["length"] + item.get("up_to", 0) * unit(item, structs) // 8
     if longest > MOST_BYTES:
         text = f"with all of {name}, `{message['name']}` has {longest:,} bytes: at most {MOST_BYTES:,} are held"
         yield Obstacle(item, "up_to", text, "correct `up_to`")
 
 
-def obstacles(message: Map, item: Map) -> Iterator[Obstacle]:
+def obstacles(message: Map, item: Map, structs: Lengths) -> Iterator[Obstacle]:
     """All that is wrong with an open part."""
     yield from faults_of_count(message, item)
-    yield from faults_of_place(message, item)
+    yield from faults_of_place(message, item, structs)

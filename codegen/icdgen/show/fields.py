@@ -55,7 +55,7 @@ def remarks(
     ``message`` is the one that has it, where it may be its open end.
     """
     counter = message.counter if message else None
-    if message is not None and message.tail is not None and message.tail.name == field.name and counter is not None:
+    if message is not None and _is_open(message, field) and counter is not None:
         yield "up to the end of the frame" if counter.implied else f"as many as {counter.name} says"
     if field.view:
         yield "a view of bits that other fields have"
@@ -63,7 +63,10 @@ def remarks(
         yield told
     for step in field.path:
         if step.struct is not None and step.is_open:
-            yield f"{step.count} times, every {byte_count(step.struct.length)}" if step.count > 1 else "once"
+            most = "up to " if message is not None and _is_open(message, field) else ""
+            yield (
+                f"{most}{step.count} times, every {byte_count(step.struct.length)}" if step.count > 1 else f"{most}once"
+            )
     if field.const is not None:
         yield f"always {value_text(field.const)}"
     for bound in bounds(field.limits):
@@ -71,6 +74,11 @@ def remarks(
             yield f"{bound.kind.words} {number(bound.value)}"
     for special in field.special:
         yield f"{special_text(special) if special.number else number(Fraction(special.value))}: {special.meaning}"
+
+
+def _is_open(message: Message, field: Field) -> bool:
+    """Whether a line is the open end of its message, or stands in it."""
+    return message.tail is not None and message.tail.name == (field.path[0].name if field.path else field.name)
 
 
 def _notes(field: Field, message: Message) -> list[str]:

@@ -15,7 +15,7 @@ from icdgen.icd.model import Field, Icd, Message, Tail
 from icdgen.values import numbers
 from icdgen.values.entry import from_physical, members, open_bytes, raw_value, without_unit
 from icdgen.values.errors import BadValue
-from icdgen.values.find import find_array, find_field, find_message, find_node
+from icdgen.values.find import by_name, find_array, find_field, find_message, find_node
 from icdgen.values.frame import Frame, frame, violations
 
 
@@ -91,13 +91,18 @@ def _count(message: Message, tail: Tail, given: dict[str, str], values: dict[str
     assert counter is not None
     is_octets = tail.name in values
     elements = [one for one in message.fields if one.path and one.path[0].name == tail.name]
-    there = [index for index, one in enumerate(elements) if one.name in given]
+    indexes = [one.path[0].index or 0 for one in elements]
+    there = list(dict.fromkeys(index for index, one in zip(indexes, elements, strict=True) if one.name in given))
     count = len(there)
     if is_octets and isinstance(octets := values[tail.name], bytes):
         count = len(octets) if tail.name in given else 0
         values[tail.name] = octets.ljust(tail.most, b"\0")
     if there and there[-1] != count - 1:
-        raise BadValue(f"`{elements[there[-1]].name}` is given, and not all elements before it")
+        raise BadValue(f"`{tail.name}[{there[-1]}]` is given, and not all elements before it")
+    left = [one.name for index, one in zip(indexes, elements, strict=True) if index < count and one.const is None]
+    left = [f"`{name}`" for name in left if name not in given]
+    if left:
+        raise BadValue(f"no value for {', '.join(left)}", "give each field as name=value")
     if counter.name not in given:
         values[counter.name] = count
     elif values[counter.name] != count:
@@ -122,6 +127,15 @@ def split(message: Message, assignment: str, vocabulary: tuple[str, ...]) -> lis
         is_open = message.tail is not None and elements[0].path[0].name == message.tail.name
         texts = listed(name.strip(), text, len(elements), is_open)
         return list(zip(elements[: len(texts)], texts, strict=True))
+    structs = by_name([one for one in message.members if one.struct is not None], name, vocabulary)
+    if structs:
+        is_open = message.tail is not None and structs[0].name == message.tail.name
+        if is_open and text.strip() == "[]":
+            return []
+        first = f"for instance `{structs[0].elements[0].name}=1`" + (
+            f", or `{name.strip()}=[]` for none" if is_open else ""
+        )
+        raise BadValue(f"`{name.strip()}` is made of structs, whose fields are given one by one", first)
     return [(find_field(message, name.strip(), vocabulary), text.strip())]
 
 

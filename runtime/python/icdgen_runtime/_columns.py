@@ -24,12 +24,13 @@ def decode_many(
     """See `Message.decode_many`."""
     numpy: Any = import_module("numpy")
     columns, counts = _columns(numpy, message, frames, physical)
-    for info, (name, column) in zip(_lines(message), columns.items()):
-        if info.is_open and column.ndim == 2:
+    for (info, parts), (name, column) in zip(_lines(message), columns.items()):
+        if info.is_open and column.ndim > 1:
+            is_octets = info.type in OCTETS and len(parts) == 1
             columns[name] = rows = numpy.empty(len(counts), object)
             for row, count in enumerate(counts):
                 one = column[row, :count]
-                rows[row] = one.tobytes() if info.type in OCTETS else one
+                rows[row] = one.tobytes() if is_octets else one
     return columns
 
 
@@ -40,15 +41,16 @@ def _columns(
     joined, counts = _together(message, frames)
     decoder = _Decoder(numpy, message, joined)
     columns = {}
-    for info in _lines(message):
+    for info, parts in _lines(message):
         if info.elements:
-            found = [decoder.column(one) for one in info.parts]
+            found = [decoder.column(one) for one in parts]
             column = numpy.stack(found, axis=1)
         else:
             column = decoder.column(info)
         if physical and info.type == "text":
-            texts = [text(row) for row in column]
-            columns[info.physical] = numpy.array(texts, dtype=str)
+            cells = column.reshape(-1, column.shape[-1])
+            texts = numpy.array([text(cell) for cell in cells], dtype=str)
+            columns[info.physical] = texts.reshape(column.shape[:-1])
         elif physical and info.physical:
             values = _physical(numpy, info, column.ravel())
             columns[info.physical] = values.reshape(column.shape)
@@ -83,10 +85,11 @@ def decode_table(message: type[Message], frames: Frames, physical: bool) -> Any:
     pyarrow: Any = import_module("pyarrow")
     columns, counts = _columns(numpy, message, frames, physical)
     fields, arrays = [], []
-    for info, (name, column) in zip(_lines(message), columns.items()):
+    for (info, parts), (name, column) in zip(_lines(message), columns.items()):
         column = numpy.ascontiguousarray(column)
-        if info.is_open and column.ndim == 2:
-            array = _lists(numpy, pyarrow, column, counts, info.type in OCTETS)
+        if info.is_open and column.ndim > 1:
+            is_octets = info.type in OCTETS and len(parts) == 1
+            array = _lists(numpy, pyarrow, column, counts, is_octets)
         elif info.type in OCTETS and column.ndim == 2:
             kind = pyarrow.binary(info.bits // 8)
             buffers = [None, pyarrow.py_buffer(column)]
@@ -107,10 +110,42 @@ def decode_table(message: type[Message], frames: Frames, physical: bool) -> Any:
     return pyarrow.Table.from_arrays(arrays, schema=schema)
 
 
-def _lines(message: type[Message]) -> list[FieldInfo]:
-    """What has a column: fields, views, arrays, and the fields of each struct."""
-    fields = [line for info in message.FIELDS for line in info.lines]
-    return [*fields, *message.VIEWS]
+_Line = tuple[FieldInfo, tuple[FieldInfo, ...]]
+"""What has a column, and what of it each frame has."""
+
+
+def _lines(message: type[Message]) -> list[_Line]:
+    """What has a column: fields, views, arrays, and the fields of each struct, of an open end all of them together."""
+    found: list[_Line] = []
+    for info in message.FIELDS:
+        if info.struct is not None and info.is_open:
+            found += _open_lines(info)
+        else:
+            found += [(line, line.parts) for line in info.lines]
+    return [*found, *((view, view.parts) for view in message.VIEWS)]
+
+
+def _open_lines(info: FieldInfo) -> list[_Line]:
+    """Of the structs of an open end, each field, called ``satellites.gnss``, ``satellites.angles[1]``."""
+    each = [
+        [leaf for line in lines for leaf in line.parts]
+        for lines in (part.lines for part in info.parts)
+    ]
+    physical = [
+        f"{line.physical}[{index}]" if line.elements and line.physical else line.physical
+        for line in info.parts[0].lines
+        for index in range(len(line.parts))
+    ]
+    found = []
+    for leaves, name in zip(zip(*each), physical):
+        told = {key: getattr(leaves[0], key) for key in FieldInfo.__slots__}
+        told["physical"] = name
+        for key in ("attribute", "name", "physical"):
+            head = info.name if key == "name" else info.attribute
+            told[key] = told[key].replace(f"{head}[0].", f"{head}.", 1)
+        told.update(elements=info.elements, is_open=True)
+        found.append((FieldInfo(**told), leaves))
+    return found
 
 
 def _lists(numpy: Any, pyarrow: Any, rows: Any, counts: Any, is_octets: bool) -> Any:
@@ -121,6 +156,12 @@ def _lists(numpy: Any, pyarrow: Any, rows: Any, counts: Any, is_octets: bool) ->
     if is_octets:
         buffers = [None, pyarrow.py_buffer(ends), pyarrow.py_buffer(values)]
         return pyarrow.Array.from_buffers(pyarrow.binary(), len(rows), buffers)
+    if values.ndim == 2:
+        kind = pyarrow.binary(values.shape[1])
+        octets = numpy.ascontiguousarray(values)
+        buffers = [None, pyarrow.py_buffer(octets)]
+        made = pyarrow.Array.from_buffers(kind, len(octets), buffers)
+        return pyarrow.ListArray.from_arrays(pyarrow.array(ends), made)
     return pyarrow.ListArray.from_arrays(pyarrow.array(ends), pyarrow.array(values))
 
 
@@ -304,7 +345,7 @@ def _plan(message: type[Message]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in (one for field in _lines(message) for one in field.parts):
+    for info in (one for _, parts in _lines(message) for one in parts):
         if _is_whole(info):
             continue
         for piece in pieces(info, message):

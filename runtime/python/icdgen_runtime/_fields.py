@@ -183,6 +183,8 @@ class FieldInfo:
         if self.struct is None:
             return self.default
         made = self.struct
+        if self.is_open:
+            return ()
         return tuple(made() for _ in range(self.elements)) if self.elements else made()
 
     def _values(self) -> tuple[_lazy.Any, ...]:

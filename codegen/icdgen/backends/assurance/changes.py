@@ -72,7 +72,7 @@ def of_field(field: Field, message: Message | Struct, node: Node) -> Iterator[tu
 
 def _of_open(field: Field) -> Iterator[tuple[Change, Field]]:
     """The changes of the elements of an open end; how many there are, and where, is no change of a field."""
-    if not field.is_bytes:
+    if not field.is_bytes and field.struct is None:
         yield from _types(field)
         yield from _formulas(field)
         yield from _values(field)

@@ -100,6 +100,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         **_composite(message, parts.headers(message)),
         "empty": decoding.EMPTY,
         "decode": decoding.statements(message, groups),
+        "element": None,
         "excess": bits.excess,
         "narrow": [(field, bits.excess(field)) for field in message.fields if field.is_narrow and not field.is_open],
         "excess_type": bits.excess_type(message),
@@ -113,7 +114,24 @@ def _message(message: MessageDescription) -> dict[str, object]:
 
 def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, object]:
     """What the code of frames that differ in length needs."""
+    element = tail.element
+    own = in_groups(element.fields) if element is not None else []
+    of_element = (
+        None
+        if element is None
+        else {
+            "type": f"{names.stem(element)}_t",
+            "reading": names.reading(message, tail),
+            "writing": names.writing(message, tail),
+            "read": decoding.statements(element, own),
+            "write": encoding.statements(element, own),
+            "decode": decoding.of_elements(message, tail),
+            "encode": encoding.of_elements(message, tail),
+            "narrow": [one for one in element.fields if one.is_narrow],
+        }
+    )
     return {
+        "element": of_element,
         "size": encoding.size(message),
         "misfit_length": decoding.misfit_length(tail, names.constant(message, "length")),
         "miscounted": decoding.miscounted(tail),

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from icdgen.backends.c import bits
 from icdgen.backends.c.member_groups import Flags, Groups, Row
-from icdgen.backends.c.names import stem
+from icdgen.backends.c.names import reading, stem
 from icdgen.backends.c.statement import call
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.description import TailDescription
+from icdgen.describe.description import Composite, TailDescription
 
 EMPTY = "empty"
 """Member of the struct of a message without fields: C has no empty structs."""
 
 
-def statements(message: MessageDescription, groups: Groups) -> list[str]:
+def statements(message: Composite[Any], groups: Groups) -> list[str]:
     """One statement a field or a group, in the order of the struct."""
     if not message.fields:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
@@ -58,14 +60,32 @@ def miscounted(tail: TailDescription) -> tuple[str, str, str] | None:
     return type_of(tail.counter), _number(tail.counter, "value"), f"{value} != {cast(_count(tail), bits)}"
 
 
-def _group(group: Flags | Row, message: MessageDescription) -> str:
-    names = [field.member for field in group.members]
+def of_elements(message: MessageDescription, tail: TailDescription) -> list[str]:
+    """The statements that read the structs of an open end, each where it stands in ``buffer``."""
+    name, count = tail.part.member, _count(tail)
+    count = f"({count})" if " " in count else count
+    return [
+        f"(void)memset(message->{name}, 0, sizeof message->{name});",
+        f"for (size_t element = 0u; element < {count}; element++) {{",
+        f"{STEP}{reading(message, tail)}(&message->{name}[element], &buffer[{element_place(tail)}]);",
+        "}",
+    ]
+
+
+def element_place(tail: TailDescription) -> str:
+    """The byte at which ``element`` begins."""
+    offset = "element" if tail.step == 1 else f"element * {tail.step}u"
+    return f"{tail.least}u + {f'({offset})' if tail.step > 1 else offset}" if tail.least else offset
+
+
+def _group(group: Flags | Row, message: Composite[Any]) -> str:
+    members = [field.member for field in group.members]
     target = f"{stem(message)}_t", "message"
     if isinstance(group, Flags):
         value = f"buffer[{group.byte}]" + (f" >> {group.shift}" if group.shift else "")
-        return call(f"ICDGEN_READ_{group.macro}", (*target, value, *names))
+        return call(f"ICDGEN_READ_{group.macro}", (*target, value, *members))
     value = f"&buffer[{group.byte}]"
-    return call(f"ICDGEN_READ_{group.macro}", (*target, value, f"{len(names)}u", names[0], names[-1]))
+    return call(f"ICDGEN_READ_{group.macro}", (*target, value, f"{len(members)}u", members[0], members[-1]))
 
 
 def view(field: FieldDescription) -> str:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from icdgen.backends.c import bits
+from icdgen.backends.c.decoding import element_place
 from icdgen.backends.c.member_groups import Flags, Groups, Row
-from icdgen.backends.c.names import stem
+from icdgen.backends.c.names import stem, writing
 from icdgen.backends.c.statement import assigned_byte, call
+from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe.description import Composite, TailDescription
 
 
 def size(message: MessageDescription) -> str:
@@ -19,9 +24,21 @@ def size(message: MessageDescription) -> str:
     return f"{tail.least}u + ({count} * {tail.step}u)" if tail.least else f"{count} * {tail.step}u"
 
 
-def statements(message: MessageDescription, groups: Groups) -> list[str]:
-    """Statements that write every byte of the frame once, in order."""
-    frame = _Frame(message, groups)
+def of_elements(message: MessageDescription, tail: TailDescription) -> list[str]:
+    """The statements that write the structs of an open end, each where it stands in ``buffer``."""
+    name = tail.part.member
+    return [
+        f"for (size_t element = 0u; element < ICDGEN_SIZE(message->{tail.counter.name}); element++) {{",
+        f"{STEP}{writing(message, tail)}(&message->{name}[element], &buffer[{element_place(tail)}]);",
+        "}",
+    ]
+
+
+def statements(message: Composite[Any], groups: Groups) -> list[str]:
+    """Statements that write every byte of the frame once, in order, but for structs of an open end."""
+    if message.tail is not None and message.tail.element is not None:
+        return _Frame(message, groups, message.tail.least).in_order()
+    frame = _Frame(message, groups, message.model.length)
     unused = [] if message.fields else ["(void)message;"]
     if not message.fields and not message.model.length:
         unused.append("(void)buffer;")
@@ -31,8 +48,8 @@ def statements(message: MessageDescription, groups: Groups) -> list[str]:
 class _Frame:
     """What goes where: whole bytes by a statement, others as terms that are or-ed together."""
 
-    def __init__(self, message: MessageDescription, groups: Groups) -> None:
-        self.message = message
+    def __init__(self, message: Composite[Any], groups: Groups, length: int) -> None:
+        self.message, self.length = message, length
         self.whole: dict[int, tuple[int, str]] = {}  # first byte -> number of bytes, statement
         self.parts: dict[int, list[tuple[int, str]]] = {}  # byte -> (shift, term)
         self.joined: dict[int, list[str]] = {}  # byte -> statements that its terms need
@@ -74,7 +91,7 @@ class _Frame:
     def in_order(self) -> list[str]:
         """The statements, byte by byte; bytes without a field become 0."""
         found = []
-        byte, length = 0, self.message.model.length
+        byte, length = 0, self.length
         while byte < length:
             if byte in self.whole:
                 size, statement = self.whole[byte]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from icdgen.describe import EnumDescription
-from icdgen.describe.description import Composite
+from icdgen.describe import EnumDescription, MessageDescription
+from icdgen.describe.description import Composite, TailDescription
 from icdgen.describe.enums import MemberDescription
 
 
@@ -17,6 +17,16 @@ def stem(one: Composite[Any] | EnumDescription) -> str:
 def enumerator(enum: EnumDescription, member: MemberDescription) -> str:
     """``DEMO_MODE_IDLE``"""
     return f"{stem(enum)}_{member.name}".upper()
+
+
+def reading(message: MessageDescription, tail: TailDescription) -> str:
+    """The function that reads a struct of an open end."""
+    return f"{stem(message)}_read_{tail.part.name}"
+
+
+def writing(message: MessageDescription, tail: TailDescription) -> str:
+    """The function that writes one."""
+    return f"{stem(message)}_write_{tail.part.name}"
 
 
 def constant(message: Composite[Any], name: str) -> str:

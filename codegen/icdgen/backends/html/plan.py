@@ -13,11 +13,8 @@ from icdgen.icd.model import Enum, Field, Message, Node
 
 def message_plan(message: Message, node: Node) -> dict[str, object]:
     """The plan of a message; ``node`` is the one that declares it. Fields stand in the order of the ICD."""
-    plan: dict[str, object] = {
-        "name": message.name,
-        "length": message.length,
-        "fields": [_field(field, node) for field in message.fields],
-    }
+    fields = [_field(field, node) for field in message.fields]
+    plan: dict[str, object] = {"name": message.name, "length": message.length, "fields": fields}
     if message.may_end_early:
         plan["endsEarly"] = True
     if message.tail is not None:
@@ -25,6 +22,9 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
         plan["tail"] = {
             "part": tail.name, "counter": tail.counter, "least": message.least, "step": tail.step, "most": tail.most,
         }  # fmt: skip
+        for field, own in zip(message.fields, fields, strict=True):
+            if field.name == tail.name:
+                own["isOpen"] = True  # bytes or text, which a frame holds in part
     return plan
 
 

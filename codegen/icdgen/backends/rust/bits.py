@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from icdgen.backends.lines import STEP, bracketed
 from icdgen.backends.rust.names import field_name, own_name, struct_path
 from icdgen.backends.rust.text import WIDTH, mask
-from icdgen.describe import FieldDescription, MessageDescription, StructDescription
+from icdgen.describe import FieldDescription, StructDescription
+from icdgen.describe.description import Composite
 from icdgen.describe.storage import holding
 from icdgen.layout import Piece, is_whole_bytes
 
@@ -19,7 +22,7 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3) -> str:
     It stands in a line indented by ``depth`` steps.
     """
     if field.struct is not None:
-        return _structs(field, field.struct, tables, depth)
+        return _open(field) if field.is_open else _structs(field, field.struct, tables, depth)
     if field.model.implied:
         return "0"
     if field.count:
@@ -42,9 +45,14 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3) -> str:
     return f"{{{body}\n{STEP * depth}}}"
 
 
+def _open(field: FieldDescription) -> str:
+    """The structs of an open end."""
+    return f"words(bytes, {field.model.at // 8}, |bytes| Self::read_element(&bytes))"
+
+
 def _structs(field: FieldDescription, struct: StructDescription, tables: set[int], depth: int) -> str:
     """A struct, or an array of them."""
-    path, inner = struct_path(struct, field.message.node), depth + bool(field.count)
+    path, inner = struct_path(struct, field.message.seen_from), depth + bool(field.count)
     pad = STEP * inner
     found = []
     for row in field.instances:
@@ -163,6 +171,8 @@ def fitting(field: FieldDescription) -> list[str]:
     if field.struct is not None:
         if not field.count:
             return [f"self.{field_name(field)}.fit()?;"]
+        if field.is_open:
+            return [f"for part in self.{field_name(field)}() {{", f"{STEP}part.fit()?;", "}"]
         return [f"for part in &self.{field_name(field)} {{", f"{STEP}part.fit()?;", "}"]
     raw = ".raw()" if field.enum is not None else ""
     if field.count:
@@ -174,13 +184,15 @@ def fitting(field: FieldDescription) -> list[str]:
     return [f"{field.name.upper()}.fit(self.{field_name(field)}{raw})?;"]
 
 
-def writing(field: FieldDescription) -> list[str]:
+def writing(field: FieldDescription, owner: str = "self") -> list[str]:
     """Statements that put the raw value into ``bytes``, without the bits that its field has no room for."""
     if field.model.implied:
         return []
     if field.count:
-        return _put_run(field) if _is_run(field) else [line for one in field.elements for line in writing(one)]
-    one, row, source = field.model, field.pieces, f"self.{field_name(field)}"
+        if _is_run(field):
+            return _put_run(field, f"{owner}.{field_name(field)}")
+        return [line for one in field.elements for line in writing(one, owner)]
+    one, row, source = field.model, field.pieces, f"{owner}.{field_name(field)}"
     if one.is_bytes:
         return [f"put_array(&mut bytes, {one.at // 8}, &{source});"]
     if one.type == "bool":
@@ -202,9 +214,20 @@ def writing(field: FieldDescription) -> list[str]:
     return lines + _put_pieces(row, source, size)
 
 
-def _put_run(field: FieldDescription) -> list[str]:
+def put_open(field: FieldDescription) -> list[str]:
+    """The statement that writes the structs of an open end."""
+    arguments = (
+        "&mut bytes",
+        str(field.model.at // 8),
+        f"&self.{field_name(field)}",
+        "|part| Self::write_element(&part)",
+    )
+    return [bracketed("put_words(", arguments, ");", WIDTH, STEP * 2)]
+
+
+def _put_run(field: FieldDescription, source: str) -> list[str]:
     """The words of an array, written one after the other."""
-    one, size, source = field.model, field.model.bits, f"self.{field_name(field)}"
+    one, size = field.model, field.model.bits
     first = one.at // 8
     if one.type == "uint" and size == 8:
         return [f"put_array(&mut bytes, {first}, &{source});"]
@@ -254,7 +277,7 @@ def _put(piece: Piece, part: str) -> str:
     return f"bytes[{piece.byte}] |= {part};"
 
 
-def flag_tables(message: MessageDescription) -> set[int]:
+def flag_tables(message: Composite[Any]) -> set[int]:
     """The bytes that hold so many flags that a table is worth its load."""
-    flags = [field.pieces[0].byte for field in message.fields if field.model.type == "bool"]
+    flags = [field.pieces[0].byte for field in message.sent_fields if field.model.type == "bool"]
     return {byte for byte in flags if flags.count(byte) >= FLAGS_FROM}

@@ -13,7 +13,7 @@ from icdgen.describe.description import Composite
 from icdgen.naming import DEVICES
 
 _METHODS = ("from_bytes", "from_array", "to_bytes", "default")
-_OPEN_METHODS = ("from_longest", "size")
+_OPEN_METHODS = ("from_longest", "size", "read_element", "write_element")
 _CONSTANTS = ("NAME", "LENGTH", "ID", "SET_ID", "GET_ID")
 _METHODS_OF_STRUCTS = ("fit", "rows", "default")
 _CONSTANTS_OF_STRUCTS = ("NAME", "FIELDS")

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from icdgen.backends.rust import bits, constants, parts
-from icdgen.backends.rust.names import field_name, struct_path
+from icdgen.backends.rust.names import own_name, struct_path
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
 from icdgen.describe import FieldDescription, MessageDescription, StructDescription
@@ -19,20 +19,32 @@ def values(message: MessageDescription) -> dict[str, object]:
     fields, tables, tail = message.members, bits.flag_tables(message), message.tail
     readings = [bits.reading(field, tables) for field in fields]
     views = [(field, bits.reading(field, set(), depth=2)) for field in message.views]
-    writings = [line for field in message.leaves for line in bits.writing(field)]
+    element = tail.element if tail is not None else None
+    sent = [leaf for field in message.members if not (element and field.is_open) for leaf in field.leaves]
+    writings = [line for field in sent for line in bits.writing(field)]
+    of_element = None
+    if tail is not None and element is not None:
+        writings += bits.put_open(tail.part)
+        of_element = _element(tail.part, element)
+        own_tables = of_element.tables
+        every = (*readings, *of_element.readings, *(reading for _, reading in views)), (*writings, *of_element.writings)
+    else:
+        own_tables = []
+        every = (*readings, *(reading for _, reading in views)), tuple(writings)
+    read, written = every
     imported = {
-        "array": any("array(" in reading for reading in readings),
-        "flags": bool(tables),
+        "array": any("array(" in reading for reading in read),
+        "flags": bool(tables or own_tables),
         "message": True,
-        "put": any("put!(" in line for line in writings),
-        "put_array": any("put_array(" in line for line in writings),
-        "put_words": any("put_words(" in line for line in writings),
-        "take": any("take!(" in reading for reading in (*readings, *(reading for _, reading in views))),
+        "put": any("put!(" in line for line in written),
+        "put_array": any("put_array(" in line for line in written),
+        "put_words": any("put_words(" in line for line in written),
+        "take": any("take!(" in reading for reading in read),
         "counted": tail is not None and not tail.counter.model.implied,
         "elements": tail is not None,
         "longest": tail is not None or bool(message.model.may_end_early),
         "present": tail is not None,
-        "words": any("words(" in reading for reading in readings),
+        "words": any("words(" in reading for reading in read),
         "Coded": any(field.enum for field in message.all_fields),
         "Error": True,
         "Frame": tail is not None,
@@ -46,8 +58,27 @@ def values(message: MessageDescription) -> dict[str, object]:
         "literal": _literal(fields, readings),
         "views": views,
         "writings": writings,
+        "element": of_element,
         "parts": parts.parts(message),
     }
+
+
+class Element(NamedTuple):
+    """How an element of an open end is read and written, where that is a struct."""
+
+    type: str
+    tables: list[int]
+    readings: list[str]
+    literal: str
+    writings: list[str]
+
+
+def _element(part: FieldDescription, struct: StructDescription) -> Element:
+    tables = bits.flag_tables(struct)
+    readings = [bits.reading(one, tables) for one in struct.members]
+    type = struct_path(struct, struct.seen_from)
+    writings = [line for one in struct.leaves for line in bits.writing(one, "part")]
+    return Element(type, sorted(tables), readings, _literal(struct.members, readings, type), writings)
 
 
 def of_struct(struct: StructDescription) -> dict[str, object]:
@@ -63,7 +94,9 @@ def of_struct(struct: StructDescription) -> dict[str, object]:
 def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]:
     """What is said of a message and of a struct."""
     fields = one.members
-    has_default = all((field.fresh == 0 or field.is_open) and not _is_long(field) for field in fields)
+    has_default = all((field.fresh == 0 or field.is_open) and not _is_long(field) for field in fields) and not any(
+        field.struct is not None and field.is_open and any(one.fresh for one in field.struct.fields) for field in fields
+    )
     derived = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
     narrow = [field for field in fields if (field.struct or field).is_narrow]
     scales = [field for field in one.all_members if has_constant(field)]
@@ -107,6 +140,8 @@ def _is_long(field: FieldDescription) -> bool:
 
 
 def _fresh(field: FieldDescription) -> str:
+    if field.is_open and field.struct is not None:
+        return f"[Self::read_element(&[0; {field.struct.model.length}]); {field.count}]"
     if field.is_open and field.count:
         return f"[{_zero(field)}; {field.count}]"
     return f"[{_one_fresh(field)}; {field.count}]" if field.count else _one_fresh(field)
@@ -134,7 +169,7 @@ def _valued(field: FieldDescription, raw: int) -> str:
     return ("true" if raw else "false") if kind == "bool" else integer(raw)
 
 
-def _literal(fields: tuple[FieldDescription, ...], values: list[str]) -> str:
+def _literal(fields: tuple[FieldDescription, ...], values: list[str], type: str = "Self") -> str:
     """``Self { ... }`` in the body of a function."""
-    lines = "".join(f"            {field_name(field)}: {value},\n" for field, value in zip(fields, values, strict=True))
-    return f"        Self {{\n{lines}        }}" if fields else "        Self {}"
+    lines = "".join(f"            {own_name(field)}: {value},\n" for field, value in zip(fields, values, strict=True))
+    return f"        {type} {{\n{lines}        }}" if fields else f"        {type} {{}}"

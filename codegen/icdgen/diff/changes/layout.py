@@ -10,7 +10,6 @@ from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind, orders
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.where import Places
 from icdgen.diff.wording import bits, read_as, some, span, type_of
-from icdgen.icd.model import Field
 from icdgen.icd.rules.wording import count, listing, quote
 from icdgen.icd.wire_ids import size
 
@@ -78,19 +77,15 @@ def width_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 @rule("DIF118", "field")
 def count_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    if old.count != new.count and not pair.is_open and not _is_of_structs(pair):  # see DIF119, DIF127
-        was, now = (count(one.count, "element") if one.count else "one value" for one in (old, new))
-        text = f"{quote(new.name)} is {_an_array(new)}, was {_an_array(old)}"
+    before, after = (one.path[-1].count if len(one.path) > 1 else one.count for one in (old, new))
+    if before != after and (pair.is_of_struct or not pair.is_open):  # see DIF119; of structs DIF127
+        was, now = (count(number, "element") if number else "one value" for number in (before, after))
+        text = f"{quote(new.name)} is {_an_array(after)}, was {_an_array(before)}"
         yield Found(text, ("count", "bits"), was, now)
 
 
-def _is_of_structs(pair: FieldPair) -> bool:
-    """Whether what repeats it are structs, on both sides, and it is no array itself."""
-    return all(one.path and not one.path[-1].count for one in (pair.old, pair.new)) and pair.is_of_struct
-
-
-def _an_array(field: Field) -> str:
-    return f"an array of {count(field.count, 'element')}" if field.count else "one value"
+def _an_array(elements: int) -> str:
+    return f"an array of {count(elements, 'element')}" if elements else "one value"
 
 
 @rule("DIF111", "field")

@@ -36,7 +36,7 @@ _NOTHING = _Declared({}, {})
 def structs_repeated_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     said = set()
     for part in pair.kept:
-        was, now = (_repeated(one) for one in (part.old, part.new))
+        was, now = (_repeated(one, part.is_open) for one in (part.old, part.new))
         name = ".".join(step.name for step in part.new.path[:-1])
         if was is None or now is None or was == now or name in said:
             continue
@@ -48,15 +48,19 @@ def structs_repeated_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Foun
         yield Found(text, (), before, after, where=part.where(), places=(places[0], places[1]))
 
 
-def _repeated(line: Field) -> tuple[tuple[int, int], ...] | None:
-    """How often the structs stand in which a field is, and from which bit to which; None of what is in none."""
-    return tuple((step.count, step.stride) for step in line.path[:-1]) if len(line.path) > 1 else None
+def _repeated(line: Field, is_open: bool) -> tuple[tuple[int, int], ...] | None:
+    """How often the structs stand in which a field is (0 of an open end: see DIF119), and how far apart; None if it is in none."""
+    if len(line.path) < 2:
+        return None
+    found = [(step.count, step.stride) for step in line.path[:-1]]
+    return ((0, found[0][1]), *found[1:]) if is_open else tuple(found)
 
 
 def _in_words(repeated: tuple[tuple[int, int], ...]) -> str:
     """``4 structs, one every 3 bytes``"""
     said = [
-        f"{count(times, 'struct')}, one every {bits(stride)}" if times else "a struct" for times, stride in repeated
+        f"{count(times, 'struct') if times else 'structs'}, one every {bits(stride)}" if stride else "a struct"
+        for times, stride in repeated
     ]
     return ", in each of them ".join(said)
 

@@ -14,7 +14,7 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
 from icdgen.suggest import close_to
 
-_OF_MEMBERS = frozenset({"at", "name", "identifier", "struct", "count", "summary"})
+_OF_MEMBERS = frozenset({"at", "name", "identifier", "struct", "count", "up_to", "summary"})
 """Keys of a struct where it stands."""
 
 
@@ -92,12 +92,9 @@ def struct_says(ctx: Context) -> Iterator[Fault]:
             if key not in _OF_MEMBERS:
                 message = f"{quote(row['name'])} is a struct, which has no `{key}`: its fields have"
                 yield Fault(row, row.at(key), message, f"move it to the fields of {quote(row['struct'])}, or remove it")
-        if tails.is_open(row):
-            message = f"{quote(row['name'])} has no fixed `count`, and the elements of an open end are numbers"
-            yield Fault(row, row.at("count"), message, "write how many there are, or describe an element as numbers")
     for struct, _ in ctx.structs:
         for row in mappings(struct.source.get("fields")):
-            if tails.is_open(row) and isinstance(row.get("name"), str) and "struct" not in row:
+            if tails.is_open(row) and isinstance(row.get("name"), str):
                 message = f"{quote(row['name'])} has no fixed size, and a struct has no open end"
                 key = "size" if "size" in row else "count"
                 yield Fault(row, row.at(key), message, "only the last part of a message may be open")

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.icd import tails
 from icdgen.icd.located import Map
-from icdgen.icd.model import Message
+from icdgen.icd.model import Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
@@ -18,18 +18,22 @@ def counted(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         for item in tails.open_parts(message.source):
             yield from (_fault(one) for one in tails.faults_of_count(message.source, item))
-    for field, _, _ in ctx.having["up_to"]:
-        if not tails.is_open(field.source):
+    for field, _, _ in ctx.members:
+        if "up_to" in field.source and not tails.is_open(field.source):
             text = f"{quote(field.name)} is as large as its {'`count`' if field.count else '`bits`'} says, so there is no `up_to`"
             help = "remove `up_to`; the largest value that it may have is `max`"
             yield Fault(field.source, field.source.at("up_to"), text, help)
 
 
+def _lengths(ctx: Context, node: Node) -> dict[str, int]:
+    return {struct.name: struct.length for one in ctx.scope(node) for struct in one.structs}
+
+
 @rule("ICD121")
 def at_the_end(ctx: Context) -> Iterator[Fault]:
-    for message, _ in ctx.messages:
+    for message, node in ctx.messages:
         for item in tails.open_parts(message.source):
-            yield from (_fault(one) for one in tails.faults_of_place(message.source, item))
+            yield from (_fault(one) for one in tails.faults_of_place(message.source, item, _lengths(ctx, node)))
         if message.tail is None:
             continue
         for field in message.views:

@@ -11,7 +11,7 @@ import sys
 from importlib import import_module
 from typing import Any, Iterator, NamedTuple, Optional
 
-from . import _floats
+from . import _compiled, _floats
 from ._base import FieldInfo, Message
 from ._errors import LengthError, RangeError, UnknownIdError
 from ._testee_order import ORDER
@@ -71,7 +71,7 @@ def _encode(node: Any, words: Words) -> str:
         for one in (line, *line.parts)
     }
     try:
-        for held in _held(message):
+        for held in _held(message, is_made=True):
             _set(held, words)
         if message.TAIL is not None:
             _cut(message, words)
@@ -125,17 +125,28 @@ class Held(NamedTuple):
     name: str
 
 
-def _held(owner: Any, head: str = "") -> Iterator[Held]:
-    """The fields of a message, those of structs among them."""
+def _held(owner: Any, head: str = "", is_made: bool = False) -> Iterator[Held]:
+    """The fields of a message, those of structs among them; what an open end lacks reads as 0, and where it is made, is made."""
     for info in owner.FIELDS:
         name = f"{head}{info.name}"
         if info.struct is None:
             yield Held(owner, info, name)
             continue
         value = getattr(owner, info.attribute)
+        if info.is_open:
+            value += _rest(owner)[len(value) :]
+        if info.is_open and is_made:
+            setattr(owner, info.attribute, value)
         for index in range(info.elements or 1):
             one = value[index] if info.elements else value
             yield from _held(one, f"{name}[{index}]." if info.elements else f"{name}.")
+
+
+def _rest(message: Any) -> Any:
+    """The open end of a message with all elements, each 0."""
+    kind = type(message)
+    zeros = _compiled.longest(kind, "from_bytes")(kind, bytes(kind.LENGTH))
+    return getattr(zeros, kind.TAIL.part)
 
 
 def _cut(message: Message, words: Words) -> None:
