@@ -7,11 +7,11 @@ IEEE 754 bits, so that every NaN survives. Physical values are exact `fractions.
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 
-from icdgen.icd.model import Field, Message, Node
+from icdgen.icd.model import Field, Icd, Message, Node
 
 
 class CodecError(ValueError):
@@ -30,6 +30,37 @@ def decode(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]
         raise LengthError(message, len(frame))
     bits = int.from_bytes(frame, "little")
     return {field.name: _read(node, field, bits) for field in message.fields}
+
+
+def which(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | None:
+    """Of messages that share an id the one that a frame is of; None if it is of none of them.
+
+    It is of the length and has the constants of that message, but for those that all of them have alike; of several that of
+    the most constants. Raises `LengthError` if no message has that length and all have the same.
+    """
+    fitting = []
+    for message in known:
+        if message.length != len(frame):
+            continue
+        node = icd.node(message.node)
+        found = decode(node, message, frame)
+        constants = [field for field in message.owners if field.const is not None]
+        telling = [one for one in constants if not all(_has_alike(icd, other, one, node) for other in known)]
+        if all(found[one.name] == one.const for one in telling):
+            fitting.append((len(constants), message))
+    if fitting:
+        return max(fitting, key=lambda one: one[0])[1]
+    if all(message.length == known[0].length != len(frame) for message in known):
+        raise LengthError(known[0], len(frame))
+    return None
+
+
+def _has_alike(icd: Icd, message: Message, constant: Field, node: Node) -> bool:
+    """Whether a message has the constant that a field of another one, declared by ``node``, is."""
+    place = _runs(constant.at, constant.bits, *constant.orders(node))
+    owner = icd.node(message.node)
+    same = (one for one in message.owners if one.const is not None and one.const == constant.const)
+    return any(_runs(one.at, one.bits, *one.orders(owner)) == place for one in same)
 
 
 def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> bytes:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 from icdgen import layout, naming
@@ -17,6 +17,8 @@ from icdgen.describe.storage import Storage, holding, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
+from icdgen.icd.variants import Variant, common_length, ids_of
+from icdgen.layout import signs
 
 
 class FieldDescription(Named[Field]):
@@ -232,6 +234,42 @@ class Direction(NamedTuple):
     messages: tuple[tuple[MessageDescription, str], ...]
 
 
+class Candidate(NamedTuple):
+    """A message under an id, the name of its id there, and what bytes show that a frame of its length is it."""
+
+    message: MessageDescription
+    id_name: str
+    signs: tuple[layout.Sign, ...]
+
+
+class Under(NamedTuple):
+    """The messages of one id, in the order in which a frame is tried with them."""
+
+    candidates: tuple[Candidate, ...]
+    length: int | None  # that all of them have; None if they have several
+
+    @property
+    def first(self) -> Candidate:
+        """One of them, whose constant says the id."""
+        return self.candidates[0]
+
+    @property
+    def is_shared(self) -> bool:
+        """Whether it takes more than the id to know the message."""
+        return len(self.candidates) > 1
+
+    @property
+    def rest(self) -> Candidate | None:
+        """The candidate that is left when the frame is none of the others: nothing but its length may be wrong."""
+        last = self.candidates[-1]
+        return last if not self.is_shared or (self.length is not None and not last.signs) else None
+
+    @property
+    def tried(self) -> tuple[Candidate, ...]:
+        """Those that a frame has to be looked at for."""
+        return self.candidates if self.rest is None else self.candidates[:-1]
+
+
 class NodeDescription:
     """A node (``model``) of the set."""
 
@@ -275,6 +313,32 @@ class NodeDescription:
             Direction("telemetry", tuple((one, one.telemetry_id_name) for one in self.telemetry)),
         )
         return tuple(direction for direction in found if direction.messages)
+
+    def ids(self, direction: str) -> tuple[Under, ...]:
+        """The messages of a direction by their ids, in the order of the ICD."""
+        return self._ids[direction]
+
+    def shares_ids(self, direction: str) -> bool:
+        """Whether messages of the direction have an id in common."""
+        return any(one.is_shared for one in self._ids[direction])
+
+    @cached_property
+    def _ids(self) -> dict[str, tuple[Under, ...]]:
+        known = ids_of(self._description.icd, self.model)
+        named = {"telecommand": "set_id", "telemetry": "get_id"}
+        return {
+            direction: tuple(map(partial(self._under, named[direction]), getattr(known, direction).values()))
+            for direction in named
+        }
+
+    def _under(self, other_name: str, variants: tuple[Variant, ...]) -> Under:
+        candidates = (
+            Candidate(
+                self._description.message(one.message), "id" if one.message.id is not None else other_name, signs(one)
+            )
+            for one in variants
+        )
+        return Under(tuple(candidates), common_length(variants))
 
     @property
     def is_linked(self) -> bool:

@@ -147,7 +147,7 @@ class Trace:
         found: Noticed = {}
         for node in self.icd.nodes:
             for direction, known in self._vectors[node.name].ids.items() if _speaks(self.icd, node, message) else ():
-                mine = {id for id, name in known.items() if name == message.name}
+                mine = {id for id, names in known.items() if message.name in names}
                 if mine & (set(message.ids) - set(now.ids)):
                     found.setdefault(node.name, []).append(self._lines[node.name].ids[direction])
         return found

@@ -11,7 +11,7 @@ from icdgen.backends.c import accessors, bits, constants, decoding, encoding, na
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
-from icdgen.backends.c.statement import call, head
+from icdgen.backends.c.statement import call, head, like
 from icdgen.backends.c.text import comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from icdgen.render import Renderer
 
 _SPELLING = (
-    byte_count, call, comment, described, head, literal, prose, names.constant, names.enumerator, names.stem,
+    byte_count, call, comment, described, head, like, literal, prose, names.constant, names.enumerator, names.enumerator_of, names.stem,
     sentence, text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from icdgen.backends.rust.text import doc, integer, prose
+from icdgen.backends.lines import STEP
+from icdgen.backends.rust.text import WIDTH, doc, integer, mask, prose
 from icdgen.describe import NodeDescription
 from icdgen.describe.comments import sentence
+from icdgen.describe.description import Candidate
 from icdgen.describe.storage import holding
 from icdgen.icd.model import Node
 
@@ -31,3 +33,16 @@ def about(node: NodeDescription) -> str:
 def typed(value: int) -> str:
     """Type and literal of a number: ``u8 = 10``."""
     return f"u{holding(value.bit_length())} = {integer(value)}"
+
+
+def guarded(candidate: Candidate, path: str) -> str:
+    """What an arm takes: the id, and what of the bytes shows that they are of this message, its length and its constants."""
+    terms = [f"bytes.len() == {path}::LENGTH"]
+    for sign in candidate.signs:
+        byte = f"bytes[{sign.byte}]"
+        masked = byte if sign.mask == 0xFF else f"{byte} & {mask(sign.mask)}"
+        terms.append(f"{masked} == {mask(sign.value)}")
+    id = f"{STEP * 3}{path}::{candidate.id_name.upper()}"
+    line = f"{id} if {' && '.join(terms)}"
+    rows = f"\n{STEP * 5}&& ".join(terms)
+    return line if len(line) <= WIDTH - len(" => {") else f"{id}\n{STEP * 4}if {rows}"
