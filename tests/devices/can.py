@@ -41,12 +41,14 @@ def _definition(message: Any) -> Definition:
             one |= {"byte_order": "big", "bit_order": "msb0"}
         scale = formula(_printed(signal.scale), _printed(signal.offset))
         choices = {int(value): str(name) for value, name in (signal.choices or {}).items()}
-        if choices and not scale and not signal.is_float and signal.length > 1:
+        named = [(value, name) for value, name in sorted(choices.items()) if value in _range(signal)]
+        if named and (scale or (one["type"] == "uint" and signal.length == 1)):
+            one["special"] = [{"value": value, "meaning": name} for value, name in named]
+        elif named and not signal.is_float:
             name = f"{message.name} {signal.name}"
             one = {**one, "type": "enum", "enum": name}
             one.pop("unit", None)
-            fit = [{"value": v, "name": n} for v, n in sorted(choices.items()) if v in _range(signal)]
-            enums.append({"name": name, "members": fit})
+            enums.append({"name": name, "members": [{"value": value, "name": name} for value, name in named]})
         fields.append(one | scale)
     if message.is_multiplexed():
         cause = "fields that are there under a condition"

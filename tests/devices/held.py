@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -68,7 +69,8 @@ def _renamed(owner: Definition, name: str) -> bool:
         (owner.more, owner.id),
     ):
         if one.get("name", owner.name) == name and "identifier" not in one:
-            one["identifier"] = f"{name if name.isascii() else 'item'} {number}".replace("-", "minus ")
+            plain = name if re.match(r"[^A-Za-z0-9]*[A-Za-z]", name) and name.isascii() else f"item {name}"
+            one["identifier"] = f"{plain if plain.isascii() else 'item'} {number}".replace("-", "minus ")
             return True
     return False
 

@@ -43,10 +43,11 @@ class FieldDescription(Named[Field]):
         self.message, self.enum = message, enum
         self.storage = enum.storage if enum is not None else storage_of(field.bits, field.signed)
         self.steps = steps.steps(field)
-        element, self.member, self.declared = field.element, self.name, self.name
-        if element is not None:
-            self.declared = naming.snake(naming.words(field.identifier or element.array, message.node.vocabulary))
-            self.name, self.member = f"{self.declared}_{element.index}", f"{self.declared}[{element.index}]"
+        self.member = self.declared = self.name
+        if field.path:
+            step = field.path[-1]
+            self.declared = naming.snake(naming.words(step.identifier or step.name, message.node.vocabulary))
+            self.name, self.member = f"{self.declared}_{step.index}", f"{self.declared}[{step.index}]"
         self.physical_name = f"{self.declared}_{self.unit_name}"
 
     @property
@@ -59,9 +60,7 @@ class FieldDescription(Named[Field]):
         """The elements of an array that stands as one; else none."""
         if not self.count:
             return ()
-        return tuple(
-            one for one in self.message.fields if one.model.element and one.model.element.array == self.model.name
-        )
+        return tuple(one for one in self.message.fields if one.model.path and one.model.path[0].name == self.model.name)
 
     @property
     def is_narrow(self) -> bool:

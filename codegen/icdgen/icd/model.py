@@ -109,12 +109,23 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True)
-class Element:
-    """Which element of an array a field is."""
+class Step:
+    """A step of the path from a message to a field of its: what stands there, and which element of it, where it is an array."""
 
-    array: str  # its name
-    index: int
-    count: int  # of all elements
+    name: str
+    index: int | None = None
+    count: int = 0  # of all elements
+    identifier: str | None = None
+
+    @property
+    def text(self) -> str:
+        """``Temperatures[3]``"""
+        return self.name if self.index is None else f"{self.name}[{self.index}]"
+
+    @property
+    def alias(self) -> str:
+        """The same of its identifier, if it has one."""
+        return self.text if self.identifier is None else replace(self, name=self.identifier).text
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +148,7 @@ class Field:
     byte_order: str = ""  # its own or its message's; empty: the node's
     bit_order: str = ""  # likewise; `at` is counted by it
     view: bool = False  # it reads bits that other fields have, and has none: see `Message.owners`
-    element: Element | None = None
+    path: tuple[Step, ...] = ()  # of an element: its array; empty: the message has the field itself
     count: int = 0  # of an array that stands as one: its elements, of which this is the first but for its name
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
@@ -160,8 +171,20 @@ class Field:
         return tuple(map(self._element, range(self.count))) or (self,)
 
     def _element(self, index: int) -> Field:
-        at, element = self.at + index * self.bits, Element(self.name, index, self.count)
-        return replace(self, name=f"{self.name}[{index}]", at=at, element=element, count=0)
+        step = Step(self.name, index, self.count, self.identifier)
+        return replace(self, name=step.text, at=self.at + index * self.bits, path=(step,), count=0)
+
+    @property
+    def index(self) -> int | None:
+        """Which element of its array it is; None of what is no element."""
+        return self.path[-1].index if self.path else None
+
+    @property
+    def alias(self) -> str | None:
+        """Its name where its identifier, or one on its path, takes the place of a name; None if there is none."""
+        if not self.path:
+            return self.identifier
+        return ".".join(step.alias for step in self.path) if any(step.identifier for step in self.path) else None
 
     @property
     def is_bytes(self) -> bool:
@@ -191,8 +214,10 @@ class Field:
 
 def _declared(field: Field) -> Field:
     """The array of which a field is the first element; or else the field."""
-    one = field.element
-    return field if one is None else replace(field, name=one.array, element=None, count=one.count)
+    if not field.path:
+        return field
+    step = field.path[0]
+    return replace(field, name=step.name, path=(), count=step.count)
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,9 +269,9 @@ class Message:
     @property
     def members(self) -> tuple[Field, ...]:
         """The fields as the ICD declares them: an array stands as one."""
-        if all(field.element is None for field in self.fields):
+        if not any(field.path for field in self.fields):
             return self.fields
-        return tuple(map(_declared, (one for one in self.fields if one.element is None or one.element.index == 0)))
+        return tuple(map(_declared, (one for one in self.fields if not any(step.index for step in one.path))))
 
     @property
     def fresh(self) -> dict[str, int | bytes]:

@@ -90,21 +90,19 @@ def _columns(icd: Icd, known: Facts, slot: LogBit, start: int) -> Iterator[Colum
         yield Column(f"bit_{slot.bit}", slot.name or f"bit {slot.bit}", None, None, start, slot.length, "", ())
         return
     owner = icd.node(message.node)
-    frame = _identifier(message, owner.vocabulary)
+    frame = _snake(message.identifier or message.name, owner.vocabulary)
     for field in message.fields:
         if field.at + field.bits > slot.length * 8:
             continue  # the slot does not hold it
-        name = f"{frame}__{_identifier(field, owner.vocabulary)}"
-        if field.element is not None and field.identifier:
-            name += f"_{field.element.index}"
+        name = f"{frame}__{_snake(field.alias or field.name, owner.vocabulary)}"
         if field.unit:
             name += f"_{naming.snake(naming.words(field.unit.identifier))}"
         pieces = tuple(p._replace(byte=p.byte + start) for p in layout.pieces(field, owner))
         yield Column(name, message.name, message, field, start, slot.length, field.orders(owner)[0], pieces)
 
 
-def _identifier(item: Message | Field, vocabulary: tuple[str, ...]) -> str:
-    return naming.snake(naming.words(item.identifier or item.name, vocabulary)) or "unnamed"
+def _snake(name: str, vocabulary: tuple[str, ...]) -> str:
+    return naming.snake(naming.words(name, vocabulary)) or "unnamed"
 
 
 def _unique(columns: list[Column]) -> Iterator[Column]:

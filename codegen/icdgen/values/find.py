@@ -142,9 +142,7 @@ def _ids(message: Message, kind: str | None) -> tuple[int | None, ...]:
 
 
 def _names(item: _HasName) -> Iterable[str]:
-    element = getattr(item, "element", None)
-    identifier = f"{item.identifier}[{element.index}]" if element is not None and item.identifier else item.identifier
-    return filter(None, (item.name, identifier))
+    return filter(None, (item.name, item.alias if isinstance(item, Field) else item.identifier))
 
 
 def _joined(text: str, vocabulary: tuple[str, ...]) -> str:

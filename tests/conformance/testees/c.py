@@ -150,7 +150,7 @@ class _Rows:
             type="TESTEE_SIGNED" if field.signed else TYPES.get(field.type, "TESTEE_UNSIGNED"),
             name=one.name,
             member=one.member,
-            element=f"{field.element.index}u, " if field.element else "",
+            element=f"{field.index}u, " if field.path else "",
             size=field.bits // 8 if field.is_bytes else one.storage.bits // 8,
             name_of=f"{self.node.name}_{names.stem(one.enum)}_testee_name" if one.enum is not None else "",
             get=f"{stem}_{one.physical_name}" if one.steps else "",

@@ -108,8 +108,8 @@ def _field(field: FieldDescription) -> FieldEntry:
         text = f"Some(Text {{ get: Self::{field.physical_name}, set: Self::set_{field.physical_name} }})"
     if field.steps is not None:
         get, set = f"Self::{field.physical_name}", f"Self::set_{field.physical_name}"
-        if field.model.element:
-            index = field.model.element.index
+        index = field.model.index
+        if index is not None:
             get, set = f"|m| {get}(m, {index}).unwrap_or_default()", f"|m, value| {set}(m, {index}, value)"
         set = "|_, _| Ok(())" if field.model.view else set
         scale = f"Some(Scale {{ get: {get}, set: {set} }})"

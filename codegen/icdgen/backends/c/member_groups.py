@@ -90,5 +90,5 @@ def _row(fields: Members) -> Row | None:
         if not (is_next and is_word(field) and field.storage.bits == bits and field.byte_order == first.byte_order):
             break
         count += 1
-    elements = sum(field.model.element is not None for field in fields[:count])
+    elements = sum(bool(field.model.path) for field in fields[:count])
     return Row(fields[:count]) if count >= LONG_ENOUGH or elements == count > 1 else None

@@ -144,15 +144,15 @@ class _Rows:
 
     def field(self, one: FieldDescription, vectors: MessageVectors) -> FieldRow:
         field, storage = one.model, one.storage
-        is_bytes, element = field.is_bytes, field.element
+        is_bytes, index = field.is_bytes, field.index
         stem = f"{names.stem(one.message)}_selftest"
         unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
         return FieldRow(
             field=one,
             stem=f"{stem}_{one.name}",
-            tables=f"{stem}_{one.name if element is None else f'{one.declared}_0'}",
-            has_tables=element is None or element.index == 0,
-            element="" if element is None else f"{element.index}u, ",
+            tables=f"{stem}_{one.name if index is None else f'{one.declared}_0'}",
+            has_tables=not index,
+            element="" if index is None else f"{index}u, ",
             size=field.bits // 8 if is_bytes else storage.bits // 8,
             packed=(field.bits + 7) // 8,
             type=f"ICDGEN_SELFTEST_{'SIGNED' if field.signed else TYPES.get(field.type, 'UNSIGNED')}",

@@ -104,7 +104,7 @@ def _overlap(first: Field, second: Field, bits: str = "") -> Overlap:
         second.source,
         place,
         f"{quote(second.name)} overlaps {other} in {bits}",
-        _VIEW if second.element is None else _OVERLAPPING,
+        _OVERLAPPING if second.path else _VIEW,
     )
     return fault, (id(first.source), id(second.source))
 
