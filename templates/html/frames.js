@@ -73,6 +73,11 @@ const icdgenFrames = (() => {
     return Uint8Array.from([escape, start, ...body.flatMap(escaped), escape, end]);
   }
 
-  return { parseHex, hex, crc, checksum, check, framed };
+  /** Whether data are of a message that shares its id: `signs` are byte, mask and value where it has a constant. */
+  function isLike(length, signs, data) {
+    return data.length === length && signs.every(([byte, mask, value]) => (data[byte] & mask) === value);
+  }
+
+  return { parseHex, hex, crc, checksum, check, framed, isLike };
 })();
 if (typeof module !== "undefined") module.exports = icdgenFrames;

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property, partial
+from functools import cached_property
 from typing import NamedTuple
 
 from icdgen import layout, naming
@@ -244,6 +244,7 @@ class Candidate(NamedTuple):
 class Under(NamedTuple):
     """The messages of one id, in the order in which a frame is tried with them."""
 
+    id: int
     candidates: tuple[Candidate, ...]
     length: int | None  # that all of them have; None if they have several
 
@@ -326,18 +327,18 @@ class NodeDescription:
         known = ids_of(self._description.icd, self.model)
         named = {"telecommand": "set_id", "telemetry": "get_id"}
         return {
-            direction: tuple(map(partial(self._under, named[direction]), getattr(known, direction).values()))
-            for direction in named
+            direction: tuple(self._under(other, id, those) for id, those in getattr(known, direction).items())
+            for direction, other in named.items()
         }
 
-    def _under(self, other_name: str, variants: tuple[Variant, ...]) -> Under:
+    def _under(self, other_name: str, id: int, variants: tuple[Variant, ...]) -> Under:
         candidates = (
             Candidate(
                 self._description.message(one.message), "id" if one.message.id is not None else other_name, signs(one)
             )
             for one in variants
         )
-        return Under(tuple(candidates), common_length(variants))
+        return Under(id, tuple(candidates), common_length(variants))
 
     @property
     def is_linked(self) -> bool:

@@ -6,9 +6,10 @@ from collections.abc import Iterator, Sequence
 
 from icdgen_runtime.wire.i2c import i2c_write
 
+from icdgen import codec
 from icdgen.icd import wire_ids
-from icdgen.icd.model import Message
-from icdgen.protocol.facts import Facts
+from icdgen.icd.model import Icd, Message
+from icdgen.icd.variants import Variant
 from icdgen.recognize.reading import ACKNOWLEDGE, REQUEST, TELECOMMAND, TELEMETRY, Reading, Speaker
 from icdgen.values.errors import Ambiguous, BadLength, NotFound
 from icdgen.values.find import describe
@@ -26,9 +27,10 @@ def by_length(speakers: Sequence[Speaker], data: bytes) -> list[Reading]:
     """What bytes without an id can be, by their number alone, and with a checksum if one is right."""
     found = []
     for speaker in speakers:
-        for what, messages in _directions(speaker.facts):
-            for id, message in messages.items():
-                read = _with_checksum(speaker, what, id, message, data)
+        for what, known in _directions(speaker):
+            for id, those in known.items():
+                message = message_of(speaker.icd, [one.message for one in those], data)
+                read = _with_checksum(speaker, what, id, message, data) if message else None
                 if read:
                     found.append(read)
     return _each_once(found)
@@ -39,8 +41,8 @@ def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
     if apart is None:
         return
     id, data = apart
-    for what, messages in _directions(facts):
-        message = messages.get(id)
+    for what, known in _directions(speaker):
+        message = message_of(speaker.icd, [one.message for one in known.get(id, ())], data)
         read = _with_checksum(speaker, what, id, message, data) if message else None
         if read:
             yield read
@@ -53,8 +55,18 @@ def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
             yield Reading(speaker, ACKNOWLEDGE, facts.telecommands[told], told, error=error)
 
 
-def _directions(facts: Facts) -> tuple[tuple[str, dict[int, Message]], ...]:
-    return (TELECOMMAND, facts.telecommands), (TELEMETRY, facts.telemetry)
+def message_of(icd: Icd, known: Sequence[Message], data: bytes) -> Message | None:
+    """The message of an id; of those that share it the one that the data are of, if there is one."""
+    if len(known) < 2:
+        return known[0] if known else None
+    try:
+        return codec.which(icd, known, data)
+    except codec.LengthError:
+        return None
+
+
+def _directions(speaker: Speaker) -> tuple[tuple[str, dict[int, tuple[Variant, ...]]], ...]:
+    return (TELECOMMAND, speaker.ids.telecommand), (TELEMETRY, speaker.ids.telemetry)
 
 
 def _with_checksum(speaker: Speaker, what: str, id: int, message: Message, data: bytes) -> Reading | None:
@@ -93,8 +105,8 @@ def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
     known = {
         (what, message.node, message.name): (speaker, message, id, data)
         for speaker, (id, data) in apart
-        for what, messages in _directions(speaker.facts)
-        if (message := messages.get(id))
+        for what, messages in _directions(speaker)
+        for message, *_ in messages.get(id, ())
     }
     names = ", ".join(dict.fromkeys(speaker.node.name for speaker in speakers))
     if not apart:
@@ -107,11 +119,19 @@ def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
         right = checksum(speaker, id, message, data)
         if right is not None:
             return wrong_checksum(message, right, data)
-    told = " or ".join(f"`{m.name}` ({describe(m)}) has {m.length} bytes" for _, m, _, _ in known.values())
     _, first, id, data = next(iter(known.values()))
+    if any(message.length == len(data) for _, message, _, data in known.values()):
+        return none_of([message for _, message, _, _ in known.values()], f"the {len(data)} bytes after the id {id}")
+    told = " or ".join(f"`{m.name}` ({describe(m)}) has {m.length} bytes" for _, m, _, _ in known.values())
     return BadLength(
         f"{told}, {len(data)} given after the id {id}", first.length, len(data), "bytes are missing, or too many"
     )
+
+
+def none_of(messages: Sequence[Message], data: str) -> NotFound:
+    """Data of the length of a message, but with constants of none that has the id."""
+    names = ", ".join(f"`{one.name}`" for one in messages)
+    return NotFound(f"{data} have the constants of none of {names}", "name the message to have them read all the same")
 
 
 def wrong_checksum(message: Message, right: bytes, data: bytes) -> BadLength:

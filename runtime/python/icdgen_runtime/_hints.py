@@ -12,3 +12,6 @@ Buffer = Union[bytes, bytearray, memoryview]
 
 M = TypeVar("M", bound="Message")
 T = TypeVar("T")
+
+Candidate = tuple[str, int, tuple[tuple[int, int, int], ...]]
+"""A message of an id that several have: its name, its length, and byte, mask and value of its constants."""

@@ -48,19 +48,37 @@ class Front:
             raise Refusal("unknown-node")
         return place
 
-    def route(self, node: int, kind: str, id: int) -> tuple[tuple[int, int, int], dict[str, Any] | None]:
-        """Node, direction and id that lead to a message, and what is known of it: None if the ICD has none there."""
+    def route(
+        self, node: int, kind: str, id: int, name: str | None = None
+    ) -> tuple[tuple[int, int, int | str], dict[str, Any] | None]:
+        """Node, direction and id that lead to a message, and what is known of it: None if the ICD has none there.
+
+        Of an id that several messages have ``name`` says which is meant; without it the id leads to none of them: see `is_shared`.
+        """
         if not 0 <= id < 1 << self.plan["nodes"][node]["id_bits"]:
             raise Refusal("unknown-id")
-        found = self._routes[node].get((kind, id))
-        if found is None and kind == "configuration":
+        found = self._routes[node].get((kind, id), [])
+        if not found and kind == "configuration":
             raise Refusal("unknown-id")
-        direction, message = found or (DIRECTIONS[kind], None)
+        if len(found) > 1:
+            direction = found[0][0]
+            if name is None:
+                return (node, direction, id), None
+            named = [message for _, message in found if message["name"] == name]
+            if not named:
+                raise Refusal("unknown-id")
+            return (node, direction, f"{id}:{name.encode().hex()}"), named[0]
+        direction, message = found[0] if found else (DIRECTIONS[kind], None)
         return (node, direction, id), message
 
-    def _routes_of(self, speaks: list[int]) -> dict[tuple[str, int], tuple[int, dict[str, Any]]]:
-        found: dict[tuple[str, int], tuple[int, dict[str, Any]]] = {}
-        for message in (self.plan["messages"][place] for place in speaks):
+    def is_shared(self, node: int, kind: str, id: int) -> bool:
+        """Whether several messages have the id."""
+        return len(self._routes[node].get((kind, id), [])) > 1
+
+    def _routes_of(self, speaks: list[int]) -> dict[tuple[str, int], list[tuple[int, dict[str, Any]]]]:
+        found: dict[tuple[str, int], list[tuple[int, dict[str, Any]]]] = {}
+        spoken = [self.plan["messages"][place] for place in speaks]
+        for message in spoken:
             set_id, get_id = message["configuration"]
             for kind, id, direction in (
                 ("telecommand", message["telecommand"], 0),
@@ -68,9 +86,12 @@ class Front:
                 ("configuration", set_id, 0),
             ):
                 if id is not None:
-                    found[kind, id] = direction, message
-            if get_id is not None:
-                found.setdefault(("configuration", get_id), (1, message))
+                    found.setdefault((kind, id), []).append((direction, message))
+        set_ids = set(found)
+        for message in spoken:
+            got = ("configuration", message["configuration"][1])
+            if got[1] is not None and got not in set_ids:
+                found.setdefault(got, []).append((1, message))
         return found
 
     def _wire(self, op: str, request: dict[str, Any]) -> dict[str, Any]:

@@ -67,6 +67,7 @@ class Route(NamedTuple):
     """An id that leads to a message."""
 
     id: str
+    which: str  # message of the direction it is, where messages share ids
     stem: str
 
 
@@ -75,6 +76,7 @@ class Dispatcher(NamedTuple):
 
     direction: str
     name: str
+    is_shared: bool
     routes: list[Route]
 
 
@@ -131,8 +133,14 @@ class _Rows:
         }
 
     def dispatcher(self, direction: str, messages: list[tuple[MessageDescription, str]]) -> Dispatcher:
-        routes = [Route(names.constant(one, id), names.stem(one)) for one, id in messages]
-        return Dispatcher(direction, f"{self.node.name}_{direction}", routes)
+        name, is_shared = f"{self.node.name}_{direction}", self.node.shares_ids(direction)
+        routes = [
+            Route(
+                names.constant(one, id), names.enumerator_of(name, one) if is_shared else "0u", names.stem(one)
+            )
+            for one, id in messages
+        ]
+        return Dispatcher(direction, name, is_shared, routes)
 
     def message(self, message: MessageDescription) -> MessageRow:
         return MessageRow(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from icdgen.backends.lines import exploded
 from icdgen.backends.python import names
 from icdgen.backends.python.text import docstring, literal, paragraph
 from icdgen.describe import Description, EnumDescription, MessageDescription, NodeDescription
 from icdgen.describe.comments import sentence
+from icdgen.describe.description import Under
 from icdgen.icd.model import Node
 
 
@@ -23,16 +24,35 @@ def values(node: NodeDescription, description: Description) -> dict[str, object]
         "doc": docstring(0, _documentation(node.model)),
         "imports": sorted(f"from {home} import {name} as {name}" for home, name in declared),
         "homes": [(name, home) for home, name in sorted(declared)],
-        "telecommands": sorted((one.model.telecommand_id or 0, names.class_name(one)) for one in node.telecommands),
+        "telecommands": _by_id(node, "telecommand"),
         "enums": [(one.model.name, names.class_name(one)) for one in node.enums],
-        "telemetry": sorted((one.model.telemetry_id or 0, names.class_name(one)) for one in node.telemetry),
+        "telemetry": _by_id(node, "telemetry"),
     }
 
 
-def mapping(pairs: Sequence[tuple[str | int, str]]) -> str:
+def _by_id(node: NodeDescription, direction: str) -> list[tuple[int, str]]:
+    """The ids of a direction, and as literals what is known of each: the class, or all that a frame of it may be."""
+    return sorted((one.id, _known(one)) for one in node.ids(direction))
+
+
+def _known(under: Under) -> str:
+    if not under.is_shared:
+        return literal(names.class_name(under.first.message))
+    rows = []
+    for one in under.candidates:
+        signs = "".join(f"({sign.byte}, 0x{sign.mask:02X}, 0x{sign.value:02X}), " for sign in one.signs)
+        rows.append(f"({literal(names.class_name(one.message))}, {one.message.model.length}, ({signs.rstrip(' ')})),")
+    return "(\n        " + "\n        ".join(rows) + "\n    )"
+
+
+def mapping(pairs: Sequence[tuple[str, str]]) -> str:
     """A dictionary of names."""
-    rows = (f"{literal(key) if isinstance(key, str) else key}: {literal(value)}" for key, value in pairs)
-    return exploded("{", list(rows), "}")
+    return literals((literal(key), literal(value)) for key, value in pairs)
+
+
+def literals(pairs: Iterable[tuple[str | int, str]]) -> str:
+    """A dictionary of what is a literal already."""
+    return exploded("{", [f"{key}: {value}" for key, value in pairs], "}")
 
 
 def _documentation(node: Node) -> list[str]:

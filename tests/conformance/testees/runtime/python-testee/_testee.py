@@ -54,12 +54,19 @@ def _node(words: Words) -> Any:
 
 def _message(node: Any, words: Words) -> type[Message]:
     messages = node.TELEMETRY if next(words) == "1" else node.TELECOMMANDS
-    return messages[int(next(words))]  # type: ignore[no-any-return]
+    id, _, name = next(words).partition(":")
+    if not name:
+        return messages[int(id)]  # type: ignore[no-any-return]
+    wanted = bytes.fromhex(name).decode()
+    return next(one for one in messages.of(int(id)) if wanted == one.NAME)
 
 
 def _decode(node: Any, words: Words) -> str:
-    frame = _message(node, words).from_bytes(bytes.fromhex(next(words)))
-    return _described(frame, names=True)
+    message = _message(node, words)
+    frame = message.from_bytes(bytes.fromhex(next(words)))
+    if isinstance(frame, message):
+        return _described(frame, names=True)
+    return f" name={_hex(frame.NAME)} bytes={frame.to_bytes().hex()}"
 
 
 def _encode(node: Any, words: Words) -> str:
