@@ -135,9 +135,7 @@ class _Rows:
     def dispatcher(self, direction: str, messages: list[tuple[MessageDescription, str]]) -> Dispatcher:
         name, is_shared = f"{self.node.name}_{direction}", self.node.shares_ids(direction)
         routes = [
-            Route(
-                names.constant(one, id), names.enumerator_of(name, one) if is_shared else "0u", names.stem(one)
-            )
+            Route(names.constant(one, id), names.enumerator_of(name, one) if is_shared else "0u", names.stem(one))
             for one, id in messages
         ]
         return Dispatcher(direction, name, is_shared, routes)

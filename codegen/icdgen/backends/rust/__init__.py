@@ -52,7 +52,9 @@ class RustBackend:
             folder = PurePosixPath("src") / node.name
             digested = {**common, "origin": origin(node.model, with_digest=True)}
             about = nodes.about(node)
-            yield folder / "mod.rs", render("node.rs.j2", node=node, about=about, typed=nodes.typed, guarded=nodes.guarded, **digested)
+            yield folder / "mod.rs", render(
+                "node.rs.j2", node=node, about=about, typed=nodes.typed, guarded=nodes.guarded, **digested
+            )
             shared = {**common, "origin": origin(node.model), "wired": wired}
             if node.enums:
                 yield folder / "enums.rs", render("enums.rs.j2", enums=node.enums, **shared)
