@@ -74,7 +74,7 @@ class Reference:
                 if request["op"] != "decode":
                     raise Refusal("request", detail="several messages have the id, and `message` names none")
                 return node, found
-            found = [message for message in found if len(found) == 1 or message.name == named]
+            found = [message for message in found if named in (None, message.name)]
             if found:
                 return self.icd.node(found[0].node), found[0]
         raise Refusal("unknown-id")

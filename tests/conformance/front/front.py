@@ -60,15 +60,12 @@ class Front:
         found = self._routes[node].get((kind, id), [])
         if not found and kind == "configuration":
             raise Refusal("unknown-id")
-        if len(found) > 1:
-            direction = found[0][0]
-            if name is None:
-                return (node, direction, id), None
-            named = [message for _, message in found if message["name"] == name]
-            if not named:
-                raise Refusal("unknown-id")
-            return (node, direction, f"{id}:{name.encode().hex()}"), named[0]
+        several, found = len(found) > 1, [one for one in found if name in (None, one[1]["name"])]
+        if name is not None and not found:
+            raise Refusal("unknown-id")
         direction, message = found[0] if found else (DIRECTIONS[kind], None)
+        if several:
+            return (node, direction, id if name is None else f"{id}:{name.encode().hex()}"), message if name is not None else None
         return (node, direction, id), message
 
     def is_shared(self, node: int, kind: str, id: int) -> bool:
@@ -79,7 +76,7 @@ class Front:
         found: dict[tuple[str, int], list[tuple[int, dict[str, Any]]]] = {}
         spoken = [self.plan["messages"][place] for place in speaks]
         for message in spoken:
-            set_id, get_id = message["configuration"]
+            set_id, _ = message["configuration"]
             for kind, id, direction in (
                 ("telecommand", message["telecommand"], 0),
                 ("telemetry", message["telemetry"], 1),

@@ -9,6 +9,7 @@ from functools import cached_property
 from icdgen.backends.assurance import changes
 from icdgen.backends.assurance.changes import Change
 from icdgen.backends.assurance.noticing import MessageWatch
+from icdgen.backends.assurance.shared_ids import SharedIds
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Erratum, Field, Icd, Member, Message, Node
 from icdgen.vectors.lines import NodeLines, lines
@@ -85,6 +86,7 @@ class Trace:
             for one in vectors.messages:
                 name = one.message.name
                 self._watches[node.name, name] = MessageWatch(node, one, found.messages[name])
+        self._shared = SharedIds(icd, self._vectors, self._lines)
 
     def elements(self, node: Node) -> Iterator[Element]:
         """Those of a node that the ICD has lines for: itself, its enumerations with members, its messages with fields."""
@@ -101,9 +103,16 @@ class Trace:
             place = 0
             for row, field in enumerate(message.members, 1):
                 found = changes.of_field(field, message, node)
-                own = tuple(Traced(change, _noticed(node, watch.member(place, field, now))) for change, now in found)
+                own = tuple(self._of_member(message, node, watch, place, field, *one) for one in found)
                 yield Element("field", node, message, field, row, own)
                 place += len(field.elements)
+
+    def _of_member(
+        self, message: Message, node: Node, watch: MessageWatch, place: int, field: Field, change: Change, now: Field
+    ) -> Traced:
+        fields = (*message.fields[:place], *now.elements, *message.fields[place + len(field.elements) :])
+        others = self._shared.of_message(message, replace(message, fields=fields))
+        return Traced(change, together([_noticed(node, watch.member(place, field, now)), others]))
 
     def _of_node(self, node: Node) -> Iterator[Traced]:
         for change, now in changes.of_node(node):
@@ -112,7 +121,7 @@ class Trace:
             else:
                 watches = (self._watches[node.name, message.name] for message in node.messages)
                 rows = [line for watch in watches for line in watch.places(watch.message.fields, now)]
-                yield Traced(change, _noticed(node, rows))
+                yield Traced(change, together([_noticed(node, rows), self._shared.of_node(node, now)]))
 
     def _of_enum(self, enum: Enum) -> Iterator[Traced]:
         for change, now in changes.of_enum(enum):
@@ -136,11 +145,12 @@ class Trace:
         watch = self._watches[node.name, message.name]
         for change, now in changes.of_message(message, node):
             if change.kind == "id":
-                yield Traced(change, together([self._ids(message, now), _noticed(node, watch.id(change.key))]))
+                found = together([self._ids(message, now), _noticed(node, watch.id(change.key))])
             elif change.kind == "length":
-                yield Traced(change, _noticed(node, watch.length()))
+                found = _noticed(node, watch.length())
             else:
-                yield Traced(change, _noticed(node, watch.places(now.fields, node)))
+                found = _noticed(node, watch.places(now.fields, node))
+            yield Traced(change, together([found, self._shared.of_message(message, now)]))
 
     def _ids(self, message: Message, now: Message) -> Noticed:
         """The lists of ids, of each node that speaks the message, in which one is no longer its own."""
