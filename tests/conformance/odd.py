@@ -214,14 +214,123 @@ messages:
   - {name: All ones, set_id: 0xFFFFFFFF, get_id: 0xFFFFFFFF, kind: configuration, length: 0}
 """
 
+COMMON = """\
+icdgen: 1
+node: {name: common, title: Included, byte_order: big, bit_order: msb0, id_bits: 16}
+messages:
+  - name: Any command
+    id: 0x004C
+    kind: telecommand
+    length: 6
+    fields:
+      - {at: 0, bits: 16, name: Command, type: uint}
+      - {at: 16, bits: 32, name: Parameter, type: float}
+  - name: Reset command
+    id: 0x004C
+    kind: telecommand
+    length: 6
+    fields:
+      - {at: 0, bits: 16, name: Command, type: uint, const: 0x1234}
+      - {at: 16, bits: 32, name: Delay, type: uint, unit: s, formula: raw*0.001}
+  - name: Short command
+    id: 0x004C
+    kind: telecommand
+    length: 2
+    fields:
+      - {at: 0, bits: 16, name: Command, type: uint, const: 0x1234}
+"""
+
+APART = """\
+icdgen: 1
+node: {name: apart, title: Ids that are shared, byte_order: little, bit_order: lsb0, id_bits: 16}
+include: [common.yaml]
+enums:
+  - name: Action
+    members: [{value: -2, name: Stop}, {value: 1, name: Go}]
+messages:
+  - name: Arm command
+    id: 0x004C
+    kind: telecommand
+    length: 6
+    fields:
+      - {at: 0, bits: 16, name: Command, type: uint, const: 0x5678, byte_order: big}
+      - {at: 16, bits: 32, name: Key, type: uint}
+  - name: Arm at once
+    id: 0x004C
+    kind: telecommand
+    length: 6
+    fields:
+      - {at: 0, bits: 16, name: Command, type: uint, const: 0x5678, byte_order: big}
+      - {at: 16, bits: 32, name: Key, type: uint, const: 0}
+  - name: Aiding, first version
+    id: [0x13, 0x00]
+    kind: telemetry
+    length: 5
+    fields:
+      - {at: 0, bits: 8, name: Same everywhere, type: uint, const: 9}
+      - {at: 8, bits: 3, name: Version, type: uint, const: 1}
+      - {at: 11, bits: 9, name: Signed one, type: int, const: -3}
+      - {at: 20, bits: 20, name: Angle, type: int, unit: deg, formula: raw*0.01}
+  - name: Aiding, second version
+    id: [0x13, 0x00]
+    kind: telemetry
+    length: 5
+    fields:
+      - {at: 0, bits: 8, name: Same everywhere, type: uint, const: 9}
+      - {at: 8, bits: 3, name: Version, type: uint, const: 2}
+      - {at: 11, bits: 9, name: Signed one, type: int, const: 3}
+      - {at: 20, bits: 20, name: Angle, type: uint, unit: rad, formula: raw*0.001}
+  - name: Aiding, longer
+    id: [0x13, 0x00]
+    kind: telemetry
+    length: 8
+    fields:
+      - {at: 0, bits: 8, name: Same everywhere, type: uint, const: 9}
+      - {at: 8, bits: 16, count: 2, name: Words, type: uint, const: 0x0102}
+      - {at: 40, bits: 24, name: Rest, type: bytes}
+  - name: Longer with an action
+    id: [0x13, 0x00]
+    kind: telemetry
+    length: 8
+    fields:
+      - {at: 0, bits: 8, name: Same everywhere, type: uint, const: 9}
+      - {at: 8, bits: 16, name: First word, type: uint}
+      - {at: 24, bits: 16, name: Second word, type: uint, const: 0x0103}
+      - {at: 45, bits: 5, name: Turned, type: enum, enum: Action, bit_order: msb0, const: -2}
+      - {at: 56, bits: 8, name: Rest, type: uint}
+  - {name: Poll, id: 0x0601, kind: telecommand, length: 0}
+  - name: Settings
+    set_id: 0x0601
+    get_id: 0x0601
+    kind: configuration
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Version, type: uint, const: 0}
+      - {at: 8, bits: 8, name: Rate, type: uint, unit: Hz}
+  - name: Other settings
+    set_id: 0x0601
+    get_id: 0x0601
+    kind: configuration
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Version, type: uint, const: 1}
+      - {at: 8, bits: 8, name: Rate, type: int, unit: Hz}
+  - {name: Alone, id: 0x0107, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: A, type: uint, const: 5}]}
+"""
+
 EMPTY = """\
 icdgen: 1
 node: {name: empty, title: No messages, byte_order: little, bit_order: lsb0}
 """
 
 
+_ODD = {
+    "shared": SHARED, "mixed": MIXED, "other": OTHER, "wide": WIDE, "common": COMMON, "apart": APART, "empty": EMPTY,
+}  # fmt: skip
+
+
 def write(folder: Path) -> Path:
     """The folder, with the ICDs in it."""
-    for name, text in (("shared", SHARED), ("mixed", MIXED), ("other", OTHER), ("wide", WIDE), ("empty", EMPTY)):
+    for name, text in _ODD.items():
         (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
     return folder

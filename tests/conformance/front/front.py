@@ -60,12 +60,14 @@ class Front:
         found = self._routes[node].get((kind, id), [])
         if not found and kind == "configuration":
             raise Refusal("unknown-id")
-        several, found = len(found) > 1, [one for one in found if name in (None, one[1]["name"])]
+        if len(found) > 1 and name is None:
+            return (node, found[0][0], id), None
+        found = [one for one in found if name in (None, one[1]["name"])]
         if name is not None and not found:
             raise Refusal("unknown-id")
         direction, message = found[0] if found else (DIRECTIONS[kind], None)
-        if several:
-            return (node, direction, id if name is None else f"{id}:{name.encode().hex()}"), message if name is not None else None
+        if message is not None and self.is_shared(node, list(DIRECTIONS)[direction], id):
+            return (node, direction, f"{id}:{message['name'].encode().hex()}"), message
         return (node, direction, id), message
 
     def is_shared(self, node: int, kind: str, id: int) -> bool:
