@@ -69,13 +69,18 @@ def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> byte
     for name in raw:
         if name not in known:
             raise CodecError(f"{message.name} has no field {name!r}")
-    bits = 0
-    for field in message.fields:
-        if field.view:
-            continue
+    for field in message.owners:
         if field.name not in raw:
             raise CodecError(f"no value for {field.name!r}")
-        bits |= _written(node, field, raw[field.name])
+    return frame_with(node, message, raw)
+
+
+def frame_with(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
+    """The frame in which these fields have these values and all other bits are 0. Raises `CodecError` for an unfit value."""
+    bits = 0
+    for field in message.owners:
+        if field.name in raw:
+            bits |= _written(node, field, raw[field.name])
     return bits.to_bytes(message.length, "little")
 
 

@@ -50,9 +50,9 @@ def test_a_message_or_an_enumeration_is_in_a_file_of_its_node(shipped):
 
 
 def test_deleting_a_field_changes_only_its_message_and_the_digest_of_its_node(shipped):
-    icd = without_a_field(harness.shipped(), "cubeacp", "Estimated Attitude Angles", "Estimated Yaw Angle")
+    icd = without_a_field(harness.shipped(), "cubeacp", "Commanded Attitude Angles", "Commanded Yaw Angle")
     changed = {path for path, text in files(icd).items() if shipped[path] != text}
-    assert changed == {"cubeacp/estimated_attitude_angles.h", "cubeacp.h"}
+    assert changed == {"cubeacp/commanded_attitude_angles.h", "cubeacp.h"}
     digest = re.compile(r'_DIGEST "[0-9a-f]{16}"')
     assert digest.sub("", files(icd)["cubeacp.h"]) == digest.sub("", shipped["cubeacp.h"])
 

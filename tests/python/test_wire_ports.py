@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import pickle
 import pty
+import socket
 import threading
 import tty
 
@@ -149,3 +151,66 @@ def test_a_serial_port_on_which_nothing_comes_is_not_waited_for_any_longer(shipp
     talking = wire.Session(acp.LINK, *wire.serial_port(line[0]), settings=settings)
     with pytest.raises(wire.ReplyTimeoutError, match="2 attempts"):
         talking.get(acp.Identification)
+
+
+class Served(threading.Thread):
+    """The simulated node at the far end of a connection, as long as it is open."""
+
+    def __init__(self, far: socket.socket) -> None:
+        super().__init__(daemon=True)
+        self.far, self.port = far, Port(packages.shipped(), "cubeacp")
+        self.start()
+
+    def run(self) -> None:
+        while data := self.far.recv(4096):
+            self.port.write(data)
+            self.far.sendall(self.port.read(1))
+
+
+def test_a_socket_will_do(shipped, wire):
+    acp = shipped.module("cubeacp")
+    near, far = socket.socketpair()
+    with near, far:
+        Served(far)
+        talking = wire.Session(acp.LINK, *wire.socket_port(near))
+        assert talking.get(acp.Identification).node_type == acp.NODE_TYPE
+        talking.send(acp.ClearErrors())
+        near.shutdown(socket.SHUT_RDWR)
+
+
+def test_a_socket_on_which_nothing_comes_is_not_waited_for_any_longer_and_keeps_its_own_time_out(shipped, wire):
+    acp = shipped.module("cubeacp")
+    settings = wire.Settings(reply_timeout=40, retries=1, poll_interval=1, poll_timeout=1)
+    near, far = socket.socketpair()
+    with near, far:
+        near.settimeout(7)
+        talking = wire.Session(acp.LINK, *wire.socket_port(near), settings=settings)
+        with pytest.raises(wire.ReplyTimeoutError, match=r"^Identification \(id 128\) had no reply after 2 attempts$"):
+            talking.get(acp.Identification)
+        assert near.gettimeout() == 7
+
+
+def test_a_socket_that_the_other_side_closes_is_an_error_at_once(shipped, wire):
+    acp = shipped.module("cubeacp")
+    near, far = socket.socketpair()
+    with near:
+        talking = wire.Session(acp.LINK, *wire.socket_port(near))
+        far.shutdown(socket.SHUT_WR)  # what is sent still arrives
+        with far, pytest.raises(ConnectionResetError, match="closed"):
+            talking.get(acp.Identification)
+
+
+@pytest.mark.parametrize(
+    ("fault", "error", "said"),
+    [
+        ("nack=100%", "RefusedError", "Clear Errors (id 12) was refused: parameter"),
+        ("drop=100%", "ReplyTimeoutError", "Clear Errors (id 12) had no reply after 1 attempt"),
+    ],
+)
+def test_an_error_names_the_message(shipped, wire, fault, error, said):
+    acp = shipped.module("cubeacp")
+    port = Port(packages.shipped(), "cubeacp", faults=[fault])
+    talking = wire.Session(acp.LINK, port.write, port.read, clock=port.clock)
+    with pytest.raises(getattr(wire, error)) as caught:
+        talking.send(acp.ClearErrors())
+    assert str(caught.value) == str(pickle.loads(pickle.dumps(caught.value))) == said

@@ -11,6 +11,8 @@ from icdgen import __version__, backends
 from tests.conftest import DEMO
 from tests.rust import harness, odd
 
+EXAMPLE = re.compile(r"(?ms)^(//[/!] ```)$.*?^\1$")  # code in a comment
+
 
 def demo(tmp_path: Path, text: str = DEMO):
     path = tmp_path / "demo.yaml"
@@ -72,7 +74,7 @@ def test_hostile_text_stays_in_comments_and_strings(strange_texts):
     """It compiles, which `test_tidy` shows; here: what it would need to break out is not there."""
     for name, text in strange_texts.items():
         assert all(char.isprintable() or char == "\n" for char in text), name
-        for line in text.splitlines():
+        for line in EXAMPLE.sub("", text).splitlines():
             if "ends a comment" in line:
                 assert re.match(r'\s*(//[/!] |.*"(\\.|[^"\\])*")', line), line
             if re.match(r"\s*//[/!] ", line):

@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 
 OLDEST = "1.63"
+MERGING = "2024"
 STD = ("--cfg", 'feature="std"')  # the crate with the feature
 
 
@@ -64,6 +65,14 @@ class Toolchain:
         """Fails if rustdoc has anything to say."""
         command = (*self.start, "rustdoc", "--edition", "2021", "--crate-name", "icd", "-D", "warnings")
         run(*command, *options, "-o", out, file)
+
+    def tested(self, file: Path, library: Path, edition: str = MERGING) -> str:
+        """Runs the examples in the documentation of a crate that was compiled with `STD`; what rustdoc says. Fails if one does.
+
+        ``edition`` is the examples', not the crate's: as of 2024 rustdoc compiles all of them in one go.
+        """
+        command = (*self.start, "rustdoc", "--test", "--edition", edition, "--crate-name", "icd")
+        return run(*command, *STD, "--extern", f"icd={library}", file)
 
     def library(self, file: Path, out: Path, level: str, *more: str) -> Path:
         """Compiles the crate, optimised to that level; its file."""

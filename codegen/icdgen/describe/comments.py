@@ -5,7 +5,7 @@ Text in backticks is code, and there is no other markup: text of the ICD comes a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -68,6 +68,11 @@ def message_comment(message: Message, log_bit: int | None = None) -> Comment:
         facts.append(f"The last {'byte is' if message.reserved == 1 else f'{message.reserved} bytes are'} reserved.")
     head = f"{words(message.name)}: {kind} {ids}, {byte_count(message.length)}.{_table(message.table)}"
     return _comment(head, (sentence(message.summary), " ".join(facts)), message.errata, {})
+
+
+def part_comment(part: Message, begins: Sequence[int]) -> str:
+    """What is given of a message that another one repeats."""
+    return f"{words(part.name)}, as it is repeated from {' and from '.join(map(_from, begins))}."
 
 
 def _from(at: int) -> str:

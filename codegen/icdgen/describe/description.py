@@ -180,6 +180,14 @@ class MessageDescription(Named[Message]):
         return tuple(field for field in fields if not field.model.view) if self.views else fields
 
     @cached_property
+    def contained(self) -> tuple[tuple[MessageDescription, int], ...]:
+        """The messages that it repeats, each with the bit at which it begins, in the order of the ICD."""
+        if not self.model.contains:
+            return ()
+        known = {one.model.name: one for one in self._description.node(self.node).spoken}
+        return tuple((known[one.message], one.at) for one in self.model.contains if one.message in known)
+
+    @cached_property
     def ids(self) -> tuple[Id, ...]:
         """The id, or the set id and the get id."""
         message = self.model

@@ -10,6 +10,8 @@
  */
 
 #include "../icdgen.h"
+#include "magnetorquer_command.h"
+#include "wheel_speed_commands.h"
 
 /** Id of the telemetry. */
 #define CUBEACP_ACTUATOR_COMMANDS_ID 192u
@@ -97,6 +99,26 @@ static inline icd_status_t cubeacp_actuator_commands_encode(
     icdgen_store_u16le(&buffer[8], ICDGEN_U16(message->commanded_y_wheel_speed));
     icdgen_store_u16le(&buffer[10], ICDGEN_U16(message->commanded_z_wheel_speed));
     return ICD_OK;
+}
+
+/** Magnetorquer Command, as it is repeated from byte 0. */
+static inline void cubeacp_actuator_commands_part_magnetorquer_command(
+    const cubeacp_actuator_commands_t *ICDGEN_RESTRICT message,
+    cubeacp_magnetorquer_command_t *ICDGEN_RESTRICT part)
+{
+    part->x_magnetorquer_command = message->x_magnetorquer_command;
+    part->y_magnetorquer_command = message->y_magnetorquer_command;
+    part->z_magnetorquer_command = message->z_magnetorquer_command;
+}
+
+/** Wheel Speed Commands, as it is repeated from byte 6. */
+static inline void cubeacp_actuator_commands_part_wheel_speed_commands(
+    const cubeacp_actuator_commands_t *ICDGEN_RESTRICT message,
+    cubeacp_wheel_speed_commands_t *ICDGEN_RESTRICT part)
+{
+    part->commanded_x_wheel_speed = message->commanded_x_wheel_speed;
+    part->commanded_y_wheel_speed = message->commanded_y_wheel_speed;
+    part->commanded_z_wheel_speed = message->commanded_z_wheel_speed;
 }
 
 #endif /* CUBEACP_ACTUATOR_COMMANDS_H */

@@ -24,6 +24,22 @@
 
 #include "../icdgen.h"
 #include "enums.h"
+#include "set_magnetorquer_configuration.h"
+#include "set_wheel_configuration.h"
+#include "set_rate_gyro_configuration.h"
+#include "css_configuration.h"
+#include "cubesense_configuration.h"
+#include "magnetometer_configuration.h"
+#include "redundant_mag_configuration.h"
+#include "set_star_tracker_configuration.h"
+#include "set_detumbling_control_parameters.h"
+#include "set_y_wheel_control_parameters.h"
+#include "set_reaction_wheel_control_parameters.h"
+#include "set_tracking_controller_gain_parameters.h"
+#include "moment_of_inertia_matrix.h"
+#include "estimation_parameters.h"
+#include "augmented_sgp4_parameters.h"
+#include "user_coded_controller_and_estimator_parameters.h"
 
 /** Id of the telecommand that sets it. */
 #define CUBEACP_ADCS_CONFIGURATION_SET_ID 20u
@@ -1070,6 +1086,336 @@ static inline icd_status_t cubeacp_adcs_configuration_encode(
     (void)memcpy(&buffer[408], message->user_coded_controller_settings, 48u);
     (void)memcpy(&buffer[456], message->user_coded_estimator_settings, 48u);
     return ICD_OK;
+}
+
+/** Set Magnetorquer Configuration, as it is repeated from byte 0. */
+static inline void cubeacp_adcs_configuration_part_set_magnetorquer_configuration(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_set_magnetorquer_configuration_t *ICDGEN_RESTRICT part)
+{
+    part->magnetorquer_1_configuration = message->magnetorquer_1_configuration;
+    part->magnetorquer_2_configuration = message->magnetorquer_2_configuration;
+    part->magnetorquer_3_configuration = message->magnetorquer_3_configuration;
+}
+
+/** Set Wheel Configuration, as it is repeated from byte 3. */
+static inline void cubeacp_adcs_configuration_part_set_wheel_configuration(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_set_wheel_configuration_t *ICDGEN_RESTRICT part)
+{
+    part->rw1_configuration = message->rw1_configuration;
+    part->rw2_configuration = message->rw2_configuration;
+    part->rw3_configuration = message->rw3_configuration;
+    part->rw4_configuration = message->rw4_configuration;
+}
+
+/** Set Rate Gyro Configuration, as it is repeated from byte 7. */
+static inline void cubeacp_adcs_configuration_part_set_rate_gyro_configuration(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_set_rate_gyro_configuration_t *ICDGEN_RESTRICT part)
+{
+    part->gyro1_configuration = message->gyro1_configuration;
+    part->gyro2_configuration = message->gyro2_configuration;
+    part->gyro3_configuration = message->gyro3_configuration;
+    part->x_rate_sensor_offset = message->x_rate_sensor_offset;
+    part->y_rate_sensor_offset = message->y_rate_sensor_offset;
+    part->z_rate_sensor_offset = message->z_rate_sensor_offset;
+    part->rate_sensor_mult = message->rate_sensor_mult;
+}
+
+/** CSS Configuration, as it is repeated from byte 17. */
+static inline void cubeacp_adcs_configuration_part_css_configuration(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_css_configuration_t *ICDGEN_RESTRICT part)
+{
+    part->css1_configuration = message->css1_configuration;
+    part->css2_configuration = message->css2_configuration;
+    part->css3_configuration = message->css3_configuration;
+    part->css4_configuration = message->css4_configuration;
+    part->css5_configuration = message->css5_configuration;
+    part->css6_configuration = message->css6_configuration;
+    part->css7_configuration = message->css7_configuration;
+    part->css8_configuration = message->css8_configuration;
+    part->css9_configuration = message->css9_configuration;
+    part->css10_configuration = message->css10_configuration;
+    part->css1_relative_scale = message->css1_relative_scale;
+    part->css2_relative_scale = message->css2_relative_scale;
+    part->css3_relative_scale = message->css3_relative_scale;
+    part->css4_relative_scale = message->css4_relative_scale;
+    part->css5_relative_scale = message->css5_relative_scale;
+    part->css6_relative_scale = message->css6_relative_scale;
+    part->css7_relative_scale = message->css7_relative_scale;
+    part->css8_relative_scale = message->css8_relative_scale;
+    part->css9_relative_scale = message->css9_relative_scale;
+    part->css10_relative_scale = message->css10_relative_scale;
+    part->css_threshold = message->css_threshold;
+}
+
+/** CubeSense Configuration, as it is repeated from byte 38. */
+static inline void cubeacp_adcs_configuration_part_cubesense_configuration(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_cubesense_configuration_t *ICDGEN_RESTRICT part)
+{
+    part->cam1_mounting_alpha = message->cam1_mounting_alpha;
+    part->cam1_mounting_beta = message->cam1_mounting_beta;
+    part->cam1_mounting_gamma = message->cam1_mounting_gamma;
+    part->cam1_detection_threshold = message->cam1_detection_threshold;
+    part->cam1_sensor_auto_adjust_mode = message->cam1_sensor_auto_adjust_mode;
+    part->cam1_sensor_exposure_time = message->cam1_sensor_exposure_time;
+    part->cam1_boresight_x = message->cam1_boresight_x;
+    part->cam1_boresight_y = message->cam1_boresight_y;
+    part->cam2_mounting_alpha = message->cam2_mounting_alpha;
+    part->cam2_mounting_beta = message->cam2_mounting_beta;
+    part->cam2_mounting_gamma = message->cam2_mounting_gamma;
+    part->cam2_detection_threshold = message->cam2_detection_threshold;
+    part->cam2_sensor_auto_adjust_mode = message->cam2_sensor_auto_adjust_mode;
+    part->cam2_sensor_exposure_time = message->cam2_sensor_exposure_time;
+    part->cam2_boresight_x = message->cam2_boresight_x;
+    part->cam2_boresight_y = message->cam2_boresight_y;
+    part->nadir_max_deviation_percentage = message->nadir_max_deviation_percentage;
+    part->nadir_max_bad_edges = message->nadir_max_bad_edges;
+    part->nadir_max_radius = message->nadir_max_radius;
+    part->nadir_min_radius = message->nadir_min_radius;
+    part->cam_1_minimum_x_of_area_1 = message->cam_1_minimum_x_of_area_1;
+    part->cam_1_maximum_x_of_area_1 = message->cam_1_maximum_x_of_area_1;
+    part->cam_1_minimum_y_of_area_1 = message->cam_1_minimum_y_of_area_1;
+    part->cam_1_maximum_y_of_area_1 = message->cam_1_maximum_y_of_area_1;
+    part->cam_1_minimum_x_of_area_2 = message->cam_1_minimum_x_of_area_2;
+    part->cam_1_maximum_x_of_area_2 = message->cam_1_maximum_x_of_area_2;
+    part->cam_1_minimum_y_of_area_2 = message->cam_1_minimum_y_of_area_2;
+    part->cam_1_maximum_y_of_area_2 = message->cam_1_maximum_y_of_area_2;
+    part->cam_1_minimum_x_of_area_3 = message->cam_1_minimum_x_of_area_3;
+    part->cam_1_maximum_x_of_area_3 = message->cam_1_maximum_x_of_area_3;
+    part->cam_1_minimum_y_of_area_3 = message->cam_1_minimum_y_of_area_3;
+    part->cam_1_maximum_y_of_area_3 = message->cam_1_maximum_y_of_area_3;
+    part->cam_1_minimum_x_of_area_4 = message->cam_1_minimum_x_of_area_4;
+    part->cam_1_maximum_x_of_area_4 = message->cam_1_maximum_x_of_area_4;
+    part->cam_1_minimum_y_of_area_4 = message->cam_1_minimum_y_of_area_4;
+    part->cam_1_maximum_y_of_area_4 = message->cam_1_maximum_y_of_area_4;
+    part->cam_1_minimum_x_of_area_5 = message->cam_1_minimum_x_of_area_5;
+    part->cam_1_maximum_x_of_area_5 = message->cam_1_maximum_x_of_area_5;
+    part->cam_1_minimum_y_of_area_5 = message->cam_1_minimum_y_of_area_5;
+    part->cam_1_maximum_y_of_area_5 = message->cam_1_maximum_y_of_area_5;
+    part->cam_2_minimum_x_of_area_1 = message->cam_2_minimum_x_of_area_1;
+    part->cam_2_maximum_x_of_area_1 = message->cam_2_maximum_x_of_area_1;
+    part->cam_2_minimum_y_of_area_1 = message->cam_2_minimum_y_of_area_1;
+    part->cam_2_maximum_y_of_area_1 = message->cam_2_maximum_y_of_area_1;
+    part->cam_2_minimum_x_of_area_2 = message->cam_2_minimum_x_of_area_2;
+    part->cam_2_maximum_x_of_area_2 = message->cam_2_maximum_x_of_area_2;
+    part->cam_2_minimum_y_of_area_2 = message->cam_2_minimum_y_of_area_2;
+    part->cam_2_maximum_y_of_area_2 = message->cam_2_maximum_y_of_area_2;
+    part->cam_2_minimum_x_of_area_3 = message->cam_2_minimum_x_of_area_3;
+    part->cam_2_maximum_x_of_area_3 = message->cam_2_maximum_x_of_area_3;
+    part->cam_2_minimum_y_of_area_3 = message->cam_2_minimum_y_of_area_3;
+    part->cam_2_maximum_y_of_area_3 = message->cam_2_maximum_y_of_area_3;
+    part->cam_2_minimum_x_of_area_4 = message->cam_2_minimum_x_of_area_4;
+    part->cam_2_maximum_x_of_area_4 = message->cam_2_maximum_x_of_area_4;
+    part->cam_2_minimum_y_of_area_4 = message->cam_2_minimum_y_of_area_4;
+    part->cam_2_maximum_y_of_area_4 = message->cam_2_maximum_y_of_area_4;
+    part->cam_2_minimum_x_of_area_5 = message->cam_2_minimum_x_of_area_5;
+    part->cam_2_maximum_x_of_area_5 = message->cam_2_maximum_x_of_area_5;
+    part->cam_2_minimum_y_of_area_5 = message->cam_2_minimum_y_of_area_5;
+    part->cam_2_maximum_y_of_area_5 = message->cam_2_maximum_y_of_area_5;
+}
+
+/** Magnetometer Configuration, as it is repeated from byte 150. */
+static inline void cubeacp_adcs_configuration_part_magnetometer_configuration(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_magnetometer_configuration_t *ICDGEN_RESTRICT part)
+{
+    part->mounting_alpha = message->magnetometer_mounting_alpha;
+    part->mounting_beta = message->magnetometer_mounting_beta;
+    part->mounting_gamma = message->magnetometer_mounting_gamma;
+    part->channel_1_offset = message->magnetometer_channel_1_offset;
+    part->channel_2_offset = message->magnetometer_channel_2_offset;
+    part->channel_3_offset = message->magnetometer_channel_3_offset;
+    part->sensitivity_s11 = message->magnetometer_sensitivity_s11;
+    part->sensitivity_s22 = message->magnetometer_sensitivity_s22;
+    part->sensitivity_s33 = message->magnetometer_sensitivity_s33;
+    part->sensitivity_s12 = message->magnetometer_sensitivity_s12;
+    part->sensitivity_s13 = message->magnetometer_sensitivity_s13;
+    part->sensitivity_s21 = message->magnetometer_sensitivity_s21;
+    part->sensitivity_s23 = message->magnetometer_sensitivity_s23;
+    part->sensitivity_s31 = message->magnetometer_sensitivity_s31;
+    part->sensitivity_s32 = message->magnetometer_sensitivity_s32;
+}
+
+/** Redundant Magnetometer Configuration, as it is repeated from byte 180. */
+static inline void cubeacp_adcs_configuration_part_redundant_mag_configuration(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_redundant_mag_configuration_t *ICDGEN_RESTRICT part)
+{
+    part->mounting_alpha = message->redundant_mag_mounting_alpha;
+    part->mounting_beta = message->redundant_mag_mounting_beta;
+    part->mounting_gamma = message->redundant_mag_mounting_gamma;
+    part->channel_1_offset = message->redundant_mag_channel_1_offset;
+    part->channel_2_offset = message->redundant_mag_channel_2_offset;
+    part->channel_3_offset = message->redundant_mag_channel_3_offset;
+    part->sensitivity_s11 = message->redundant_mag_sensitivity_s11;
+    part->sensitivity_s22 = message->redundant_mag_sensitivity_s22;
+    part->sensitivity_s33 = message->redundant_mag_sensitivity_s33;
+    part->sensitivity_s12 = message->redundant_mag_sensitivity_s12;
+    part->sensitivity_s13 = message->redundant_mag_sensitivity_s13;
+    part->sensitivity_s21 = message->redundant_mag_sensitivity_s21;
+    part->sensitivity_s23 = message->redundant_mag_sensitivity_s23;
+    part->sensitivity_s31 = message->redundant_mag_sensitivity_s31;
+    part->sensitivity_s32 = message->redundant_mag_sensitivity_s32;
+}
+
+/** Set Star Tracker Configuration, as it is repeated from byte 210. */
+static inline void cubeacp_adcs_configuration_part_set_star_tracker_configuration(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_set_star_tracker_configuration_t *ICDGEN_RESTRICT part)
+{
+    part->mounting_alpha = message->star_tracker_mounting_alpha;
+    part->mounting_beta = message->star_tracker_mounting_beta;
+    part->mounting_gamma = message->star_tracker_mounting_gamma;
+    part->star_tracker_exposure_time = message->star_tracker_exposure_time;
+    part->star_tracker_analog_gain = message->star_tracker_analog_gain;
+    part->star_tracker_detection_threshold = message->star_tracker_detection_threshold;
+    part->star_tracker_star_threshold = message->star_tracker_star_threshold;
+    part->maximum_star_matched = message->maximum_star_matched;
+    part->detection_timeout_duration = message->detection_timeout_duration;
+    part->maximum_star_pixel = message->maximum_star_pixel;
+    part->minimum_star_pixel = message->minimum_star_pixel;
+    part->error_margin = message->star_tracker_error_margin;
+    part->star_tracker_delay_time = message->star_tracker_delay_time;
+    part->star_tracker_centroid_x = message->star_tracker_centroid_x;
+    part->star_tracker_centroid_y = message->star_tracker_centroid_y;
+    part->star_tracker_focal_length = message->star_tracker_focal_length;
+    part->k1_radial_distortion_coefficient = message->k1_radial_distortion_coefficient;
+    part->k2_radial_distortion_coefficient = message->k2_radial_distortion_coefficient;
+    part->p1_tangential_distortion_coefficient = message->p1_tangential_distortion_coefficient;
+    part->p2_tangential_distortion_coefficient = message->p2_tangential_distortion_coefficient;
+    part->star_tracking_window_width = message->star_tracking_window_width;
+    part->tracking_margin = message->star_tracking_margin;
+    part->validation_margin = message->star_validation_margin;
+    part->star_tracking_module_enable = message->star_tracking_module_enable;
+    part->star_tracking_location_prediction_enable = message->star_tracking_location_prediction_enable;
+    part->search_width = message->star_tracking_search_width;
+}
+
+/** Set Detumbling Control Parameters, as it is repeated from byte 263. */
+static inline void cubeacp_adcs_configuration_part_set_detumbling_control_parameters(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_set_detumbling_control_parameters_t *ICDGEN_RESTRICT part)
+{
+    part->detumbling_spin_gain = message->detumbling_spin_gain;
+    part->detumbling_damping_gain = message->detumbling_damping_gain;
+    part->spin_rate = message->reference_spin_rate;
+    part->fast_bdot_detumbling_gain = message->fast_bdot_detumbling_gain;
+}
+
+/** Set Y-Wheel Control Parameters, as it is repeated from byte 277. */
+static inline void cubeacp_adcs_configuration_part_set_y_wheel_control_parameters(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_set_y_wheel_control_parameters_t *ICDGEN_RESTRICT part)
+{
+    part->y_momentum_control_gain = message->y_momentum_control_gain;
+    part->y_momentum_nutation_damping_gain = message->y_momentum_nutation_damping_gain;
+    part->y_momentum_proportional_gain = message->y_momentum_proportional_gain;
+    part->y_momentum_derivative_gain = message->y_momentum_derivative_gain;
+    part->reference_wheel_momentum = message->reference_wheel_momentum;
+}
+
+/** Set Reaction Wheel Control Parameters, as it is repeated from byte 297. */
+static inline void cubeacp_adcs_configuration_part_set_reaction_wheel_control_parameters(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_set_reaction_wheel_control_parameters_t *ICDGEN_RESTRICT part)
+{
+    part->rwheel_proportional_gain = message->rwheel_proportional_gain;
+    part->rwheel_derivative_gain = message->rwheel_derivative_gain;
+    part->y_wheel_bias_momentum = message->y_wheel_bias_momentum;
+    part->sun_pointing_facet = message->sun_pointing_facet;
+    part->control_transition_on_wheel_error = message->control_transition_on_wheel_error;
+}
+
+/** Set Tracking Controller Gain Parameters, as it is repeated from byte 310. */
+static inline void cubeacp_adcs_configuration_part_set_tracking_controller_gain_parameters(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_set_tracking_controller_gain_parameters_t *ICDGEN_RESTRICT part)
+{
+    part->tracking_proportional_gain = message->tracking_proportional_gain;
+    part->tracking_derivative_gain = message->tracking_derivative_gain;
+    part->tracking_integral_gain = message->tracking_integral_gain;
+    part->target_tracking_facet = message->target_tracking_facet;
+}
+
+/** Moment of Inertia Matrix, as it is repeated from byte 323. */
+static inline void cubeacp_adcs_configuration_part_moment_of_inertia_matrix(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_moment_of_inertia_matrix_t *ICDGEN_RESTRICT part)
+{
+    part->moment_of_inertia_ixx = message->moment_of_inertia_ixx;
+    part->moment_of_inertia_iyy = message->moment_of_inertia_iyy;
+    part->moment_of_inertia_izz = message->moment_of_inertia_izz;
+    part->product_of_inertia_ixy = message->product_of_inertia_ixy;
+    part->product_of_inertia_ixz = message->product_of_inertia_ixz;
+    part->product_of_inertia_iyz = message->product_of_inertia_iyz;
+}
+
+/** Estimation Parameters, as it is repeated from byte 347. */
+static inline void cubeacp_adcs_configuration_part_estimation_parameters(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_estimation_parameters_t *ICDGEN_RESTRICT part)
+{
+    part->magnetometer_rate_filter_system_noise = message->magnetometer_rate_filter_system_noise;
+    part->ekf_system_noise = message->ekf_system_noise;
+    part->css_measurement_noise = message->css_measurement_noise;
+    part->sun_sensor_measurement_noise = message->sun_sensor_measurement_noise;
+    part->nadir_sensor_measurement_noise = message->nadir_sensor_measurement_noise;
+    part->magnetometer_measurement_noise = message->magnetometer_measurement_noise;
+    part->star_tracker_measurement_noise = message->star_tracker_measurement_noise;
+    part->use_sun_sensor = message->use_sun_sensor;
+    part->use_nadir_sensor = message->use_nadir_sensor;
+    part->use_css = message->use_css;
+    part->use_star_tracker = message->use_star_tracker;
+    part->nadir_sensor_terminator_test = message->nadir_sensor_terminator_test;
+    part->automatic_magnetometer_recovery = message->automatic_magnetometer_recovery;
+    part->magnetometer_mode = message->magnetometer_mode;
+    part->raw_magnetometer_selection = message->raw_magnetometer_selection;
+    part->estimation_transition_on_rate_sensor_error = message->estimation_transition_on_rate_sensor_error;
+    part->cam1_period = message->cam1_period;
+    part->cam2_period = message->cam2_period;
+}
+
+/** Augmented-SGP4 Parameters, as it is repeated from byte 378. */
+static inline void cubeacp_adcs_configuration_part_augmented_sgp4_parameters(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_augmented_sgp4_parameters_t *ICDGEN_RESTRICT part)
+{
+    part->incl_coefficient = message->incl_coefficient;
+    part->raan_coefficient = message->raan_coefficient;
+    part->ecc_coefficient = message->ecc_coefficient;
+    part->aop_coefficient = message->aop_coefficient;
+    part->time_coefficient = message->time_coefficient;
+    part->pos_coefficient = message->pos_coefficient;
+    part->maximum_position_error = message->maximum_position_error;
+    part->asgp4_filter = message->asgp4_filter;
+    part->xp_coefficient = message->xp_coefficient;
+    part->yp_coefficient = message->yp_coefficient;
+    part->gps_roll_over = message->gps_roll_over;
+    part->position_sd = message->position_sd;
+    part->velocity_sd = message->velocity_sd;
+    part->min_satellites = message->min_satellites;
+    part->time_gain = message->time_gain;
+    part->max_lag = message->max_lag;
+    part->min_samples = message->min_samples;
+}
+
+/** User-coded Controller and Estimator Parameters, as it is repeated from byte 408. */
+static inline void cubeacp_adcs_configuration_part_user_coded_controller_and_estimator_parameters(
+    const cubeacp_adcs_configuration_t *ICDGEN_RESTRICT message,
+    cubeacp_user_coded_controller_and_estimator_parameters_t *ICDGEN_RESTRICT part)
+{
+    (void)memcpy(
+        part->user_coded_controller_settings,
+        message->user_coded_controller_settings,
+        sizeof part->user_coded_controller_settings);
+    (void)memcpy(
+        part->user_coded_estimator_settings,
+        message->user_coded_estimator_settings,
+        sizeof part->user_coded_estimator_settings);
 }
 
 /** X-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767. */

@@ -15,6 +15,18 @@
  */
 
 #include "../icdgen.h"
+#include "magnetic_field_vector.h"
+#include "coarse_sun_vector.h"
+#include "fine_sun_vector.h"
+#include "nadir_vector.h"
+#include "rate_sensor_rates.h"
+#include "wheel_speed.h"
+#include "star_1_body_vector.h"
+#include "star_1_orbit_vector.h"
+#include "star_2_body_vector.h"
+#include "star_2_orbit_vector.h"
+#include "star_3_body_vector.h"
+#include "star_3_orbit_vector.h"
 
 /** Id of the telemetry. */
 #define CUBEACP_ADCS_MEASUREMENTS_ID 191u
@@ -181,6 +193,126 @@ static inline icd_status_t cubeacp_adcs_measurements_encode(
     }
     ICDGEN_WRITE_ROW_LE(cubeacp_adcs_measurements_t, message, &buffer[0], 36u, magnetic_field_x, star3_orbit_z);
     return ICD_OK;
+}
+
+/** Magnetic Field Vector, as it is repeated from byte 0. */
+static inline void cubeacp_adcs_measurements_part_magnetic_field_vector(
+    const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_magnetic_field_vector_t *ICDGEN_RESTRICT part)
+{
+    part->magnetic_field_x = message->magnetic_field_x;
+    part->magnetic_field_y = message->magnetic_field_y;
+    part->magnetic_field_z = message->magnetic_field_z;
+}
+
+/** Coarse Sun Vector, as it is repeated from byte 6. */
+static inline void cubeacp_adcs_measurements_part_coarse_sun_vector(
+    const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_coarse_sun_vector_t *ICDGEN_RESTRICT part)
+{
+    part->coarse_sun_x = message->coarse_sun_x;
+    part->coarse_sun_y = message->coarse_sun_y;
+    part->coarse_sun_z = message->coarse_sun_z;
+}
+
+/** Fine Sun Vector, as it is repeated from byte 12. */
+static inline void cubeacp_adcs_measurements_part_fine_sun_vector(
+    const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_fine_sun_vector_t *ICDGEN_RESTRICT part)
+{
+    part->sun_x = message->sun_x;
+    part->sun_y = message->sun_y;
+    part->sun_z = message->sun_z;
+}
+
+/** Nadir Vector, as it is repeated from byte 18. */
+static inline void cubeacp_adcs_measurements_part_nadir_vector(
+    const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_nadir_vector_t *ICDGEN_RESTRICT part)
+{
+    part->nadir_x = message->nadir_x;
+    part->nadir_y = message->nadir_y;
+    part->nadir_z = message->nadir_z;
+}
+
+/** Rate Sensor Rates, as it is repeated from byte 24. */
+static inline void cubeacp_adcs_measurements_part_rate_sensor_rates(
+    const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_rate_sensor_rates_t *ICDGEN_RESTRICT part)
+{
+    part->x_angular_rate = message->x_angular_rate;
+    part->y_angular_rate = message->y_angular_rate;
+    part->z_angular_rate = message->z_angular_rate;
+}
+
+/** Wheel Speed, as it is repeated from byte 30. */
+static inline void cubeacp_adcs_measurements_part_wheel_speed(
+    const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_wheel_speed_t *ICDGEN_RESTRICT part)
+{
+    part->x_wheel_speed = message->x_wheel_speed;
+    part->y_wheel_speed = message->y_wheel_speed;
+    part->z_wheel_speed = message->z_wheel_speed;
+}
+
+/** Star 1 Body Vector, as it is repeated from byte 36. */
+static inline void cubeacp_adcs_measurements_part_star_1_body_vector(
+    const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_star_1_body_vector_t *ICDGEN_RESTRICT part)
+{
+    part->star1_body_x = message->star1_body_x;
+    part->star1_body_y = message->star1_body_y;
+    part->star1_body_z = message->star1_body_z;
+}
+
+/** Star 1 Orbit Vector, as it is repeated from byte 42. */
+static inline void cubeacp_adcs_measurements_part_star_1_orbit_vector(
+    const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_star_1_orbit_vector_t *ICDGEN_RESTRICT part)
+{
+    part->star1_orbit_x = message->star1_orbit_x;
+    part->star1_orbit_y = message->star1_orbit_y;
+    part->star1_orbit_z = message->star1_orbit_z;
+}
+
+/** Star 2 Body Vector, as it is repeated from byte 48. */
+static inline void cubeacp_adcs_measurements_part_star_2_body_vector(
+    const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_star_2_body_vector_t *ICDGEN_RESTRICT part)
+{
+    part->star2_body_x = message->star2_body_x;
+    part->star2_body_y = message->star2_body_y;
+    part->star2_body_z = message->star2_body_z;
+}
+
+/** Star 2 Orbit Vector, as it is repeated from byte 54. */
+static inline void cubeacp_adcs_measurements_part_star_2_orbit_vector(
+    const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_star_2_orbit_vector_t *ICDGEN_RESTRICT part)
+{
+    part->star2_orbit_x = message->star2_orbit_x;
+    part->star2_orbit_y = message->star2_orbit_y;
+    part->star2_orbit_z = message->star2_orbit_z;
+}
+
+/** Star 3 Body Vector, as it is repeated from byte 60. */
+static inline void cubeacp_adcs_measurements_part_star_3_body_vector(
+    const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_star_3_body_vector_t *ICDGEN_RESTRICT part)
+{
+    part->star3_body_x = message->star3_body_x;
+    part->star3_body_y = message->star3_body_y;
+    part->star3_body_z = message->star3_body_z;
+}
+
+/** Star 3 Orbit Vector, as it is repeated from byte 66. */
+static inline void cubeacp_adcs_measurements_part_star_3_orbit_vector(
+    const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_star_3_orbit_vector_t *ICDGEN_RESTRICT part)
+{
+    part->star3_orbit_x = message->star3_orbit_x;
+    part->star3_orbit_y = message->star3_orbit_y;
+    part->star3_orbit_z = message->star3_orbit_z;
 }
 
 /** Magnetic Field X in nT, exact: -327680 to 327670. */

@@ -19,6 +19,15 @@
 
 #include "../icdgen.h"
 #include "enums.h"
+#include "current_adcs_state.h"
+#include "current_adcs_state_2.h"
+#include "estimated_attitude_angles.h"
+#include "estimated_quaternion.h"
+#include "estimated_angular_rates.h"
+#include "satellite_position_eci.h"
+#include "satellite_velocity_eci.h"
+#include "satellite_position_llh.h"
+#include "ecef_position.h"
 
 /** Id of the telemetry. */
 #define CUBEACP_ADCS_STATE_ID 190u
@@ -479,6 +488,147 @@ static inline icd_status_t cubeacp_adcs_state_encode(
     (void)memset(&buffer[9], 0, 3u);
     ICDGEN_WRITE_ROW_LE(cubeacp_adcs_state_t, message, &buffer[12], 21u, estimated_roll_angle, ecef_position_z);
     return ICD_OK;
+}
+
+/** Current ADCS State, as it is repeated from byte 0. */
+static inline void cubeacp_adcs_state_part_current_adcs_state(
+    const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
+    cubeacp_current_adcs_state_t *ICDGEN_RESTRICT part)
+{
+    part->attitude_estimation_mode = message->attitude_estimation_mode;
+    part->control_mode = message->control_mode;
+    part->adcs_run_mode = message->adcs_run_mode;
+    part->asgp4_mode = message->asgp4_mode;
+    part->cubecontrol_signal_enabled = message->cubecontrol_signal_enabled;
+    part->cubecontrol_motor_enabled = message->cubecontrol_motor_enabled;
+    part->cubesense1_enabled = message->cubesense1_enabled;
+    part->cubesense2_enabled = message->cubesense2_enabled;
+    part->cubewheel1_enabled = message->cubewheel1_enabled;
+    part->cubewheel2_enabled = message->cubewheel2_enabled;
+    part->cubewheel3_enabled = message->cubewheel3_enabled;
+    part->cubestar_enabled = message->cubestar_enabled;
+    part->gps_receiver_enabled = message->gps_receiver_enabled;
+    part->gps_lna_power_enabled = message->gps_lna_power_enabled;
+    part->motor_driver_enabled = message->motor_driver_enabled;
+    part->sun_is_above_local_horizon = message->sun_is_above_local_horizon;
+    part->cubesense1_communications_error = message->cubesense1_communications_error;
+    part->cubesense2_communications_error = message->cubesense2_communications_error;
+    part->cubecontrol_signal_communications_error = message->cubecontrol_signal_communications_error;
+    part->cubecontrol_motor_communications_error = message->cubecontrol_motor_communications_error;
+    part->cubewheel1_communications_error = message->cubewheel1_communications_error;
+    part->cubewheel2_communications_error = message->cubewheel2_communications_error;
+    part->cubewheel3_communications_error = message->cubewheel3_communications_error;
+    part->cubestar_communications_error = message->cubestar_communications_error;
+    part->magnetometer_range_error = message->magnetometer_range_error;
+    part->cam1_sram_overcurrent_detected = message->cam1_sram_overcurrent_detected;
+    part->cam1_3v3_overcurrent_detected = message->cam1_3v3_overcurrent_detected;
+    part->cam1_sensor_busy_error = message->cam1_sensor_busy_error;
+    part->cam1_sensor_detection_error = message->cam1_sensor_detection_error;
+    part->sun_sensor_range_error = message->sun_sensor_range_error;
+    part->cam2_sram_overcurrent_detected = message->cam2_sram_overcurrent_detected;
+    part->cam2_3v3_overcurrent_detected = message->cam2_3v3_overcurrent_detected;
+    part->cam2_sensor_busy_error = message->cam2_sensor_busy_error;
+    part->cam2_sensor_detection_error = message->cam2_sensor_detection_error;
+    part->nadir_sensor_range_error = message->nadir_sensor_range_error;
+    part->rate_sensor_range_error = message->rate_sensor_range_error;
+    part->wheel_speed_range_error = message->wheel_speed_range_error;
+    part->coarse_sun_sensor_error = message->coarse_sun_sensor_error;
+    part->star_tracker_match_error = message->star_tracker_match_error;
+    part->star_tracker_overcurrent_detected = message->star_tracker_overcurrent_detected;
+}
+
+/** Current ADCS State 2, as it is repeated from byte 6. */
+static inline void cubeacp_adcs_state_part_current_adcs_state_2(
+    const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
+    cubeacp_current_adcs_state_2_t *ICDGEN_RESTRICT part)
+{
+    part->orbit_parameters_are_invalid = message->orbit_parameters_are_invalid;
+    part->configuration_is_invalid = message->configuration_is_invalid;
+    part->control_mode_change_is_not_allowed = message->control_mode_change_is_not_allowed;
+    part->estimator_change_is_not_allowed = message->estimator_change_is_not_allowed;
+    part->current_magnetometer_sampling_mode = message->current_magnetometer_sampling_mode;
+    part->magnetic_field_size_mismatch = message->magnetic_field_size_mismatch;
+    part->node_recovery_error = message->node_recovery_error;
+    part->cubesense1_runtime_error = message->cubesense1_runtime_error;
+    part->cubesense2_runtime_error = message->cubesense2_runtime_error;
+    part->cubecontrol_signal_runtime_error = message->cubecontrol_signal_runtime_error;
+    part->cubecontrol_motor_runtime_error = message->cubecontrol_motor_runtime_error;
+    part->cubewheel1_runtime_error = message->cubewheel1_runtime_error;
+    part->cubewheel2_runtime_error = message->cubewheel2_runtime_error;
+    part->cubewheel3_runtime_error = message->cubewheel3_runtime_error;
+    part->cubestar_runtime_error = message->cubestar_runtime_error;
+    part->magnetometer_error = message->magnetometer_error;
+    part->rate_sensor_failure = message->rate_sensor_failure;
+}
+
+/** Estimated Attitude Angles, as it is repeated from byte 12. */
+static inline void cubeacp_adcs_state_part_estimated_attitude_angles(
+    const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
+    cubeacp_estimated_attitude_angles_t *ICDGEN_RESTRICT part)
+{
+    part->estimated_roll_angle = message->estimated_roll_angle;
+    part->estimated_pitch_angle = message->estimated_pitch_angle;
+    part->estimated_yaw_angle = message->estimated_yaw_angle;
+}
+
+/** Estimated Quaternion, as it is repeated from byte 18. */
+static inline void cubeacp_adcs_state_part_estimated_quaternion(
+    const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
+    cubeacp_estimated_quaternion_t *ICDGEN_RESTRICT part)
+{
+    part->estimated_q1 = message->estimated_q1;
+    part->estimated_q2 = message->estimated_q2;
+    part->estimated_q3 = message->estimated_q3;
+}
+
+/** Estimated Angular Rates, as it is repeated from byte 24. */
+static inline void cubeacp_adcs_state_part_estimated_angular_rates(
+    const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
+    cubeacp_estimated_angular_rates_t *ICDGEN_RESTRICT part)
+{
+    part->estimated_x_angular_rate = message->estimated_x_angular_rate;
+    part->estimated_y_angular_rate = message->estimated_y_angular_rate;
+    part->estimated_z_angular_rate = message->estimated_z_angular_rate;
+}
+
+/** Satellite Position (ECI), as it is repeated from byte 30. */
+static inline void cubeacp_adcs_state_part_satellite_position_eci(
+    const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
+    cubeacp_satellite_position_eci_t *ICDGEN_RESTRICT part)
+{
+    part->x_position = message->x_position;
+    part->y_position = message->y_position;
+    part->z_position = message->z_position;
+}
+
+/** Satellite Velocity (ECI), as it is repeated from byte 36. */
+static inline void cubeacp_adcs_state_part_satellite_velocity_eci(
+    const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
+    cubeacp_satellite_velocity_eci_t *ICDGEN_RESTRICT part)
+{
+    part->x_velocity = message->x_velocity;
+    part->y_velocity = message->y_velocity;
+    part->z_velocity = message->z_velocity;
+}
+
+/** Satellite Position (LLH), as it is repeated from byte 42. */
+static inline void cubeacp_adcs_state_part_satellite_position_llh(
+    const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
+    cubeacp_satellite_position_llh_t *ICDGEN_RESTRICT part)
+{
+    part->latitude = message->latitude;
+    part->longitude = message->longitude;
+    part->altitude = message->altitude;
+}
+
+/** ECEF Position, as it is repeated from byte 48. */
+static inline void cubeacp_adcs_state_part_ecef_position(
+    const cubeacp_adcs_state_t *ICDGEN_RESTRICT message,
+    cubeacp_ecef_position_t *ICDGEN_RESTRICT part)
+{
+    part->ecef_position_x = message->ecef_position_x;
+    part->ecef_position_y = message->ecef_position_y;
+    part->ecef_position_z = message->ecef_position_z;
 }
 
 /** Estimated Roll Angle in thousandths of deg, exact: -327680 to 327670. */

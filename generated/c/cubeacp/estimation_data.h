@@ -13,6 +13,13 @@
  */
 
 #include "../icdgen.h"
+#include "igrf_modelled_magnetic_field_vector.h"
+#include "modelled_sun_vector.h"
+#include "estimated_gyro_bias.h"
+#include "estimation_innovation_vector.h"
+#include "quaternion_error_vector.h"
+#include "quaternion_covariance.h"
+#include "angular_rate_covariance.h"
 
 /** Id of the telemetry. */
 #define CUBEACP_ESTIMATION_DATA_ID 193u
@@ -141,6 +148,76 @@ static inline icd_status_t cubeacp_estimation_data_encode(
         igrf_modelled_magnetic_field_x,
         z_angular_rate_covariance);
     return ICD_OK;
+}
+
+/** IGRF Modelled Magnetic Field Vector, as it is repeated from byte 0. */
+static inline void cubeacp_estimation_data_part_igrf_modelled_magnetic_field_vector(
+    const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
+    cubeacp_igrf_modelled_magnetic_field_vector_t *ICDGEN_RESTRICT part)
+{
+    part->field_x = message->igrf_modelled_magnetic_field_x;
+    part->field_y = message->igrf_modelled_magnetic_field_y;
+    part->field_z = message->igrf_modelled_magnetic_field_z;
+}
+
+/** Modelled Sun Vector, as it is repeated from byte 6. */
+static inline void cubeacp_estimation_data_part_modelled_sun_vector(
+    const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
+    cubeacp_modelled_sun_vector_t *ICDGEN_RESTRICT part)
+{
+    part->modelled_sun_vector_x = message->modelled_sun_vector_x;
+    part->modelled_sun_vector_y = message->modelled_sun_vector_y;
+    part->modelled_sun_vector_z = message->modelled_sun_vector_z;
+}
+
+/** Estimated Gyro Bias, as it is repeated from byte 12. */
+static inline void cubeacp_estimation_data_part_estimated_gyro_bias(
+    const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
+    cubeacp_estimated_gyro_bias_t *ICDGEN_RESTRICT part)
+{
+    part->estimated_x_gyro_bias = message->estimated_x_gyro_bias;
+    part->estimated_y_gyro_bias = message->estimated_y_gyro_bias;
+    part->estimated_z_gyro_bias = message->estimated_z_gyro_bias;
+}
+
+/** Estimation Innovation Vector, as it is repeated from byte 18. */
+static inline void cubeacp_estimation_data_part_estimation_innovation_vector(
+    const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
+    cubeacp_estimation_innovation_vector_t *ICDGEN_RESTRICT part)
+{
+    part->innovation_vector_x = message->innovation_vector_x;
+    part->innovation_vector_y = message->innovation_vector_y;
+    part->innovation_vector_z = message->innovation_vector_z;
+}
+
+/** Quaternion Error Vector, as it is repeated from byte 24. */
+static inline void cubeacp_estimation_data_part_quaternion_error_vector(
+    const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
+    cubeacp_quaternion_error_vector_t *ICDGEN_RESTRICT part)
+{
+    part->quaternion_error_q1 = message->quaternion_error_q1;
+    part->quaternion_error_q2 = message->quaternion_error_q2;
+    part->quaternion_error_q3 = message->quaternion_error_q3;
+}
+
+/** Quaternion Covariance, as it is repeated from byte 30. */
+static inline void cubeacp_estimation_data_part_quaternion_covariance(
+    const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
+    cubeacp_quaternion_covariance_t *ICDGEN_RESTRICT part)
+{
+    part->q1_rms = message->quaternion_covariance_q1_rms;
+    part->q2_rms = message->quaternion_covariance_q2_rms;
+    part->q3_rms = message->quaternion_covariance_q3_rms;
+}
+
+/** Angular Rate Covariance, as it is repeated from byte 36. */
+static inline void cubeacp_estimation_data_part_angular_rate_covariance(
+    const cubeacp_estimation_data_t *ICDGEN_RESTRICT message,
+    cubeacp_angular_rate_covariance_t *ICDGEN_RESTRICT part)
+{
+    part->x_angular_rate_covariance = message->x_angular_rate_covariance;
+    part->y_angular_rate_covariance = message->y_angular_rate_covariance;
+    part->z_angular_rate_covariance = message->z_angular_rate_covariance;
 }
 
 /** IGRF Modelled Magnetic Field X in nT, exact: -327680 to 327670. */

@@ -12,6 +12,13 @@
  */
 
 #include "../icdgen.h"
+#include "cubesense1_currents.h"
+#include "cubesense2_currents.h"
+#include "cubecontrol_currents.h"
+#include "wheel_currents.h"
+#include "adcs_misc_currents.h"
+#include "adcs_temperatures.h"
+#include "rate_sensor_temperatures.h"
 
 /** Id of the telemetry. */
 #define CUBEACP_POWER_AND_TEMPERATURE_ID 195u
@@ -149,6 +156,74 @@ static inline icd_status_t cubeacp_power_and_temperature_encode(
         cubesense1_3v3_current,
         z_rate_sensor_temperature);
     return ICD_OK;
+}
+
+/** CubeSense1 Current Measurements, as it is repeated from byte 0. */
+static inline void cubeacp_power_and_temperature_part_cubesense1_currents(
+    const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
+    cubeacp_cubesense1_currents_t *ICDGEN_RESTRICT part)
+{
+    part->cubesense1_3v3_current = message->cubesense1_3v3_current;
+    part->cubesense1_cam_sram_current = message->cubesense1_cam_sram_current;
+}
+
+/** CubeSense2 Current Measurements, as it is repeated from byte 4. */
+static inline void cubeacp_power_and_temperature_part_cubesense2_currents(
+    const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
+    cubeacp_cubesense2_currents_t *ICDGEN_RESTRICT part)
+{
+    part->cubesense2_3v3_current = message->cubesense2_3v3_current;
+    part->cubesense2_cam_sram_current = message->cubesense2_cam_sram_current;
+}
+
+/** CubeControl Current Measurements, as it is repeated from byte 8. */
+static inline void cubeacp_power_and_temperature_part_cubecontrol_currents(
+    const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
+    cubeacp_cubecontrol_currents_t *ICDGEN_RESTRICT part)
+{
+    part->cubecontrol_3v3_current = message->cubecontrol_3v3_current;
+    part->cubecontrol_5v_current = message->cubecontrol_5v_current;
+    part->cubecontrol_vbat_current = message->cubecontrol_vbat_current;
+}
+
+/** Wheel Currents, as it is repeated from byte 14. */
+static inline void cubeacp_power_and_temperature_part_wheel_currents(
+    const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
+    cubeacp_wheel_currents_t *ICDGEN_RESTRICT part)
+{
+    part->wheel1_current = message->wheel1_current;
+    part->wheel2_current = message->wheel2_current;
+    part->wheel3_current = message->wheel3_current;
+}
+
+/** ADCS Misc Current Measurements, as it is repeated from byte 20. */
+static inline void cubeacp_power_and_temperature_part_adcs_misc_currents(
+    const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
+    cubeacp_adcs_misc_currents_t *ICDGEN_RESTRICT part)
+{
+    part->cubestar_current = message->cubestar_current;
+    part->magnetorquer_current = message->magnetorquer_current;
+    part->cubestar_mcu_temperature = message->cubestar_mcu_temperature;
+}
+
+/** ADCS Temperatures, as it is repeated from byte 26. */
+static inline void cubeacp_power_and_temperature_part_adcs_temperatures(
+    const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
+    cubeacp_adcs_temperatures_t *ICDGEN_RESTRICT part)
+{
+    part->mcu_temperature = message->mcu_temperature;
+    part->magnetometer_temperature = message->magnetometer_temperature;
+    part->redundant_mag_temperature = message->redundant_mag_temperature;
+}
+
+/** Rate sensor temperatures, as it is repeated from byte 32. */
+static inline void cubeacp_power_and_temperature_part_rate_sensor_temperatures(
+    const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
+    cubeacp_rate_sensor_temperatures_t *ICDGEN_RESTRICT part)
+{
+    part->x_rate_sensor_temperature = message->x_rate_sensor_temperature;
+    part->y_rate_sensor_temperature = message->y_rate_sensor_temperature;
+    part->z_rate_sensor_temperature = message->z_rate_sensor_temperature;
 }
 
 /** CubeSense1 3V3 Current in uA, exact: 0 to 6553500. */

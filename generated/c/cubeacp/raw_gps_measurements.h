@@ -12,6 +12,11 @@
 
 #include "../icdgen.h"
 #include "enums.h"
+#include "raw_gps_status.h"
+#include "raw_gps_time.h"
+#include "raw_gps_x.h"
+#include "raw_gps_y.h"
+#include "raw_gps_z.h"
 
 /** Id of the telemetry. */
 #define CUBEACP_RAW_GPS_MEASUREMENTS_ID 210u
@@ -178,6 +183,55 @@ static inline icd_status_t cubeacp_raw_gps_measurements_encode(
     buffer[34] = message->y_vel_standard_deviation;
     buffer[35] = message->z_vel_standard_deviation;
     return ICD_OK;
+}
+
+/** Raw GPS Status, as it is repeated from byte 0. */
+static inline void cubeacp_raw_gps_measurements_part_raw_gps_status(
+    const cubeacp_raw_gps_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_raw_gps_status_t *ICDGEN_RESTRICT part)
+{
+    part->gps_solution_status = message->gps_solution_status;
+    part->number_of_tracked_gps_satellites = message->number_of_tracked_gps_satellites;
+    part->number_of_gps_satellites_used_in_solution = message->number_of_gps_satellites_used_in_solution;
+    part->counter_for_xyz_log_from_gps = message->counter_for_xyz_log_from_gps;
+    part->counter_for_range_log_from_gps = message->counter_for_range_log_from_gps;
+    part->response_message_for_gps_log_setup = message->response_message_for_gps_log_setup;
+}
+
+/** Raw GPS Time, as it is repeated from byte 6. */
+static inline void cubeacp_raw_gps_measurements_part_raw_gps_time(
+    const cubeacp_raw_gps_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_raw_gps_time_t *ICDGEN_RESTRICT part)
+{
+    part->gps_reference_week = message->gps_reference_week;
+    part->gps_time_milliseconds = message->gps_time_milliseconds;
+}
+
+/** Raw GPS X, as it is repeated from byte 12. */
+static inline void cubeacp_raw_gps_measurements_part_raw_gps_x(
+    const cubeacp_raw_gps_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_raw_gps_x_t *ICDGEN_RESTRICT part)
+{
+    part->ecef_position_x = message->ecef_position_x;
+    part->ecef_velocity_x = message->ecef_velocity_x;
+}
+
+/** Raw GPS Y, as it is repeated from byte 18. */
+static inline void cubeacp_raw_gps_measurements_part_raw_gps_y(
+    const cubeacp_raw_gps_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_raw_gps_y_t *ICDGEN_RESTRICT part)
+{
+    part->ecef_position_y = message->ecef_position_y;
+    part->ecef_velocity_y = message->ecef_velocity_y;
+}
+
+/** Raw GPS Z, as it is repeated from byte 24. */
+static inline void cubeacp_raw_gps_measurements_part_raw_gps_z(
+    const cubeacp_raw_gps_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_raw_gps_z_t *ICDGEN_RESTRICT part)
+{
+    part->ecef_position_z = message->ecef_position_z;
+    part->ecef_velocity_z = message->ecef_velocity_z;
 }
 
 /** X-pos Standard Deviation in mm, exact: 0 to 25500. */

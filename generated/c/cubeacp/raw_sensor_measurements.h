@@ -14,6 +14,12 @@
 
 #include "../icdgen.h"
 #include "enums.h"
+#include "raw_cam2_sensor.h"
+#include "raw_cam1_sensor.h"
+#include "raw_css_1_to_6.h"
+#include "raw_css_7_to_10.h"
+#include "raw_magnetometer.h"
+#include "raw_rate_sensor.h"
 
 /** Id of the telemetry. */
 #define CUBEACP_RAW_SENSOR_MEASUREMENTS_ID 194u
@@ -161,6 +167,72 @@ static inline icd_status_t cubeacp_raw_sensor_measurements_encode(
     icdgen_store_u16le(&buffer[30], ICDGEN_U16(message->rate_y));
     icdgen_store_u16le(&buffer[32], ICDGEN_U16(message->rate_z));
     return ICD_OK;
+}
+
+/** Raw Cam2 Sensor, as it is repeated from byte 0. */
+static inline void cubeacp_raw_sensor_measurements_part_raw_cam2_sensor(
+    const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_raw_cam2_sensor_t *ICDGEN_RESTRICT part)
+{
+    part->cam2_centroid_x = message->cam2_centroid_x;
+    part->cam2_centroid_y = message->cam2_centroid_y;
+    part->cam2_capture_status = message->cam2_capture_status;
+    part->cam2_detection_result = message->cam2_detection_result;
+}
+
+/** Raw Cam1 Sensor, as it is repeated from byte 6. */
+static inline void cubeacp_raw_sensor_measurements_part_raw_cam1_sensor(
+    const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_raw_cam1_sensor_t *ICDGEN_RESTRICT part)
+{
+    part->cam1_centroid_x = message->cam1_centroid_x;
+    part->cam1_centroid_y = message->cam1_centroid_y;
+    part->cam1_capture_status = message->cam1_capture_status;
+    part->cam1_detection_result = message->cam1_detection_result;
+}
+
+/** Raw CSS 1 to 6, as it is repeated from byte 12. */
+static inline void cubeacp_raw_sensor_measurements_part_raw_css_1_to_6(
+    const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_raw_css_1_to_6_t *ICDGEN_RESTRICT part)
+{
+    part->css1 = message->css1;
+    part->css2 = message->css2;
+    part->css3 = message->css3;
+    part->css4 = message->css4;
+    part->css5 = message->css5;
+    part->css6 = message->css6;
+}
+
+/** Raw CSS 7 to 10, as it is repeated from byte 18. */
+static inline void cubeacp_raw_sensor_measurements_part_raw_css_7_to_10(
+    const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_raw_css_7_to_10_t *ICDGEN_RESTRICT part)
+{
+    part->css7 = message->css7;
+    part->css8 = message->css8;
+    part->css9 = message->css9;
+    part->css10 = message->css10;
+}
+
+/** Raw Magnetometer, as it is repeated from byte 22. */
+static inline void cubeacp_raw_sensor_measurements_part_raw_magnetometer(
+    const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_raw_magnetometer_t *ICDGEN_RESTRICT part)
+{
+    part->mag_x = message->mag_x;
+    part->mag_y = message->mag_y;
+    part->mag_z = message->mag_z;
+}
+
+/** Raw Rate Sensor, as it is repeated from byte 28. */
+static inline void cubeacp_raw_sensor_measurements_part_raw_rate_sensor(
+    const cubeacp_raw_sensor_measurements_t *ICDGEN_RESTRICT message,
+    cubeacp_raw_rate_sensor_t *ICDGEN_RESTRICT part)
+{
+    part->rate_x = message->rate_x;
+    part->rate_y = message->rate_y;
+    part->rate_z = message->rate_z;
 }
 
 #endif /* CUBEACP_RAW_SENSOR_MEASUREMENTS_H */

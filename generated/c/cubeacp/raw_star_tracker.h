@@ -14,6 +14,15 @@
 
 #include "../icdgen.h"
 #include "enums.h"
+#include "star_performance1.h"
+#include "star_performance2.h"
+#include "star_magnitude.h"
+#include "star_1_raw_data.h"
+#include "star_2_raw_data.h"
+#include "star_3_raw_data.h"
+#include "star_timing.h"
+#include "cubestar_estimated_rates.h"
+#include "cubestar_estimated_quaternion.h"
 
 /** Id of the telemetry. */
 #define CUBEACP_RAW_STAR_TRACKER_ID 211u
@@ -245,6 +254,108 @@ static inline icd_status_t cubeacp_raw_star_tracker_encode(
     buffer[11] = message->star_3_confidence;
     ICDGEN_WRITE_ROW_LE(cubeacp_raw_star_tracker_t, message, &buffer[12], 21u, magnitude_star_1, q2);
     return ICD_OK;
+}
+
+/** Star Performance1, as it is repeated from byte 0. */
+static inline void cubeacp_raw_star_tracker_part_star_performance1(
+    const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
+    cubeacp_star_performance1_t *ICDGEN_RESTRICT part)
+{
+    part->number_of_stars_detected = message->number_of_stars_detected;
+    part->star_image_noise = message->star_image_noise;
+    part->invalid_stars = message->invalid_stars;
+    part->number_of_stars_identified = message->number_of_stars_identified;
+    part->identification_mode = message->identification_mode;
+    part->image_dark_value = message->image_dark_value;
+}
+
+/** Star Performance2, as it is repeated from byte 6. */
+static inline void cubeacp_raw_star_tracker_part_star_performance2(
+    const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
+    cubeacp_star_performance2_t *ICDGEN_RESTRICT part)
+{
+    part->image_capture_success = message->image_capture_success;
+    part->detection_success = message->detection_success;
+    part->identification_success = message->identification_success;
+    part->attitude_success = message->attitude_success;
+    part->processing_time_error = message->processing_time_error;
+    part->tracking_module_enabled = message->tracking_module_enabled;
+    part->prediction_enabled = message->prediction_enabled;
+    part->comms_error = message->comms_error;
+    part->sample_period = message->sample_period;
+    part->star_1_confidence = message->star_1_confidence;
+    part->star_2_confidence = message->star_2_confidence;
+    part->star_3_confidence = message->star_3_confidence;
+}
+
+/** Star Magnitude, as it is repeated from byte 12. */
+static inline void cubeacp_raw_star_tracker_part_star_magnitude(
+    const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
+    cubeacp_star_magnitude_t *ICDGEN_RESTRICT part)
+{
+    part->magnitude_star_1 = message->magnitude_star_1;
+    part->magnitude_star_2 = message->magnitude_star_2;
+    part->magnitude_star_3 = message->magnitude_star_3;
+}
+
+/** Star 1 Raw Data, as it is repeated from byte 18. */
+static inline void cubeacp_raw_star_tracker_part_star_1_raw_data(
+    const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
+    cubeacp_star_1_raw_data_t *ICDGEN_RESTRICT part)
+{
+    part->catalogue_star_1 = message->catalogue_star_1;
+    part->centroid_x_star_1 = message->centroid_x_star_1;
+    part->centroid_y_star_1 = message->centroid_y_star_1;
+}
+
+/** Star 2 Raw Data, as it is repeated from byte 24. */
+static inline void cubeacp_raw_star_tracker_part_star_2_raw_data(
+    const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
+    cubeacp_star_2_raw_data_t *ICDGEN_RESTRICT part)
+{
+    part->catalogue_star_2 = message->catalogue_star_2;
+    part->centroid_x_star_2 = message->centroid_x_star_2;
+    part->centroid_y_star_2 = message->centroid_y_star_2;
+}
+
+/** Star 3 Raw Data, as it is repeated from byte 30. */
+static inline void cubeacp_raw_star_tracker_part_star_3_raw_data(
+    const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
+    cubeacp_star_3_raw_data_t *ICDGEN_RESTRICT part)
+{
+    part->catalogue_star_3 = message->catalogue_star_3;
+    part->centroid_x_star_3 = message->centroid_x_star_3;
+    part->centroid_y_star_3 = message->centroid_y_star_3;
+}
+
+/** Star Timing, as it is repeated from byte 36. */
+static inline void cubeacp_raw_star_tracker_part_star_timing(
+    const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
+    cubeacp_star_timing_t *ICDGEN_RESTRICT part)
+{
+    part->capture = message->capture;
+    part->detection = message->detection;
+    part->identification = message->identification;
+}
+
+/** CubeStar Estimated Rates, as it is repeated from byte 42. */
+static inline void cubeacp_raw_star_tracker_part_cubestar_estimated_rates(
+    const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
+    cubeacp_cubestar_estimated_rates_t *ICDGEN_RESTRICT part)
+{
+    part->x_axis_rate = message->x_axis_rate;
+    part->y_axis_rate = message->y_axis_rate;
+    part->z_axis_rate = message->z_axis_rate;
+}
+
+/** CubeStar Estimated Quaternion, as it is repeated from byte 48. */
+static inline void cubeacp_raw_star_tracker_part_cubestar_estimated_quaternion(
+    const cubeacp_raw_star_tracker_t *ICDGEN_RESTRICT message,
+    cubeacp_cubestar_estimated_quaternion_t *ICDGEN_RESTRICT part)
+{
+    part->q0 = message->q0;
+    part->q1 = message->q1;
+    part->q2 = message->q2;
 }
 
 /** x-Axis rate in millionths, exact: -3276800 to 3276700. */

@@ -117,10 +117,12 @@ class Message(metaclass=MessageType):
         """The fields in the order of the manual."""
         VIEWS: ClassVar[tuple[FieldInfo, ...]]
         """What reads bits of the fields in another way, and is not set."""
+        PARTS: ClassVar[tuple[tuple[str, str, int], ...]]
+        """The messages that it repeats: their nodes, their classes, and from which bit."""
         BYTE_ORDER: ClassVar[Literal["little", "big"]]
         BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
     else:
-        IDS = FIELDS = VIEWS = ()
+        IDS = FIELDS = VIEWS = PARTS = ()
         TABLE = None
         ACKNOWLEDGED = True
         BYTE_ORDER, BIT_ORDER = "little", "lsb0"
@@ -167,6 +169,22 @@ class Message(metaclass=MessageType):
 
         made: _lazy.M = compiled(cls, "from_bytes")(cls, data)
         return made
+
+    @classmethod
+    def from_part(cls: type[_lazy.M], message: Message, index: int = 0) -> _lazy.M:
+        """The message as another one repeats it, of several times the one with this index.
+
+        Raises `IcdError` if it does not.
+        """
+        from ._parts import part
+
+        return part(cls, message, index)
+
+    def iter_parts(self) -> _lazy.Iterator[Message]:
+        """The messages that it repeats, one after the other, each of its own class."""
+        from ._parts import parts
+
+        return parts(self)
 
     def to_bytes(self) -> bytes:
         """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""

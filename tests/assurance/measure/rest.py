@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,10 @@ import jinja2
 from icdgen import codec
 from icdgen.backends.c import physical
 from icdgen.backends.c.names import stem
+from icdgen.backends.c.parts import part_name
 from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.links import links_of
+from icdgen.describe.parts import parts_of
 from icdgen.icd.model import Icd
 from icdgen.vectors.make import Row, message_vectors
 
@@ -51,7 +54,26 @@ def _message(message: MessageDescription) -> dict[str, Any]:
         "length": message.model.length,
         "beyond": beyond,
         "rows": [_row(message, row, wholes) for row in (rows if wholes else rows[:2])],
+        "parts": list(_parts(message)),
     }
+
+
+def _parts(message: MessageDescription) -> Iterator[dict[str, Any]]:
+    """Each part: the call that gives it, and where its bytes begin; nowhere where these are no whole ones."""
+    for part in parts_of(message):
+        for index, begin in enumerate(part.begins):
+            which = f"{index}u, " if len(part.begins) > 1 else ""
+            call = f"{stem(message)}_{part_name(part.message)}(&message, {which}&part)"
+            length = part.message.model.length
+            yield {
+                "stem": stem(part.message),
+                "call": call,
+                "begin": None if begin % 8 else begin // 8,
+                "length": length,
+            }
+            if which and begin == part.begins[-1]:
+                beyond = call.replace(which, f"{len(part.begins)}u, ")
+                yield {"stem": stem(part.message), "call": f"CHECK({beyond} == ICD_ERROR_RANGE)", "begin": None}
 
 
 def _row(message: MessageDescription, row: Row, wholes: dict[str, Any]) -> dict[str, Any]:

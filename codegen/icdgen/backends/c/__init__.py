@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from icdgen.backends import Identifier
-from icdgen.backends.c import accessors, bits, constants, decoding, encoding, names, types
+from icdgen.backends.c import accessors, bits, constants, decoding, encoding, names, parts, types
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
@@ -78,7 +78,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
     about = message.comment
     return {
         "about": comment(["@file", about.head, *about.rest, *noted(about)]),
-        "includes": ["../icdgen_wide.h" if message.has_wide_steps else "../icdgen.h", *enums],
+        "includes": ["../icdgen_wide.h" if message.has_wide_steps else "../icdgen.h", *enums, *parts.headers(message)],
         "constants": constants.of_fields(message),
         "initial": constants.initial(message),
         "declaration": types.declaration,
@@ -90,6 +90,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "views": [accessors.view(field) for field in message.views],
         "whole_accessors": accessors.whole_accessors(message),
         "accessors": accessors.accessors(message),
+        "parts": parts.parts(message),
     }
 
 

@@ -6,7 +6,9 @@ from collections.abc import Iterator
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names, physical
+from icdgen.backends.c.parts import part_name
 from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription
+from icdgen.describe.parts import parts_of
 
 FILE = "C names at file scope"
 FILES = "C header files"
@@ -80,6 +82,8 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
         yield message.identifier(FILE, names.constant(message, end))
     for end in ("t", "init", "decode", "encode", *(("misfit",) if message.is_narrow else ())):
         yield message.identifier(FILE, f"{stem}_{end}")
+    for part in parts_of(message):
+        yield message.identifier(FILE, f"{stem}_{part_name(part.message)}")
     members = f"members of {stem}_t"
     for field in message.all_members:
         is_view = field.model.view

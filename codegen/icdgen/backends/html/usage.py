@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from icdgen.backends.c.names import enumerator, stem
 from icdgen.backends.rust import CRATE
 from icdgen.backends.rust.names import field_name
-from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe import MessageDescription
+from icdgen.describe.examples import worth_showing
 from icdgen.naming import camel
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ class Snippet(NamedTuple):
 
 def snippets(message: MessageDescription, render: Renderer) -> list[Snippet]:
     """One for each language: receiving, sending, or both."""
-    field = _worth_showing(message)
+    field = worth_showing(message)
     enum = field.enum if field else None
     member = enum.members[-1] if enum and enum.members else None
     shown = {
@@ -53,9 +54,3 @@ def snippets(message: MessageDescription, render: Renderer) -> list[Snippet]:
 def names(message: MessageDescription) -> list[tuple[str, str]]:
     """Language and the name of the message's type in it."""
     return [("C", f"{stem(message)}_t"), ("Python", camel(message.words)), ("Rust", camel(message.words))]
-
-
-def _worth_showing(message: MessageDescription) -> FieldDescription | None:
-    """The first field with a scale, else the first that is neither constant nor an array."""
-    usual = [one for one in message.members if one.model.const is None and not one.model.is_bytes and not one.count]
-    return next((one for one in usual if one.steps is not None), usual[0] if usual else None)

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from icdgen.backends.python import names
 from icdgen.describe import EnumDescription, MessageDescription
+from icdgen.describe.parts import parts_of
 
 
 def values(message: MessageDescription) -> dict[str, object]:
-    """What is imported for it: its enumerations."""
+    """What is imported for it: its enumerations. And the messages that it repeats, in the order of the frame."""
     enums = {field.enum for field in message.all_fields if field.enum is not None}
-    return {"imports": sorted(_import(enum, message) for enum in enums)}
+    parts = [(begin, part.message) for part in parts_of(message) for begin in part.begins]
+    return {
+        "imports": sorted(_import(enum, message) for enum in enums),
+        "parts": sorted(parts, key=lambda one: one[0]),
+    }
 
 
 def _import(enum: EnumDescription, message: MessageDescription) -> str:

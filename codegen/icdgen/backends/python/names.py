@@ -15,7 +15,7 @@ IN_MESSAGE = {
     **dict.fromkeys(
         ("as_dict", "decode_many", "decode_table", "from_bytes", "from_dict", "from_json"), "the method `{}`"
     ),
-    **dict.fromkeys(("from_physical", "to_bytes", "to_json"), "the method `{}`"),
+    **dict.fromkeys(("from_part", "from_physical", "iter_parts", "to_bytes", "to_json"), "the method `{}`"),
     **dict.fromkeys(("bool", "bytes", "float", "int", "str", "tuple"), "Python's `{}`"),
     **dict.fromkeys(("self", "cls"), "the parameter `{}`"),
 }

@@ -15,9 +15,11 @@ from icdgen.describe import Description, describe
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
+    from icdgen.describe.links import LinkDescription
     from icdgen.render import Renderer
 
 CRATE = "icd"
+RUNTIME = "icdgen_runtime"
 LINKS = "src/wire/links"
 
 
@@ -33,6 +35,7 @@ class RustBackend:
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The crate."""
         from icdgen.backends.rust import messages, nodes  # the rules about names need none of them
+        from icdgen.backends.rust.examples import client_example
 
         description = describe(icd)
         common = {
@@ -43,18 +46,19 @@ class RustBackend:
             **_functions(),
         }
         wired = any(node.is_linked for node in description.nodes)
+        found = _links(description) if wired else {}
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         yield PurePosixPath("src/lib.rs"), render(
             "lib.rs.j2", nodes=icd.nodes, summary=nodes.summary, wired=wired, **common
         )
-        yield from _runtime("src/support", render)
+        yield from _runtime("src/support", render, self.crate)
         for node in description.nodes:
             folder = PurePosixPath("src") / node.name
             digested = {**common, "origin": origin(node.model, with_digest=True)}
-            about = nodes.about(node)
-            yield folder / "mod.rs", render(
-                "node.rs.j2", node=node, about=about, typed=nodes.typed, guarded=nodes.guarded, **digested
-            )
+            link = found.get(node.name)
+            about = nodes.about(node, client_example(node, link, self.crate) if link else [])
+            functions = {"about": about, "typed": nodes.typed, "guarded": nodes.guarded}
+            yield folder / "mod.rs", render("node.rs.j2", node=node, **functions, **digested)
             shared = {**common, "origin": origin(node.model), "wired": wired}
             if node.enums:
                 yield folder / "enums.rs", render("enums.rs.j2", enums=node.enums, **shared)
@@ -62,7 +66,7 @@ class RustBackend:
                 text = render("message.rs.j2", m=message, **messages.values(message), **shared)
                 yield folder / f"{message.name}.rs", text
         if wired:
-            yield from _wire(description, render, common)
+            yield from _wire(found, render, common)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that the crate declares, by scope."""
@@ -73,31 +77,44 @@ def _functions() -> dict[str, object]:
     """What templates spell names and text with."""
     from icdgen.backends.rust import text
     from icdgen.backends.rust.accessors import accessors, field_row, scale_of
+    from icdgen.backends.rust.examples import direction_example, enum_example, message_example
     from icdgen.backends.rust.physical import big_parts
     from icdgen.describe.comments import sentence, text_comment, words
 
     found = (
-        accessors, big_parts, field_row, names.catch_all, names.field_name, names.message_path, names.raw_type,
-        names.type_name, scale_of, sentence, text.arm, text.assigned, text.described, text.doc, text.integer,
-        text.prose, text.signature, text.string, text_comment, words,
+        accessors, big_parts, direction_example, enum_example, field_row, message_example, names.catch_all,
+        names.field_name, names.message_path, names.raw_type, names.type_name, scale_of, sentence, text.arm,
+        text.assigned, text.code, text.described, text.doc, text.integer, text.prose, text.signature, text.string,
+        text_comment, words,
     )  # fmt: skip
     return {function.__name__: function for function in found}
 
 
-def _wire(description: Description, render: Renderer, common: dict[str, object]) -> Iterator[tuple[PurePosixPath, str]]:
-    """How the messages travel."""
-    from icdgen.backends.rust import links
+def _links(description: Description) -> dict[str, LinkDescription]:
     from icdgen.describe.links import links_of
 
-    yield from _runtime("src/wire", render)
-    folder, found = PurePosixPath(LINKS), links_of(description)
+    return links_of(description)
+
+
+def _wire(
+    found: dict[str, LinkDescription], render: Renderer, common: dict[str, object]
+) -> Iterator[tuple[PurePosixPath, str]]:
+    """How the messages travel."""
+    from icdgen.backends.rust import links
+
+    yield from _runtime("src/wire", render, str(common["crate"]))
+    folder = PurePosixPath(LINKS)
     yield folder / "mod.rs", render("links.rs.j2", nodes=list(found), sizes=links.sizes(found.values()), **common)
     for name, link in found.items():
         yield folder / f"{name}.rs", render("node_link.rs.j2", link=links.values(link), origin=origin(link.facts.node))
 
 
-def _runtime(folder: str, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-    """What is the same for every ICD; its links are a sample, there for the runtime to be a crate of its own."""
+def _runtime(folder: str, render: Renderer, crate: str) -> Iterator[tuple[PurePosixPath, str]]:
+    """What is the same for every ICD; its links are a sample, there for the runtime to be a crate of its own.
+
+    Examples in its documentation use it by its name, which is that of ``crate`` from now on.
+    """
     for name in render.runtime_files(folder):
         if not name.startswith(LINKS):
-            yield PurePosixPath(name), f"// {origin()}\n\n{render.source(name)}"
+            text = render.source(name).replace(f"{RUNTIME}::", f"{crate}::")
+            yield PurePosixPath(name), f"// {origin()}\n\n{text}"

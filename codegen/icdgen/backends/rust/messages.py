@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icdgen.backends.rust import bits, constants
+from icdgen.backends.rust import bits, constants, parts
 from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
@@ -52,6 +52,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "writings": writings,
         "fits": [line for field in narrow for line in bits.fitting(field)],
         "scales": scales,
+        "parts": parts.parts(message),
         "default": None if has_default else _literal(fields, [_fresh(field) for field in fields]),
         "derives": ", ".join(derived + ([] if message.has_floats else ["Eq", "Hash"])),
         "imports": f"{{{', '.join(names)}}}" if len(names) > 1 else names[0],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from icdgen.backends.lines import STEP
-from icdgen.backends.rust.text import WIDTH, doc, integer, mask, prose
+from icdgen.backends.rust.text import WIDTH, code, doc, integer, mask, prose
 from icdgen.describe import NodeDescription
 from icdgen.describe.comments import sentence
 from icdgen.describe.description import Candidate
@@ -17,8 +17,8 @@ def summary(node: Node) -> str:
     return doc([item], mark="//!  ").replace("//!  ", "//! -", 1)
 
 
-def about(node: NodeDescription) -> str:
-    """What its module begins with: title, source, and whose messages it speaks, too."""
+def about(node: NodeDescription, example: list[str]) -> str:
+    """What its module begins with: title, source, whose messages it speaks, too, and an example."""
     one, spoken = node.model, dict.fromkeys(message.node.name for message in node.spoken)
     printed = ", ".join(f"{key} {value}" for key, value in one.document)
     included = ", ".join(f"[`{name}`](crate::{name})" for name in spoken if name != node.name)
@@ -27,7 +27,8 @@ def about(node: NodeDescription) -> str:
         prose(sentence(f"Source: {printed}")) if printed else "",
         f"It also speaks the messages of {included}." if included else "",
     ]
-    return doc(paragraphs, mark="//!")
+    text = doc(paragraphs, mark="//!")
+    return f"{text}\n{code(example, mark='//!')}" if example else text
 
 
 def typed(value: int) -> str:

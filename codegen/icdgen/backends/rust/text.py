@@ -42,6 +42,11 @@ def doc(paragraphs: Iterable[str], indent: str = "", mark: str = "///") -> str:
     return "\n".join(commented(paragraphs, WIDTH, f"{indent}{mark} ", is_spaced=True))
 
 
+def code(lines: Iterable[str], indent: str = "", mark: str = "///") -> str:
+    """Lines of a documentation comment that stand as they are, after an empty one."""
+    return "\n".join(f"{indent}{mark} {line}".rstrip() for line in ("", *lines))
+
+
 def described(comment: Comment, indent: str = "") -> str:
     """The comment of a part."""
     return doc(map(prose, comment.paragraphs), indent)

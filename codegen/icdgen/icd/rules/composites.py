@@ -36,13 +36,27 @@ def part_exists(ctx: Context) -> Iterator[Fault]:
                 close = close_to(part.message, frames)
                 help = f"did you mean {quote(close)}?" if close else "names are the manual's, to the letter"
                 yield Fault(message.source, row.at("message"), f"there is no message {quote(part.message)}", help)
-        elif frame is message:
+        elif message.name in _repeated(frame, frames):
             text = f"{quote(message.name)} contains itself"
+            if frame is not message:
+                text = f"{text}, in {quote(frame.name)}"
             yield Fault(message.source, row.at("message"), text, "name another frame")
         elif part.at + frame.length * 8 > message.length * 8:
             end = part.at + frame.length * 8
             text = f"{quote(frame.name)} ends at bit {end:,}, but {quote(message.name)} has {message.length * 8:,} bits"
             yield Fault(message.source, row.at("at"), text, "correct `at`, or the `length` of either")
+
+
+def _repeated(frame: Message, frames: dict[str, Message]) -> set[str]:
+    """The names of a frame, of those that it repeats, of those that these repeat, and so on."""
+    found: set[str] = set()
+    left = [frame.name]
+    while left:
+        name = left.pop()
+        if name not in found and name in frames:
+            found.add(name)
+            left += [part.message for part in frames[name].contains]
+    return found
 
 
 @rule("ICD047", whole=True)

@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from .logs import LogReader as LogReader
     from .logs import LogWriter as LogWriter
     from .ports import serial_port as serial_port
+    from .ports import socket_port as socket_port
     from .procedures import Procedure as Procedure
     from .programs import ProgramCopy as ProgramCopy
     from .programs import ProgramInformation as ProgramInformation
@@ -105,7 +106,7 @@ _HOMES = {
     "identity": ("Identity", "identify"),
     "link": ("Link", "Settings"),
     "logs": ("LogEntry", "LogFrame", "LogMessage", "LogReader", "LogWriter"),
-    "ports": ("serial_port",),
+    "ports": ("serial_port", "socket_port"),
     "procedures": ("Procedure",),
     "programs": ("ProgramCopy", "ProgramInformation"),
     "session": ("Session",),

@@ -126,12 +126,12 @@ class Exchanges:
                 events = yield procedure.deadline
 
 
-def executed(outcome: Outcome) -> AnyDone:
-    """What was done. Raises `RefusedError` and `ReplyTimeoutError`."""
+def executed(outcome: Outcome, name: str) -> AnyDone:
+    """What was done of a request. Raises `RefusedError` and `ReplyTimeoutError`."""
     if isinstance(outcome, Refused):
-        raise RefusedError(outcome)
+        raise RefusedError(outcome, name)
     if isinstance(outcome, Timeout):
-        raise ReplyTimeoutError(outcome)
+        raise ReplyTimeoutError(outcome, name)
     return outcome
 
 

@@ -3,33 +3,34 @@
 
 from __future__ import annotations
 
-from typing import Optional
+from typing import Optional, Union
 
 from .._errors import IcdError
 from .events import Refused, Timeout
 
 
 class RefusedError(IcdError):
-    """The node refused a request; ``event`` says why."""
+    """The node refused a request; ``event`` says why, ``name`` what it was."""
 
-    def __init__(self, event: Refused) -> None:
+    def __init__(self, event: Refused, name: str = "") -> None:
         why = event.reason or ("no reason" if event.code is None else str(event.code))
-        super().__init__(f"{event.id} was refused: {why}")
-        self.event = event
+        super().__init__(f"{_request(event, name)} was refused: {why}")
+        self.event, self.name = event, name
 
-    def __reduce__(self) -> tuple[type[RefusedError], tuple[Refused]]:
-        return RefusedError, (self.event,)
+    def __reduce__(self) -> tuple[type[RefusedError], tuple[Refused, str]]:
+        return RefusedError, (self.event, self.name)
 
 
 class ReplyTimeoutError(IcdError):
-    """A request had no reply."""
+    """A request had no reply; ``name`` says what it was."""
 
-    def __init__(self, event: Timeout) -> None:
-        super().__init__(f"{event.id} had no reply after {event.attempts} attempts")
-        self.event = event
+    def __init__(self, event: Timeout, name: str = "") -> None:
+        often = "1 attempt" if event.attempts == 1 else f"{event.attempts} attempts"
+        super().__init__(f"{_request(event, name)} had no reply after {often}")
+        self.event, self.name = event, name
 
-    def __reduce__(self) -> tuple[type[ReplyTimeoutError], tuple[Timeout]]:
-        return ReplyTimeoutError, (self.event,)
+    def __reduce__(self) -> tuple[type[ReplyTimeoutError], tuple[Timeout, str]]:
+        return ReplyTimeoutError, (self.event, self.name)
 
 
 class FailedError(IcdError):
@@ -45,3 +46,7 @@ class FailedError(IcdError):
 
     def __reduce__(self) -> tuple[type[FailedError], tuple[str, Optional[Refused]]]:
         return FailedError, (self.result, self.event)
+
+
+def _request(event: Union[Refused, Timeout], name: str) -> str:
+    return f"{name} (id {event.id})" if name else f"the request of id {event.id}"

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+import socket
 from collections.abc import Callable
 from typing import Optional, Protocol
+
+_PIECE = 4096  # bytes that are read at a time
 
 
 class SerialPort(Protocol):
@@ -38,3 +41,28 @@ def serial_port(
         return first + port.read(port.in_waiting) if first else b""
 
     return port.write, read
+
+
+def socket_port(
+    port: socket.socket,
+) -> tuple[Callable[[bytes], object], Callable[[float], bytes]]:
+    """The ``write`` and ``read`` of a `Session` over a connected TCP socket.
+
+    ``Session(LINK, *socket_port(socket.create_connection(("127.0.0.1", 4000))))``. Errors
+    are those of the socket; `ConnectionResetError` tells that the other side closed.
+    """
+
+    def read(seconds: float) -> bytes:
+        before = port.gettimeout()
+        port.settimeout(max(seconds, 0.001))  # 0 would be an error where nothing is there
+        try:
+            data = port.recv(_PIECE)
+        except socket.timeout:  # which is `TimeoutError` only since 3.10
+            return b""
+        finally:
+            port.settimeout(before)
+        if not data:
+            raise ConnectionResetError("the other side closed the connection")
+        return data
+
+    return port.sendall, read

@@ -25,6 +25,14 @@ use crate::support::{message, Error};
 /// of the control program are unknown to the bootloader, but four are known with another meaning;
 /// telecommand 7 meant to deploy a boom clears flags. The reverse is worse: 7 sent to clear flags
 /// deploys the boom.
+///
+/// ```
+/// use icd::bootloader::ClearErrorFlags;
+///
+/// let command = ClearErrorFlags::default();
+/// assert_eq!(command.to_bytes()?, []);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

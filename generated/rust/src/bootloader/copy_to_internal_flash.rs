@@ -11,6 +11,15 @@ use crate::support::{message, Coded, Error};
 ///
 /// Dangerous: The program in internal flash is replaced, and with the overwrite flag the bootloader
 /// itself.
+///
+/// ```
+/// use icd::bootloader::{enums, CopyToInternalFlash};
+///
+/// let mut command = CopyToInternalFlash::default();
+/// command.source_program_index = enums::ProgramsList::SdUserFile8.into();
+/// assert_eq!(command.to_bytes()?, [0x11, 0x00]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -12,6 +12,16 @@ use crate::support::{message, Error};
 ///
 /// Note BOOT-020 (open): Progress frame without progress. The frame tells busy and error, not how
 /// far the copy has come; and no time-out is suggested for it, although 2 s are for reading.
+///
+/// ```
+/// use icd::bootloader::CopyToInternalFlashProgress;
+///
+/// let frame = [0x01];
+/// let message = CopyToInternalFlashProgress::from_bytes(&frame)?;
+/// assert!(message.busy);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,6 +9,13 @@ use crate::support::enumeration;
 /// Note BOOT-009 (certain): Three enumerations of program places. BootSetProgramsList, ProgramsList
 /// and BootProgramsList overlap. The internal program is 1 in all, the bootloader 0 in one and 2 in
 /// another, where 2 is EEPROM in the first.
+///
+/// ```
+/// use icd::bootloader::enums::BootSetProgramsList;
+///
+/// assert_eq!(BootSetProgramsList::from(1), BootSetProgramsList::InternalFlashProgram);
+/// assert_eq!(BootSetProgramsList::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -61,6 +68,13 @@ impl From<u8> for BootSetProgramsList {
 enumeration!(BootSetProgramsList: u8);
 
 /// ProgramsList: an enumeration. Table 66.
+///
+/// ```
+/// use icd::bootloader::enums::ProgramsList;
+///
+/// assert_eq!(ProgramsList::from(17), ProgramsList::SdUserFile8);
+/// assert_eq!(ProgramsList::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -6,6 +6,24 @@
 //! Source: document CubeADCS Firmware Reference Manual, version 7.2, date 2020-11-03, section 6.2.
 //!
 //! It also speaks the messages of [`common`](crate::common).
+//!
+//! ```
+//! use icd::common::Identification;
+//! use icd::{bootloader, wire};
+//!
+//! let mut client = wire::Client::<bootloader::Node, { bootloader::LONGEST }>::uart(&bootloader::LINK)?;
+//! client.request::<Identification>(0)?; // at 0 ms, by any clock
+//! assert!(client.output().is_some()); // bytes for the port
+//!
+//! // What the node answers; the client is given it 20 ms later.
+//! let mut line = [0; 64];
+//! let size = wire::uart::encode(&bootloader::LINK, &[0x80, 0x7b, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00], &mut line)?;
+//! let mut answer = None;
+//! client.received(20, &line[..size], |event| answer = event.message::<Identification>());
+//! let message = answer.unwrap();
+//! assert_eq!(message.node_type, 123);
+//! # Result::<(), icd::wire::Error>::Ok(())
+//! ```
 
 use crate::support::{write_to, Error};
 
@@ -47,6 +65,14 @@ pub const NODE_TYPE: u8 = 110;
 pub const INTERFACE_VERSION: u8 = 3;
 
 /// Every telecommand of the node.
+///
+/// ```
+/// use icd::bootloader::Telecommand;
+///
+/// let message = Telecommand::from_bytes(icd::common::Reset::ID, &[0; 1])?;
+/// assert_eq!(message.name(), icd::common::Reset::NAME);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -481,6 +507,14 @@ impl crate::wire::TelecommandOf<Node> for ReadProgramInformation {}
 impl crate::wire::TelecommandOf<Node> for CopyToInternalFlash {}
 
 /// Every telemetry of the node.
+///
+/// ```
+/// use icd::bootloader::Telemetry;
+///
+/// let message = Telemetry::from_bytes(icd::common::Identification::ID, &[0; 8])?;
+/// assert_eq!(message.name(), icd::common::Identification::NAME);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

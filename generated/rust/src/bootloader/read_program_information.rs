@@ -8,6 +8,15 @@ use crate::support::{message, Coded, Error};
 /// Read Program Information: telecommand 102, 1 byte. Table 65.
 ///
 /// Starts to read length and CRC of a stored program for Program Information.
+///
+/// ```
+/// use icd::bootloader::{enums, ReadProgramInformation};
+///
+/// let mut command = ReadProgramInformation::default();
+/// command.program_index = enums::ProgramsList::SdUserFile8.into();
+/// assert_eq!(command.to_bytes()?, [0x11]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -13,6 +13,14 @@ use crate::support::{message, Error};
 /// Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere. Its name
 /// refers to a selection, the text to the internal flash program. What it does to the boot status,
 /// and whether it is acknowledged before the program starts, is not said.
+///
+/// ```
+/// use icd::bootloader::RunSelectedProgram;
+///
+/// let command = RunSelectedProgram::default();
+/// assert_eq!(command.to_bytes()?, []);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

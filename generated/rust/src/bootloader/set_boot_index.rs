@@ -8,6 +8,15 @@ use crate::support::{message, Coded, Error};
 /// Set Boot Index: telecommand 100, 1 byte. Table 62.
 ///
 /// Selects the program to boot. Also sets the boot status back to New Selection.
+///
+/// ```
+/// use icd::bootloader::{enums, SetBootIndex};
+///
+/// let mut command = SetBootIndex::default();
+/// command.program_index = enums::BootSetProgramsList::InternalFlashProgram.into();
+/// assert_eq!(command.to_bytes()?, [0x01]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -14,6 +14,16 @@ use crate::support::{flags, message, put, take, Error};
 /// Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The
 /// two programs answer on the same buses and addresses. These ids are a different message in each,
 /// of another length in three cases, so who is answering must be known first.
+///
+/// ```
+/// use icd::bootloader::State;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = State::from_bytes(&frame)?;
+/// assert_eq!(message.uptime, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

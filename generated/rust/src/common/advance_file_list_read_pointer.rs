@@ -10,6 +10,14 @@ use crate::support::{message, Error};
 ///
 /// Note COM-040 (certain): A flow diagram is referred to without its number. The process is
 /// described by the flow diagram in nothing; figure 14 is meant.
+///
+/// ```
+/// use icd::common::AdvanceFileListReadPointer;
+///
+/// let command = AdvanceFileListReadPointer::default();
+/// assert_eq!(command.to_bytes()?, []);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -14,6 +14,14 @@ use crate::support::{message, Error};
 /// Note COM-031 (open): Log pointer: where it starts and which way it advances. After a reset the
 /// pointer may stand at the oldest or at the newest event, and advancing may go either way. What is
 /// read past the end is not said.
+///
+/// ```
+/// use icd::common::AdvanceLogPointer;
+///
+/// let command = AdvanceLogPointer::default();
+/// assert_eq!(command.to_bytes()?, []);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -11,6 +11,16 @@ use crate::support::{message, put, take, Error};
 /// Note COM-041 (open): File upload is listed as common but described for the bootloader only. The
 /// messages of the upload are in the list common to both programs, the procedure belongs to the
 /// bootloader. Whether the ACP answers them, refuses them, or uploads somewhere is not said.
+///
+/// ```
+/// use icd::common::BlockChecksum;
+///
+/// let frame = [0xd2, 0x04];
+/// let message = BlockChecksum::from_bytes(&frame)?;
+/// assert_eq!(message.checksum, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

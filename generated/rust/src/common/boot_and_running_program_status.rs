@@ -11,6 +11,16 @@ use crate::support::{message, put, take, Coded, Error, Scale};
 ///
 /// Note COM-062 (certain): Capitals of the boot status frame differ in the text. Boot And Running
 /// Program Status is Boot and Running Program Status in the text.
+///
+/// ```
+/// use icd::common::{enums, BootAndRunningProgramStatus};
+///
+/// let frame = [0x0f, 0x00, 0x00, 0x00, 0x00, 0x00];
+/// let message = BootAndRunningProgramStatus::from_bytes(&frame)?;
+/// assert_eq!(message.cause_of_mcu_reset, enums::ResetCause::UnknownResetCause);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -8,6 +8,16 @@ use crate::support::{message, Coded, Error};
 /// Boot Index and Status: telemetry 130, 2 bytes. Table 32.
 ///
 /// Program selected for booting, and how the last attempt went.
+///
+/// ```
+/// use icd::common::{enums, BootIndexAndStatus};
+///
+/// let frame = [0x02, 0x00];
+/// let message = BootIndexAndStatus::from_bytes(&frame)?;
+/// assert_eq!(message.program_index, enums::BootProgramsList::Bootloader);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -6,6 +6,16 @@ use crate::support::{message, Error};
 
 /// Cache enabled state: configuration, set by telecommand 3, got by telemetry 131, 1 byte. Table
 /// 48\.
+///
+/// ```
+/// use icd::common::CacheEnabledState;
+///
+/// let frame = [0x01];
+/// let message = CacheEnabledState::from_bytes(&frame)?;
+/// assert!(message.enabled_state);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -11,6 +11,16 @@ use crate::support::{flags, message, put, take, Error};
 /// Erratum COM-084 (open): Communication Status: 6 bytes announced, 38 bits described. The last
 /// byte and two bits of the one before it are not explained. The frame may be filled up to the size
 /// of the loggable ones. They are held as reserved.
+///
+/// ```
+/// use icd::common::CommunicationStatus;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = CommunicationStatus::from_bytes(&frame)?;
+/// assert_eq!(message.telecommand_counter, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

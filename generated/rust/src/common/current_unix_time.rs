@@ -5,6 +5,16 @@
 use crate::support::{message, put, take, Error};
 
 /// Current Unix Time: configuration, set by telecommand 2, got by telemetry 140, 6 bytes. Table 50.
+///
+/// ```
+/// use icd::common::CurrentUnixTime;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = CurrentUnixTime::from_bytes(&frame)?;
+/// assert_eq!(message.current_unix_time, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -11,6 +11,16 @@ use crate::support::{message, put, take, Error};
 /// Note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be
 /// polled, and when to give up, is not said. For files a time is suggested for two of the
 /// operations only.
+///
+/// ```
+/// use icd::common::DownloadBlockReady;
+///
+/// let frame = [0x01, 0x00, 0x00, 0x00, 0x00];
+/// let message = DownloadBlockReady::from_bytes(&frame)?;
+/// assert!(message.ready);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

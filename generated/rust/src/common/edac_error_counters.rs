@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error};
 /// EDAC Error Counters: telemetry 143, 6 bytes. Table 36.
 ///
 /// Memory errors that scrubbing the SRAM has found and corrected.
+///
+/// ```
+/// use icd::common::EdacErrorCounters;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = EdacErrorCounters::from_bytes(&frame)?;
+/// assert_eq!(message.single_sram_upsets, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

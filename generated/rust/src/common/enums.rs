@@ -8,6 +8,13 @@ use crate::support::enumeration;
 ///
 /// Note COM-037 (open): FileType begins at 2 and jumps to 15. Values 0, 1 and 5 to 14 are not
 /// explained. Value 0 ends the file list, since an entry of zeroes does.
+///
+/// ```
+/// use icd::common::enums::FileType;
+///
+/// assert_eq!(FileType::from(15), FileType::Index);
+/// assert_eq!(FileType::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -84,6 +91,13 @@ enumeration!(FileType: u8);
 ///
 /// Note COM-045 (certain): Names of the flash areas differ between two lists. Flash program 1 of
 /// the upload is External Flash Program 1 of the bootloader, with the same number.
+///
+/// ```
+/// use icd::common::enums::FileUploadDestination;
+///
+/// assert_eq!(FileUploadDestination::from(17), FileUploadDestination::SdUserFile8);
+/// assert_eq!(FileUploadDestination::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -232,6 +246,13 @@ impl From<u8> for FileUploadDestination {
 enumeration!(FileUploadDestination: u8);
 
 /// ResetCause: an enumeration. Table 29.
+///
+/// ```
+/// use icd::common::enums::ResetCause;
+///
+/// assert_eq!(ResetCause::from(15), ResetCause::UnknownResetCause);
+/// assert_eq!(ResetCause::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -380,6 +401,13 @@ impl From<u8> for ResetCause {
 enumeration!(ResetCause: u8);
 
 /// BootCause: an enumeration. Table 30.
+///
+/// ```
+/// use icd::common::enums::BootCause;
+///
+/// assert_eq!(BootCause::from(5), BootCause::SramLatchup);
+/// assert_eq!(BootCause::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -464,6 +492,13 @@ impl From<u8> for BootCause {
 enumeration!(BootCause: u8);
 
 /// BootProgramsList: an enumeration. Table 31.
+///
+/// ```
+/// use icd::common::enums::BootProgramsList;
+///
+/// assert_eq!(BootProgramsList::from(2), BootProgramsList::Bootloader);
+/// assert_eq!(BootProgramsList::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -533,6 +568,13 @@ enumeration!(BootProgramsList: u8);
 /// failure the bootloader is to try twice more, three attempts in all. But the status is raised
 /// before each start, so it reads 4 before the third attempt begins, and at 4 the application is
 /// said not to be started any more.
+///
+/// ```
+/// use icd::common::enums::BootStatus;
+///
+/// assert_eq!(BootStatus::from(4), BootStatus::FailedBootAttempts3);
+/// assert_eq!(BootStatus::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -610,6 +652,13 @@ impl From<u8> for BootStatus {
 enumeration!(BootStatus: u8);
 
 /// TcErrorReason: an enumeration. Table 40.
+///
+/// ```
+/// use icd::common::enums::TcErrorReason;
+///
+/// assert_eq!(TcErrorReason::from(4), TcErrorReason::CrcCheckFailed);
+/// assert_eq!(TcErrorReason::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -15,6 +15,15 @@ use crate::support::{message, Coded, Error};
 /// Note COM-034 (open): Erase File: what the other fields mean with Erase All. With the flag set
 /// all files go; whether type and counter must still be valid, or limit the erasing to one type, is
 /// not said.
+///
+/// ```
+/// use icd::common::{enums, EraseFile};
+///
+/// let mut command = EraseFile::default();
+/// command.file_type = enums::FileType::Index.into();
+/// assert_eq!(command.to_bytes()?, [0x0f, 0x00, 0x00]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -17,6 +17,17 @@ use crate::support::{array, message, put, put_array, take, Error};
 /// packets are said to be headed by the id of the telecommand, 119. The frame with their format has
 /// the id 241. Which of the two the reads on I2C are headed by is not said; 241 is assumed. With
 /// 119 a packet and an acknowledge differ by length only.
+///
+/// ```
+/// use icd::common::FileDownloadBufferWithFileContents;
+///
+/// let mut frame = [0; FileDownloadBufferWithFileContents::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = FileDownloadBufferWithFileContents::from_bytes(&frame)?;
+/// assert_eq!(message.packet_counter, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -16,6 +16,17 @@ use crate::support::{message, put, take, Coded, Error, Scale};
 /// Note COM-102 (certain): File information and index entry order the same items differently. The
 /// frame has size, date and checksum; the index has checksum, size and date, and whole bytes. One
 /// layout cannot read the other.
+///
+/// ```
+/// use icd::common::{enums, FileInformation};
+///
+/// let mut frame = [0; FileInformation::LENGTH];
+/// frame[0] = 0x0f;
+/// let message = FileInformation::from_bytes(&frame)?;
+/// assert_eq!(message.file_type, enums::FileType::Index);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

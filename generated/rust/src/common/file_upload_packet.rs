@@ -21,6 +21,16 @@ use crate::support::{array, message, put, put_array, take, Error};
 /// Note COM-125 (certain): File Upload Packet: messages of 20 bytes, parameters of 22. The
 /// procedure sends messages with a size of 20 bytes each. 20 are the bytes of the file; with the
 /// packet number the telecommand has 22.
+///
+/// ```
+/// use icd::common::FileUploadPacket;
+///
+/// let mut command = FileUploadPacket::default();
+/// command.packet_number = 1_234;
+/// let frame = command.to_bytes()?;
+/// assert_eq!(frame[0..2], [0xd2, 0x04]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -16,6 +16,15 @@ use crate::support::{message, put, take, Coded, Error};
 /// Note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text ends with
 /// the checksum test before the block is committed. The telecommand that commits it and the frame
 /// that reports it are never named; both stood in a figure at best.
+///
+/// ```
+/// use icd::common::{enums, FinalizeUploadBlock};
+///
+/// let mut command = FinalizeUploadBlock::default();
+/// command.destination = enums::FileUploadDestination::SdUserFile8.into();
+/// assert_eq!(command.to_bytes()?, [0x11, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,6 +9,14 @@ use crate::support::{message, Error};
 /// Takes some time: SD card format/erase progress tells when it is done.
 ///
 /// Dangerous: All files on the SD card are lost.
+///
+/// ```
+/// use icd::common::FormatSdCard;
+///
+/// let command = FormatSdCard::default();
+/// assert_eq!(command.to_bytes()?, [0x5a]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -21,6 +21,15 @@ use crate::support::{array, message, put_array, Error};
 ///
 /// Note COM-124 (certain): The hole map is read with eight frames, one table is referred to. Frames
 /// 247 to 254 are said to be described by Table 52, which describes the first of them.
+///
+/// ```
+/// use icd::common::HoleMap5;
+///
+/// let mut frame = [0; HoleMap5::LENGTH];
+/// let message = HoleMap5::from_bytes(&frame)?;
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

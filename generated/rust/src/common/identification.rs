@@ -12,6 +12,16 @@ use crate::support::{message, put, take, Error};
 /// that reaches the bootloader keeps it from booting: asked within the first 5 s, or after a reset
 /// that nobody planned, it prevents the start. Section 7.1 does not say how the boot is resumed;
 /// Run Selected Program would do it.
+///
+/// ```
+/// use icd::common::Identification;
+///
+/// let frame = [0x7b, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
+/// let message = Identification::from_bytes(&frame)?;
+/// assert_eq!(message.node_type, 123);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -19,6 +19,16 @@ use crate::support::{message, Error};
 ///
 /// Note COM-105 (open): Initialisation of an upload can fail silently. The frame has a busy flag
 /// only; a failed erase of the flash shows nowhere until the checksum of a block is wrong.
+///
+/// ```
+/// use icd::common::InitializeUploadComplete;
+///
+/// let frame = [0x01];
+/// let message = InitializeUploadComplete::from_bytes(&frame)?;
+/// assert!(message.busy);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

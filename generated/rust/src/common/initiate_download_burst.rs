@@ -21,6 +21,15 @@ use crate::support::{message, Error};
 /// Note COM-053 (open): Download over CAN is not described. Packets are pushed on UART and read on
 /// I2C. For CAN, which both programs support, nothing is said; a packet of 22 bytes would need an
 /// extended transaction of four.
+///
+/// ```
+/// use icd::common::InitiateDownloadBurst;
+///
+/// let mut command = InitiateDownloadBurst::default();
+/// command.message_length = 123;
+/// assert_eq!(command.to_bytes()?, [0x7b, 0x00]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -14,6 +14,15 @@ use crate::support::{message, Coded, Error};
 /// Note COM-041 (open): File upload is listed as common but described for the bootloader only. The
 /// messages of the upload are in the list common to both programs, the procedure belongs to the
 /// bootloader. Whether the ACP answers them, refuses them, or uploads somewhere is not said.
+///
+/// ```
+/// use icd::common::{enums, InitiateFileUpload};
+///
+/// let mut command = InitiateFileUpload::default();
+/// command.destination = enums::FileUploadDestination::SdUserFile8.into();
+/// assert_eq!(command.to_bytes()?, [0x11, 0x00]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -11,6 +11,16 @@ use crate::support::{message, put, take, Error};
 /// Note COM-073 (certain): Last Logged Event: wrong telecommands, and a bracket left open. The
 /// pointer is said to be adjusted with telecommands 3 and 4. Reset Log Pointer is 4 and Advance Log
 /// Pointer 5; 3 sets the cache.
+///
+/// ```
+/// use icd::common::LastLoggedEvent;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = LastLoggedEvent::from_bytes(&frame)?;
+/// assert_eq!(message.time_of_event, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

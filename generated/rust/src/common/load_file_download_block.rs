@@ -8,6 +8,15 @@ use crate::support::{message, put, take, Coded, Error};
 /// Load File Download Block: telecommand 112, 8 bytes. Table 17.
 ///
 /// Reads part of a file into the download buffer. Download Block Ready tells when it is there.
+///
+/// ```
+/// use icd::common::{enums, LoadFileDownloadBlock};
+///
+/// let mut command = LoadFileDownloadBlock::default();
+/// command.file_type = enums::FileType::Index.into();
+/// assert_eq!(command.to_bytes()?, [0x0f, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -14,6 +14,14 @@ use crate::support::{message, Error};
 /// Note COM-028 (open): The Reset telecommand: acknowledged or not. Every telecommand is
 /// acknowledged, but this one restarts the program that would do it. Whether the reply comes first
 /// is not said.
+///
+/// ```
+/// use icd::common::Reset;
+///
+/// let command = Reset::default();
+/// assert_eq!(command.to_bytes()?, [0x5a]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -11,6 +11,14 @@ use crate::support::{message, Error};
 /// Note COM-032 (likely): Reset Boot Registers: a Boot State that no frame has, and no values to
 /// reset to. The command is said to reset Boot Counter, Boot State and Boot Cause. There is no Boot
 /// State; Boot Status is probably meant. To which value status and cause are reset is not said.
+///
+/// ```
+/// use icd::common::ResetBootRegisters;
+///
+/// let command = ResetBootRegisters::default();
+/// assert_eq!(command.to_bytes()?, []);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

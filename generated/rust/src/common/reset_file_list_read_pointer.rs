@@ -7,6 +7,14 @@ use crate::support::{message, Error};
 /// Reset File List Read Pointer: telecommand 118, 0 bytes. Table 24.
 ///
 /// Makes File Information start again at the first file.
+///
+/// ```
+/// use icd::common::ResetFileListReadPointer;
+///
+/// let command = ResetFileListReadPointer::default();
+/// assert_eq!(command.to_bytes()?, []);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

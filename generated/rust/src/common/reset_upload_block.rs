@@ -15,6 +15,14 @@ use crate::support::{message, Error};
 /// Note COM-126 (certain): Reset Upload Block tells the node of a block, and does not say which.
 /// The telecommand is said to notify the node of the block that is to be uploaded. It has no
 /// parameter; the place and the length of the block are first sent when it is committed.
+///
+/// ```
+/// use icd::common::ResetUploadBlock;
+///
+/// let command = ResetUploadBlock::default();
+/// assert_eq!(command.to_bytes()?, []);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -10,6 +10,16 @@ use crate::support::{message, Error};
 ///
 /// Note COM-085 (open): Erase File: progress and failure. Only Erase All can be followed. A single
 /// file, or an erase or format that fails, leaves no trace in any frame.
+///
+/// ```
+/// use icd::common::SdCardFormatEraseProgress;
+///
+/// let frame = [0x01];
+/// let message = SdCardFormatEraseProgress::from_bytes(&frame)?;
+/// assert!(message.format_busy);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

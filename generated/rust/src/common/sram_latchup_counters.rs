@@ -9,6 +9,16 @@ use crate::support::{message, put, take, Error};
 /// Erratum COM-076 (open): SRAM Latchup counters: 6 bytes announced, 4 described. Two counters of
 /// 16 bits fill four of the six bytes. A third field is missing, or the frame is filled up to the
 /// size of the loggable ones. The last two bytes are held as reserved.
+///
+/// ```
+/// use icd::common::SramLatchupCounters;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = SramLatchupCounters::from_bytes(&frame)?;
+/// assert_eq!(message.sram1_latchups, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -6,6 +6,16 @@ use crate::support::{message, put, take, Error};
 
 /// SRAM Scrub Parameters: configuration, set by telecommand 8, got by telemetry 134, 2 bytes. Table
 /// 49\.
+///
+/// ```
+/// use icd::common::SramScrubParameters;
+///
+/// let frame = [0xd2, 0x04];
+/// let message = SramScrubParameters::from_bytes(&frame)?;
+/// assert_eq!(message.scrub_size, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

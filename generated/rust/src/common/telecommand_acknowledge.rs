@@ -16,6 +16,16 @@ use crate::support::{message, Coded, Error};
 /// Note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be
 /// polled, and when to give up, is not said. For files a time is suggested for two of the
 /// operations only.
+///
+/// ```
+/// use icd::common::TelecommandAcknowledge;
+///
+/// let frame = [0x7b, 0x00, 0x00, 0x00];
+/// let message = TelecommandAcknowledge::from_bytes(&frame)?;
+/// assert_eq!(message.last_tc_id, 123);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -11,6 +11,16 @@ use crate::support::{message, Error};
 ///
 /// Note COM-112 (certain): Unix Time Save to Flash is described in two spellings. The list has Unix
 /// time, the table unixtime.
+///
+/// ```
+/// use icd::common::UnixTimeSaveToFlash;
+///
+/// let frame = [0x01, 0x00];
+/// let message = UnixTimeSaveToFlash::from_bytes(&frame)?;
+/// assert!(message.save_now);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

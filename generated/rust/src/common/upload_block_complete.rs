@@ -24,6 +24,16 @@ use crate::support::{message, Error};
 /// Initiate File Upload is followed by Initialize Upload Complete; Finalize Upload Block is
 /// described as finalizing the uploaded file block, and its frame Upload Block Complete as
 /// finalizing complete.
+///
+/// ```
+/// use icd::common::UploadBlockComplete;
+///
+/// let frame = [0x01];
+/// let message = UploadBlockComplete::from_bytes(&frame)?;
+/// assert!(message.busy);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -8,6 +8,16 @@ use crate::support::{message, put, take, Coded, Error};
 /// ACP Execution State: telemetry 220, 3 bytes. Table 167.
 ///
 /// Where in its loop the control program is.
+///
+/// ```
+/// use icd::cubeacp::AcpExecutionState;
+///
+/// let frame = [0xd2, 0x04, 0x00];
+/// let message = AcpExecutionState::from_bytes(&frame)?;
+/// assert_eq!(message.time_since_iteration_start, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -7,6 +7,17 @@ use crate::support::{message, put, take, Error};
 /// Actuator Commands: telemetry 192, 12 bytes. Table 151.
 ///
 /// Repeats Magnetorquer Command from byte 0. Repeats Wheel Speed Commands from byte 6.
+///
+/// ```
+/// use icd::cubeacp::ActuatorCommands;
+///
+/// let mut frame = [0; ActuatorCommands::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = ActuatorCommands::from_bytes(&frame)?;
+/// assert_eq!(message.x_magnetorquer_command, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -116,6 +127,28 @@ message!(ActuatorCommands {
     commanded_y_wheel_speed: ("Commanded Y Wheel Speed", 64, 16).unit("rpm"),
     commanded_z_wheel_speed: ("Commanded Z Wheel Speed", 80, 16).unit("rpm"),
 });
+
+/// Magnetorquer Command, as it is repeated from byte 0.
+impl ::core::convert::From<&ActuatorCommands> for super::MagnetorquerCommand {
+    fn from(message: &ActuatorCommands) -> Self {
+        super::MagnetorquerCommand {
+            x_magnetorquer_command: message.x_magnetorquer_command,
+            y_magnetorquer_command: message.y_magnetorquer_command,
+            z_magnetorquer_command: message.z_magnetorquer_command,
+        }
+    }
+}
+
+/// Wheel Speed Commands, as it is repeated from byte 6.
+impl ::core::convert::From<&ActuatorCommands> for super::WheelSpeedCommands {
+    fn from(message: &ActuatorCommands) -> Self {
+        super::WheelSpeedCommands {
+            commanded_x_wheel_speed: message.commanded_x_wheel_speed,
+            commanded_y_wheel_speed: message.commanded_y_wheel_speed,
+            commanded_z_wheel_speed: message.commanded_z_wheel_speed,
+        }
+    }
+}
 
 impl crate::Telemetry for ActuatorCommands {
     const TELEMETRY_ID: u32 = 192;

@@ -27,6 +27,17 @@ use crate::support::{array, flags, message, put, put_array, take, Coded, Error, 
 /// current configuration. It joins 16 of the 25 others; orbit, target, attitude command, power,
 /// logs, inertial vector and system configuration are not in it. Save Configuration uses the same
 /// words.
+///
+/// ```
+/// use icd::cubeacp::AdcsConfiguration;
+///
+/// let mut frame = [0; AdcsConfiguration::LENGTH];
+/// frame[10..12].copy_from_slice(&[0xd2, 0x04]);
+/// let message = AdcsConfiguration::from_bytes(&frame)?;
+/// assert_eq!(message.x_rate_sensor_offset_deg_per_s(), 1.234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -4267,6 +4278,346 @@ message!(AdcsConfiguration {
     user_coded_controller_settings: ("User Coded Controller Settings", 3_264, 384),
     user_coded_estimator_settings: ("User Coded Estimator Settings", 3_648, 384),
 });
+
+/// Set Magnetorquer Configuration, as it is repeated from byte 0.
+impl ::core::convert::From<&AdcsConfiguration> for super::SetMagnetorquerConfiguration {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::SetMagnetorquerConfiguration {
+            magnetorquer_1_configuration: message.magnetorquer_1_configuration,
+            magnetorquer_2_configuration: message.magnetorquer_2_configuration,
+            magnetorquer_3_configuration: message.magnetorquer_3_configuration,
+        }
+    }
+}
+
+/// Set Wheel Configuration, as it is repeated from byte 3.
+impl ::core::convert::From<&AdcsConfiguration> for super::SetWheelConfiguration {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::SetWheelConfiguration {
+            rw1_configuration: message.rw1_configuration,
+            rw2_configuration: message.rw2_configuration,
+            rw3_configuration: message.rw3_configuration,
+            rw4_configuration: message.rw4_configuration,
+        }
+    }
+}
+
+/// Set Rate Gyro Configuration, as it is repeated from byte 7.
+impl ::core::convert::From<&AdcsConfiguration> for super::SetRateGyroConfiguration {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::SetRateGyroConfiguration {
+            gyro1_configuration: message.gyro1_configuration,
+            gyro2_configuration: message.gyro2_configuration,
+            gyro3_configuration: message.gyro3_configuration,
+            x_rate_sensor_offset: message.x_rate_sensor_offset,
+            y_rate_sensor_offset: message.y_rate_sensor_offset,
+            z_rate_sensor_offset: message.z_rate_sensor_offset,
+            rate_sensor_mult: message.rate_sensor_mult,
+        }
+    }
+}
+
+/// CSS Configuration, as it is repeated from byte 17.
+impl ::core::convert::From<&AdcsConfiguration> for super::CssConfiguration {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::CssConfiguration {
+            css1_configuration: message.css1_configuration,
+            css2_configuration: message.css2_configuration,
+            css3_configuration: message.css3_configuration,
+            css4_configuration: message.css4_configuration,
+            css5_configuration: message.css5_configuration,
+            css6_configuration: message.css6_configuration,
+            css7_configuration: message.css7_configuration,
+            css8_configuration: message.css8_configuration,
+            css9_configuration: message.css9_configuration,
+            css10_configuration: message.css10_configuration,
+            css1_relative_scale: message.css1_relative_scale,
+            css2_relative_scale: message.css2_relative_scale,
+            css3_relative_scale: message.css3_relative_scale,
+            css4_relative_scale: message.css4_relative_scale,
+            css5_relative_scale: message.css5_relative_scale,
+            css6_relative_scale: message.css6_relative_scale,
+            css7_relative_scale: message.css7_relative_scale,
+            css8_relative_scale: message.css8_relative_scale,
+            css9_relative_scale: message.css9_relative_scale,
+            css10_relative_scale: message.css10_relative_scale,
+            css_threshold: message.css_threshold,
+        }
+    }
+}
+
+/// CubeSense Configuration, as it is repeated from byte 38.
+impl ::core::convert::From<&AdcsConfiguration> for super::CubesenseConfiguration {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::CubesenseConfiguration {
+            cam1_mounting_alpha: message.cam1_mounting_alpha,
+            cam1_mounting_beta: message.cam1_mounting_beta,
+            cam1_mounting_gamma: message.cam1_mounting_gamma,
+            cam1_detection_threshold: message.cam1_detection_threshold,
+            cam1_sensor_auto_adjust_mode: message.cam1_sensor_auto_adjust_mode,
+            cam1_sensor_exposure_time: message.cam1_sensor_exposure_time,
+            cam1_boresight_x: message.cam1_boresight_x,
+            cam1_boresight_y: message.cam1_boresight_y,
+            cam2_mounting_alpha: message.cam2_mounting_alpha,
+            cam2_mounting_beta: message.cam2_mounting_beta,
+            cam2_mounting_gamma: message.cam2_mounting_gamma,
+            cam2_detection_threshold: message.cam2_detection_threshold,
+            cam2_sensor_auto_adjust_mode: message.cam2_sensor_auto_adjust_mode,
+            cam2_sensor_exposure_time: message.cam2_sensor_exposure_time,
+            cam2_boresight_x: message.cam2_boresight_x,
+            cam2_boresight_y: message.cam2_boresight_y,
+            nadir_max_deviation_percentage: message.nadir_max_deviation_percentage,
+            nadir_max_bad_edges: message.nadir_max_bad_edges,
+            nadir_max_radius: message.nadir_max_radius,
+            nadir_min_radius: message.nadir_min_radius,
+            cam_1_minimum_x_of_area_1: message.cam_1_minimum_x_of_area_1,
+            cam_1_maximum_x_of_area_1: message.cam_1_maximum_x_of_area_1,
+            cam_1_minimum_y_of_area_1: message.cam_1_minimum_y_of_area_1,
+            cam_1_maximum_y_of_area_1: message.cam_1_maximum_y_of_area_1,
+            cam_1_minimum_x_of_area_2: message.cam_1_minimum_x_of_area_2,
+            cam_1_maximum_x_of_area_2: message.cam_1_maximum_x_of_area_2,
+            cam_1_minimum_y_of_area_2: message.cam_1_minimum_y_of_area_2,
+            cam_1_maximum_y_of_area_2: message.cam_1_maximum_y_of_area_2,
+            cam_1_minimum_x_of_area_3: message.cam_1_minimum_x_of_area_3,
+            cam_1_maximum_x_of_area_3: message.cam_1_maximum_x_of_area_3,
+            cam_1_minimum_y_of_area_3: message.cam_1_minimum_y_of_area_3,
+            cam_1_maximum_y_of_area_3: message.cam_1_maximum_y_of_area_3,
+            cam_1_minimum_x_of_area_4: message.cam_1_minimum_x_of_area_4,
+            cam_1_maximum_x_of_area_4: message.cam_1_maximum_x_of_area_4,
+            cam_1_minimum_y_of_area_4: message.cam_1_minimum_y_of_area_4,
+            cam_1_maximum_y_of_area_4: message.cam_1_maximum_y_of_area_4,
+            cam_1_minimum_x_of_area_5: message.cam_1_minimum_x_of_area_5,
+            cam_1_maximum_x_of_area_5: message.cam_1_maximum_x_of_area_5,
+            cam_1_minimum_y_of_area_5: message.cam_1_minimum_y_of_area_5,
+            cam_1_maximum_y_of_area_5: message.cam_1_maximum_y_of_area_5,
+            cam_2_minimum_x_of_area_1: message.cam_2_minimum_x_of_area_1,
+            cam_2_maximum_x_of_area_1: message.cam_2_maximum_x_of_area_1,
+            cam_2_minimum_y_of_area_1: message.cam_2_minimum_y_of_area_1,
+            cam_2_maximum_y_of_area_1: message.cam_2_maximum_y_of_area_1,
+            cam_2_minimum_x_of_area_2: message.cam_2_minimum_x_of_area_2,
+            cam_2_maximum_x_of_area_2: message.cam_2_maximum_x_of_area_2,
+            cam_2_minimum_y_of_area_2: message.cam_2_minimum_y_of_area_2,
+            cam_2_maximum_y_of_area_2: message.cam_2_maximum_y_of_area_2,
+            cam_2_minimum_x_of_area_3: message.cam_2_minimum_x_of_area_3,
+            cam_2_maximum_x_of_area_3: message.cam_2_maximum_x_of_area_3,
+            cam_2_minimum_y_of_area_3: message.cam_2_minimum_y_of_area_3,
+            cam_2_maximum_y_of_area_3: message.cam_2_maximum_y_of_area_3,
+            cam_2_minimum_x_of_area_4: message.cam_2_minimum_x_of_area_4,
+            cam_2_maximum_x_of_area_4: message.cam_2_maximum_x_of_area_4,
+            cam_2_minimum_y_of_area_4: message.cam_2_minimum_y_of_area_4,
+            cam_2_maximum_y_of_area_4: message.cam_2_maximum_y_of_area_4,
+            cam_2_minimum_x_of_area_5: message.cam_2_minimum_x_of_area_5,
+            cam_2_maximum_x_of_area_5: message.cam_2_maximum_x_of_area_5,
+            cam_2_minimum_y_of_area_5: message.cam_2_minimum_y_of_area_5,
+            cam_2_maximum_y_of_area_5: message.cam_2_maximum_y_of_area_5,
+        }
+    }
+}
+
+/// Magnetometer Configuration, as it is repeated from byte 150.
+impl ::core::convert::From<&AdcsConfiguration> for super::MagnetometerConfiguration {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::MagnetometerConfiguration {
+            mounting_alpha: message.magnetometer_mounting_alpha,
+            mounting_beta: message.magnetometer_mounting_beta,
+            mounting_gamma: message.magnetometer_mounting_gamma,
+            channel_1_offset: message.magnetometer_channel_1_offset,
+            channel_2_offset: message.magnetometer_channel_2_offset,
+            channel_3_offset: message.magnetometer_channel_3_offset,
+            sensitivity_s11: message.magnetometer_sensitivity_s11,
+            sensitivity_s22: message.magnetometer_sensitivity_s22,
+            sensitivity_s33: message.magnetometer_sensitivity_s33,
+            sensitivity_s12: message.magnetometer_sensitivity_s12,
+            sensitivity_s13: message.magnetometer_sensitivity_s13,
+            sensitivity_s21: message.magnetometer_sensitivity_s21,
+            sensitivity_s23: message.magnetometer_sensitivity_s23,
+            sensitivity_s31: message.magnetometer_sensitivity_s31,
+            sensitivity_s32: message.magnetometer_sensitivity_s32,
+        }
+    }
+}
+
+/// Redundant Magnetometer Configuration, as it is repeated from byte 180.
+impl ::core::convert::From<&AdcsConfiguration> for super::RedundantMagConfiguration {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::RedundantMagConfiguration {
+            mounting_alpha: message.redundant_mag_mounting_alpha,
+            mounting_beta: message.redundant_mag_mounting_beta,
+            mounting_gamma: message.redundant_mag_mounting_gamma,
+            channel_1_offset: message.redundant_mag_channel_1_offset,
+            channel_2_offset: message.redundant_mag_channel_2_offset,
+            channel_3_offset: message.redundant_mag_channel_3_offset,
+            sensitivity_s11: message.redundant_mag_sensitivity_s11,
+            sensitivity_s22: message.redundant_mag_sensitivity_s22,
+            sensitivity_s33: message.redundant_mag_sensitivity_s33,
+            sensitivity_s12: message.redundant_mag_sensitivity_s12,
+            sensitivity_s13: message.redundant_mag_sensitivity_s13,
+            sensitivity_s21: message.redundant_mag_sensitivity_s21,
+            sensitivity_s23: message.redundant_mag_sensitivity_s23,
+            sensitivity_s31: message.redundant_mag_sensitivity_s31,
+            sensitivity_s32: message.redundant_mag_sensitivity_s32,
+        }
+    }
+}
+
+/// Set Star Tracker Configuration, as it is repeated from byte 210.
+impl ::core::convert::From<&AdcsConfiguration> for super::SetStarTrackerConfiguration {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::SetStarTrackerConfiguration {
+            mounting_alpha: message.star_tracker_mounting_alpha,
+            mounting_beta: message.star_tracker_mounting_beta,
+            mounting_gamma: message.star_tracker_mounting_gamma,
+            star_tracker_exposure_time: message.star_tracker_exposure_time,
+            star_tracker_analog_gain: message.star_tracker_analog_gain,
+            star_tracker_detection_threshold: message.star_tracker_detection_threshold,
+            star_tracker_star_threshold: message.star_tracker_star_threshold,
+            maximum_star_matched: message.maximum_star_matched,
+            detection_timeout_duration: message.detection_timeout_duration,
+            maximum_star_pixel: message.maximum_star_pixel,
+            minimum_star_pixel: message.minimum_star_pixel,
+            error_margin: message.star_tracker_error_margin,
+            star_tracker_delay_time: message.star_tracker_delay_time,
+            star_tracker_centroid_x: message.star_tracker_centroid_x,
+            star_tracker_centroid_y: message.star_tracker_centroid_y,
+            star_tracker_focal_length: message.star_tracker_focal_length,
+            k1_radial_distortion_coefficient: message.k1_radial_distortion_coefficient,
+            k2_radial_distortion_coefficient: message.k2_radial_distortion_coefficient,
+            p1_tangential_distortion_coefficient: message.p1_tangential_distortion_coefficient,
+            p2_tangential_distortion_coefficient: message.p2_tangential_distortion_coefficient,
+            star_tracking_window_width: message.star_tracking_window_width,
+            tracking_margin: message.star_tracking_margin,
+            validation_margin: message.star_validation_margin,
+            star_tracking_module_enable: message.star_tracking_module_enable,
+            star_tracking_location_prediction_enable: message.star_tracking_location_prediction_enable,
+            search_width: message.star_tracking_search_width,
+        }
+    }
+}
+
+/// Set Detumbling Control Parameters, as it is repeated from byte 263.
+impl ::core::convert::From<&AdcsConfiguration> for super::SetDetumblingControlParameters {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::SetDetumblingControlParameters {
+            detumbling_spin_gain: message.detumbling_spin_gain,
+            detumbling_damping_gain: message.detumbling_damping_gain,
+            spin_rate: message.reference_spin_rate,
+            fast_bdot_detumbling_gain: message.fast_bdot_detumbling_gain,
+        }
+    }
+}
+
+/// Set Y-Wheel Control Parameters, as it is repeated from byte 277.
+impl ::core::convert::From<&AdcsConfiguration> for super::SetYWheelControlParameters {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::SetYWheelControlParameters {
+            y_momentum_control_gain: message.y_momentum_control_gain,
+            y_momentum_nutation_damping_gain: message.y_momentum_nutation_damping_gain,
+            y_momentum_proportional_gain: message.y_momentum_proportional_gain,
+            y_momentum_derivative_gain: message.y_momentum_derivative_gain,
+            reference_wheel_momentum: message.reference_wheel_momentum,
+        }
+    }
+}
+
+/// Set Reaction Wheel Control Parameters, as it is repeated from byte 297.
+impl ::core::convert::From<&AdcsConfiguration> for super::SetReactionWheelControlParameters {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::SetReactionWheelControlParameters {
+            rwheel_proportional_gain: message.rwheel_proportional_gain,
+            rwheel_derivative_gain: message.rwheel_derivative_gain,
+            y_wheel_bias_momentum: message.y_wheel_bias_momentum,
+            sun_pointing_facet: message.sun_pointing_facet,
+            control_transition_on_wheel_error: message.control_transition_on_wheel_error,
+        }
+    }
+}
+
+/// Set Tracking Controller Gain Parameters, as it is repeated from byte 310.
+impl ::core::convert::From<&AdcsConfiguration> for super::SetTrackingControllerGainParameters {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::SetTrackingControllerGainParameters {
+            tracking_proportional_gain: message.tracking_proportional_gain,
+            tracking_derivative_gain: message.tracking_derivative_gain,
+            tracking_integral_gain: message.tracking_integral_gain,
+            target_tracking_facet: message.target_tracking_facet,
+        }
+    }
+}
+
+/// Moment of Inertia Matrix, as it is repeated from byte 323.
+impl ::core::convert::From<&AdcsConfiguration> for super::MomentOfInertiaMatrix {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::MomentOfInertiaMatrix {
+            moment_of_inertia_ixx: message.moment_of_inertia_ixx,
+            moment_of_inertia_iyy: message.moment_of_inertia_iyy,
+            moment_of_inertia_izz: message.moment_of_inertia_izz,
+            product_of_inertia_ixy: message.product_of_inertia_ixy,
+            product_of_inertia_ixz: message.product_of_inertia_ixz,
+            product_of_inertia_iyz: message.product_of_inertia_iyz,
+        }
+    }
+}
+
+/// Estimation Parameters, as it is repeated from byte 347.
+impl ::core::convert::From<&AdcsConfiguration> for super::EstimationParameters {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::EstimationParameters {
+            magnetometer_rate_filter_system_noise: message.magnetometer_rate_filter_system_noise,
+            ekf_system_noise: message.ekf_system_noise,
+            css_measurement_noise: message.css_measurement_noise,
+            sun_sensor_measurement_noise: message.sun_sensor_measurement_noise,
+            nadir_sensor_measurement_noise: message.nadir_sensor_measurement_noise,
+            magnetometer_measurement_noise: message.magnetometer_measurement_noise,
+            star_tracker_measurement_noise: message.star_tracker_measurement_noise,
+            use_sun_sensor: message.use_sun_sensor,
+            use_nadir_sensor: message.use_nadir_sensor,
+            use_css: message.use_css,
+            use_star_tracker: message.use_star_tracker,
+            nadir_sensor_terminator_test: message.nadir_sensor_terminator_test,
+            automatic_magnetometer_recovery: message.automatic_magnetometer_recovery,
+            magnetometer_mode: message.magnetometer_mode,
+            raw_magnetometer_selection: message.raw_magnetometer_selection,
+            estimation_transition_on_rate_sensor_error: message.estimation_transition_on_rate_sensor_error,
+            cam1_period: message.cam1_period,
+            cam2_period: message.cam2_period,
+        }
+    }
+}
+
+/// Augmented-SGP4 Parameters, as it is repeated from byte 378.
+impl ::core::convert::From<&AdcsConfiguration> for super::AugmentedSgp4Parameters {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::AugmentedSgp4Parameters {
+            incl_coefficient: message.incl_coefficient,
+            raan_coefficient: message.raan_coefficient,
+            ecc_coefficient: message.ecc_coefficient,
+            aop_coefficient: message.aop_coefficient,
+            time_coefficient: message.time_coefficient,
+            pos_coefficient: message.pos_coefficient,
+            maximum_position_error: message.maximum_position_error,
+            asgp4_filter: message.asgp4_filter,
+            xp_coefficient: message.xp_coefficient,
+            yp_coefficient: message.yp_coefficient,
+            gps_roll_over: message.gps_roll_over,
+            position_sd: message.position_sd,
+            velocity_sd: message.velocity_sd,
+            min_satellites: message.min_satellites,
+            time_gain: message.time_gain,
+            max_lag: message.max_lag,
+            min_samples: message.min_samples,
+        }
+    }
+}
+
+/// User-coded Controller and Estimator Parameters, as it is repeated from byte 408.
+impl ::core::convert::From<&AdcsConfiguration> for super::UserCodedControllerAndEstimatorParameters {
+    fn from(message: &AdcsConfiguration) -> Self {
+        super::UserCodedControllerAndEstimatorParameters {
+            user_coded_controller_settings: message.user_coded_controller_settings,
+            user_coded_estimator_settings: message.user_coded_estimator_settings,
+        }
+    }
+}
 
 impl crate::Telecommand for AdcsConfiguration {
     const TELECOMMAND_ID: u32 = 20;

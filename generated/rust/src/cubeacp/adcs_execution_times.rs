@@ -11,6 +11,16 @@ use crate::support::{message, put, take, Error};
 /// Note ACP-107 (certain): ADCS is Adcs in one message, a model a computation. Adcs Execution Times
 /// stands alone in its spelling, and its last field names a model where the description has a
 /// computation.
+///
+/// ```
+/// use icd::cubeacp::AdcsExecutionTimes;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00];
+/// let message = AdcsExecutionTimes::from_bytes(&frame)?;
+/// assert_eq!(message.time_to_perform_adcs_update, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

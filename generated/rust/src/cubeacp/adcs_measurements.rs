@@ -13,6 +13,17 @@ use crate::support::{message, put, take, Error, Scale};
 /// 24\. Repeats Wheel Speed from byte 30. Repeats Star 1 Body Vector from byte 36. Repeats Star 1
 /// Orbit Vector from byte 42. Repeats Star 2 Body Vector from byte 48. Repeats Star 2 Orbit Vector
 /// from byte 54. Repeats Star 3 Body Vector from byte 60. Repeats Star 3 Orbit Vector from byte 66.
+///
+/// ```
+/// use icd::cubeacp::AdcsMeasurements;
+///
+/// let mut frame = [0; AdcsMeasurements::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = AdcsMeasurements::from_bytes(&frame)?;
+/// assert_eq!(message.magnetic_field_x_ut(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1407,6 +1418,138 @@ message!(AdcsMeasurements {
     star3_orbit_y: ("Star3OY", 544, 16).scale(&STAR3_ORBIT_Y),
     star3_orbit_z: ("Star3OZ", 560, 16).scale(&STAR3_ORBIT_Z),
 });
+
+/// Magnetic Field Vector, as it is repeated from byte 0.
+impl ::core::convert::From<&AdcsMeasurements> for super::MagneticFieldVector {
+    fn from(message: &AdcsMeasurements) -> Self {
+        super::MagneticFieldVector {
+            magnetic_field_x: message.magnetic_field_x,
+            magnetic_field_y: message.magnetic_field_y,
+            magnetic_field_z: message.magnetic_field_z,
+        }
+    }
+}
+
+/// Coarse Sun Vector, as it is repeated from byte 6.
+impl ::core::convert::From<&AdcsMeasurements> for super::CoarseSunVector {
+    fn from(message: &AdcsMeasurements) -> Self {
+        super::CoarseSunVector {
+            coarse_sun_x: message.coarse_sun_x,
+            coarse_sun_y: message.coarse_sun_y,
+            coarse_sun_z: message.coarse_sun_z,
+        }
+    }
+}
+
+/// Fine Sun Vector, as it is repeated from byte 12.
+impl ::core::convert::From<&AdcsMeasurements> for super::FineSunVector {
+    fn from(message: &AdcsMeasurements) -> Self {
+        super::FineSunVector {
+            sun_x: message.sun_x,
+            sun_y: message.sun_y,
+            sun_z: message.sun_z,
+        }
+    }
+}
+
+/// Nadir Vector, as it is repeated from byte 18.
+impl ::core::convert::From<&AdcsMeasurements> for super::NadirVector {
+    fn from(message: &AdcsMeasurements) -> Self {
+        super::NadirVector {
+            nadir_x: message.nadir_x,
+            nadir_y: message.nadir_y,
+            nadir_z: message.nadir_z,
+        }
+    }
+}
+
+/// Rate Sensor Rates, as it is repeated from byte 24.
+impl ::core::convert::From<&AdcsMeasurements> for super::RateSensorRates {
+    fn from(message: &AdcsMeasurements) -> Self {
+        super::RateSensorRates {
+            x_angular_rate: message.x_angular_rate,
+            y_angular_rate: message.y_angular_rate,
+            z_angular_rate: message.z_angular_rate,
+        }
+    }
+}
+
+/// Wheel Speed, as it is repeated from byte 30.
+impl ::core::convert::From<&AdcsMeasurements> for super::WheelSpeed {
+    fn from(message: &AdcsMeasurements) -> Self {
+        super::WheelSpeed {
+            x_wheel_speed: message.x_wheel_speed,
+            y_wheel_speed: message.y_wheel_speed,
+            z_wheel_speed: message.z_wheel_speed,
+        }
+    }
+}
+
+/// Star 1 Body Vector, as it is repeated from byte 36.
+impl ::core::convert::From<&AdcsMeasurements> for super::Star1BodyVector {
+    fn from(message: &AdcsMeasurements) -> Self {
+        super::Star1BodyVector {
+            star1_body_x: message.star1_body_x,
+            star1_body_y: message.star1_body_y,
+            star1_body_z: message.star1_body_z,
+        }
+    }
+}
+
+/// Star 1 Orbit Vector, as it is repeated from byte 42.
+impl ::core::convert::From<&AdcsMeasurements> for super::Star1OrbitVector {
+    fn from(message: &AdcsMeasurements) -> Self {
+        super::Star1OrbitVector {
+            star1_orbit_x: message.star1_orbit_x,
+            star1_orbit_y: message.star1_orbit_y,
+            star1_orbit_z: message.star1_orbit_z,
+        }
+    }
+}
+
+/// Star 2 Body Vector, as it is repeated from byte 48.
+impl ::core::convert::From<&AdcsMeasurements> for super::Star2BodyVector {
+    fn from(message: &AdcsMeasurements) -> Self {
+        super::Star2BodyVector {
+            star2_body_x: message.star2_body_x,
+            star2_body_y: message.star2_body_y,
+            star2_body_z: message.star2_body_z,
+        }
+    }
+}
+
+/// Star 2 Orbit Vector, as it is repeated from byte 54.
+impl ::core::convert::From<&AdcsMeasurements> for super::Star2OrbitVector {
+    fn from(message: &AdcsMeasurements) -> Self {
+        super::Star2OrbitVector {
+            star2_orbit_x: message.star2_orbit_x,
+            star2_orbit_y: message.star2_orbit_y,
+            star2_orbit_z: message.star2_orbit_z,
+        }
+    }
+}
+
+/// Star 3 Body Vector, as it is repeated from byte 60.
+impl ::core::convert::From<&AdcsMeasurements> for super::Star3BodyVector {
+    fn from(message: &AdcsMeasurements) -> Self {
+        super::Star3BodyVector {
+            star3_body_x: message.star3_body_x,
+            star3_body_y: message.star3_body_y,
+            star3_body_z: message.star3_body_z,
+        }
+    }
+}
+
+/// Star 3 Orbit Vector, as it is repeated from byte 66.
+impl ::core::convert::From<&AdcsMeasurements> for super::Star3OrbitVector {
+    fn from(message: &AdcsMeasurements) -> Self {
+        super::Star3OrbitVector {
+            star3_orbit_x: message.star3_orbit_x,
+            star3_orbit_y: message.star3_orbit_y,
+            star3_orbit_z: message.star3_orbit_z,
+        }
+    }
+}
 
 impl crate::Telemetry for AdcsMeasurements {
     const TELEMETRY_ID: u32 = 191;

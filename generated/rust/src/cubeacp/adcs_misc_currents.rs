@@ -9,6 +9,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Currents of CubeStar and the magnetorquers, and the temperature of CubeStar.
 ///
 /// Bit 24 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::AdcsMiscCurrents;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = AdcsMiscCurrents::from_bytes(&frame)?;
+/// assert_eq!(message.cubestar_current_ma(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -12,6 +12,16 @@ use crate::support::{message, Coded, Error, Scale};
 ///
 /// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
 /// They are written 0 and ignored.
+///
+/// ```
+/// use icd::cubeacp::{enums, AdcsPowerControl};
+///
+/// let frame = [0x02, 0x00, 0x00];
+/// let message = AdcsPowerControl::from_bytes(&frame)?;
+/// assert_eq!(message.cubecontrol_signal_power_selection, enums::PowerSelect::PowerStateKeptTheSame);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -21,6 +21,17 @@ use crate::support::{flags, message, put, take, Coded, Error, Scale};
 ///
 /// Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles. Bits 66 to 95 are
 /// not described. They are the unused end of frame 224, which the frame repeats.
+///
+/// ```
+/// use icd::cubeacp::AdcsState;
+///
+/// let mut frame = [0; AdcsState::LENGTH];
+/// frame[12..14].copy_from_slice(&[0xd2, 0x04]);
+/// let message = AdcsState::from_bytes(&frame)?;
+/// assert_eq!(message.estimated_roll_angle_deg(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1106,6 +1117,156 @@ message!(AdcsState {
     ecef_position_y: ("ECEF Position Y", 400, 16),
     ecef_position_z: ("ECEF Position Z", 416, 16),
 });
+
+/// Current ADCS State, as it is repeated from byte 0.
+impl ::core::convert::From<&AdcsState> for super::CurrentAdcsState {
+    fn from(message: &AdcsState) -> Self {
+        super::CurrentAdcsState {
+            attitude_estimation_mode: message.attitude_estimation_mode,
+            control_mode: message.control_mode,
+            adcs_run_mode: message.adcs_run_mode,
+            asgp4_mode: message.asgp4_mode,
+            cubecontrol_signal_enabled: message.cubecontrol_signal_enabled,
+            cubecontrol_motor_enabled: message.cubecontrol_motor_enabled,
+            cubesense1_enabled: message.cubesense1_enabled,
+            cubesense2_enabled: message.cubesense2_enabled,
+            cubewheel1_enabled: message.cubewheel1_enabled,
+            cubewheel2_enabled: message.cubewheel2_enabled,
+            cubewheel3_enabled: message.cubewheel3_enabled,
+            cubestar_enabled: message.cubestar_enabled,
+            gps_receiver_enabled: message.gps_receiver_enabled,
+            gps_lna_power_enabled: message.gps_lna_power_enabled,
+            motor_driver_enabled: message.motor_driver_enabled,
+            sun_is_above_local_horizon: message.sun_is_above_local_horizon,
+            cubesense1_communications_error: message.cubesense1_communications_error,
+            cubesense2_communications_error: message.cubesense2_communications_error,
+            cubecontrol_signal_communications_error: message.cubecontrol_signal_communications_error,
+            cubecontrol_motor_communications_error: message.cubecontrol_motor_communications_error,
+            cubewheel1_communications_error: message.cubewheel1_communications_error,
+            cubewheel2_communications_error: message.cubewheel2_communications_error,
+            cubewheel3_communications_error: message.cubewheel3_communications_error,
+            cubestar_communications_error: message.cubestar_communications_error,
+            magnetometer_range_error: message.magnetometer_range_error,
+            cam1_sram_overcurrent_detected: message.cam1_sram_overcurrent_detected,
+            cam1_3v3_overcurrent_detected: message.cam1_3v3_overcurrent_detected,
+            cam1_sensor_busy_error: message.cam1_sensor_busy_error,
+            cam1_sensor_detection_error: message.cam1_sensor_detection_error,
+            sun_sensor_range_error: message.sun_sensor_range_error,
+            cam2_sram_overcurrent_detected: message.cam2_sram_overcurrent_detected,
+            cam2_3v3_overcurrent_detected: message.cam2_3v3_overcurrent_detected,
+            cam2_sensor_busy_error: message.cam2_sensor_busy_error,
+            cam2_sensor_detection_error: message.cam2_sensor_detection_error,
+            nadir_sensor_range_error: message.nadir_sensor_range_error,
+            rate_sensor_range_error: message.rate_sensor_range_error,
+            wheel_speed_range_error: message.wheel_speed_range_error,
+            coarse_sun_sensor_error: message.coarse_sun_sensor_error,
+            star_tracker_match_error: message.star_tracker_match_error,
+            star_tracker_overcurrent_detected: message.star_tracker_overcurrent_detected,
+        }
+    }
+}
+
+/// Current ADCS State 2, as it is repeated from byte 6.
+impl ::core::convert::From<&AdcsState> for super::CurrentAdcsState2 {
+    fn from(message: &AdcsState) -> Self {
+        super::CurrentAdcsState2 {
+            orbit_parameters_are_invalid: message.orbit_parameters_are_invalid,
+            configuration_is_invalid: message.configuration_is_invalid,
+            control_mode_change_is_not_allowed: message.control_mode_change_is_not_allowed,
+            estimator_change_is_not_allowed: message.estimator_change_is_not_allowed,
+            current_magnetometer_sampling_mode: message.current_magnetometer_sampling_mode,
+            magnetic_field_size_mismatch: message.magnetic_field_size_mismatch,
+            node_recovery_error: message.node_recovery_error,
+            cubesense1_runtime_error: message.cubesense1_runtime_error,
+            cubesense2_runtime_error: message.cubesense2_runtime_error,
+            cubecontrol_signal_runtime_error: message.cubecontrol_signal_runtime_error,
+            cubecontrol_motor_runtime_error: message.cubecontrol_motor_runtime_error,
+            cubewheel1_runtime_error: message.cubewheel1_runtime_error,
+            cubewheel2_runtime_error: message.cubewheel2_runtime_error,
+            cubewheel3_runtime_error: message.cubewheel3_runtime_error,
+            cubestar_runtime_error: message.cubestar_runtime_error,
+            magnetometer_error: message.magnetometer_error,
+            rate_sensor_failure: message.rate_sensor_failure,
+        }
+    }
+}
+
+/// Estimated Attitude Angles, as it is repeated from byte 12.
+impl ::core::convert::From<&AdcsState> for super::EstimatedAttitudeAngles {
+    fn from(message: &AdcsState) -> Self {
+        super::EstimatedAttitudeAngles {
+            estimated_roll_angle: message.estimated_roll_angle,
+            estimated_pitch_angle: message.estimated_pitch_angle,
+            estimated_yaw_angle: message.estimated_yaw_angle,
+        }
+    }
+}
+
+/// Estimated Quaternion, as it is repeated from byte 18.
+impl ::core::convert::From<&AdcsState> for super::EstimatedQuaternion {
+    fn from(message: &AdcsState) -> Self {
+        super::EstimatedQuaternion {
+            estimated_q1: message.estimated_q1,
+            estimated_q2: message.estimated_q2,
+            estimated_q3: message.estimated_q3,
+        }
+    }
+}
+
+/// Estimated Angular Rates, as it is repeated from byte 24.
+impl ::core::convert::From<&AdcsState> for super::EstimatedAngularRates {
+    fn from(message: &AdcsState) -> Self {
+        super::EstimatedAngularRates {
+            estimated_x_angular_rate: message.estimated_x_angular_rate,
+            estimated_y_angular_rate: message.estimated_y_angular_rate,
+            estimated_z_angular_rate: message.estimated_z_angular_rate,
+        }
+    }
+}
+
+/// Satellite Position (ECI), as it is repeated from byte 30.
+impl ::core::convert::From<&AdcsState> for super::SatellitePositionEci {
+    fn from(message: &AdcsState) -> Self {
+        super::SatellitePositionEci {
+            x_position: message.x_position,
+            y_position: message.y_position,
+            z_position: message.z_position,
+        }
+    }
+}
+
+/// Satellite Velocity (ECI), as it is repeated from byte 36.
+impl ::core::convert::From<&AdcsState> for super::SatelliteVelocityEci {
+    fn from(message: &AdcsState) -> Self {
+        super::SatelliteVelocityEci {
+            x_velocity: message.x_velocity,
+            y_velocity: message.y_velocity,
+            z_velocity: message.z_velocity,
+        }
+    }
+}
+
+/// Satellite Position (LLH), as it is repeated from byte 42.
+impl ::core::convert::From<&AdcsState> for super::SatellitePositionLlh {
+    fn from(message: &AdcsState) -> Self {
+        super::SatellitePositionLlh {
+            latitude: message.latitude,
+            longitude: message.longitude,
+            altitude: message.altitude,
+        }
+    }
+}
+
+/// ECEF Position, as it is repeated from byte 48.
+impl ::core::convert::From<&AdcsState> for super::EcefPosition {
+    fn from(message: &AdcsState) -> Self {
+        super::EcefPosition {
+            ecef_position_x: message.ecef_position_x,
+            ecef_position_y: message.ecef_position_y,
+            ecef_position_z: message.ecef_position_z,
+        }
+    }
+}
 
 impl crate::Telemetry for AdcsState {
     const TELEMETRY_ID: u32 = 190;

@@ -16,6 +16,17 @@ use crate::support::{message, put, take, Coded, Error, Scale};
 /// Note ACP-170 (open): System configuration is hard-coded and can be set. The description says
 /// hard-coded, the message has a set id, and a load error exists for it. Whether a set is refused,
 /// or lost with the next start, is not said.
+///
+/// ```
+/// use icd::cubeacp::{enums, AdcsSystemConfiguration};
+///
+/// let mut frame = [0; AdcsSystemConfiguration::LENGTH];
+/// frame[0] = 0x01;
+/// let message = AdcsSystemConfiguration::from_bytes(&frame)?;
+/// assert_eq!(message.acp_type, enums::AcpProgramType::YMomentumAcp);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,6 +9,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Of the MCU and the magnetometers.
 ///
 /// Bit 25 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::AdcsTemperatures;
+///
+/// let frame = [0x00, 0x00, 0xd2, 0x04, 0x00, 0x00];
+/// let message = AdcsTemperatures::from_bytes(&frame)?;
+/// assert_eq!(message.magnetometer_temperature_c(), 123.4);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Angular Rate Covariance: telemetry 165, 6 bytes. Table 121.
 ///
 /// Bit 41 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::AngularRateCovariance;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = AngularRateCovariance::from_bytes(&frame)?;
+/// assert_eq!(message.x_angular_rate_covariance_physical(), 1.234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,6 +9,15 @@ use crate::support::{message, Coded, Error};
 ///
 /// Note ACP-046 (certain): Telecommand 31 has the id of the escape byte. On UART its id is doubled
 /// like data. That follows from the decoding table; the text does not mention the case.
+///
+/// ```
+/// use icd::cubeacp::{enums, Asgp4RunMode};
+///
+/// let mut command = Asgp4RunMode::default();
+/// command.asgp4_mode = enums::Asgp4ModeSelect::Augment.into();
+/// assert_eq!(command.to_bytes()?, [0x03]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

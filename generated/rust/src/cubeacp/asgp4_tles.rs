@@ -8,6 +8,17 @@ use crate::support::{message, put, take, Coded, Error, Scale};
 /// ASGP4 TLEs: telemetry 228, 33 bytes. Table 170.
 ///
 /// Orbit elements that ASGP4 has generated.
+///
+/// ```
+/// use icd::cubeacp::Asgp4Tles;
+///
+/// let mut frame = [0; Asgp4Tles::LENGTH];
+/// frame[0] = 0x01;
+/// let message = Asgp4Tles::from_bytes(&frame)?;
+/// assert!(message.asgp4_complete);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

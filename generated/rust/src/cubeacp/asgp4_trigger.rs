@@ -7,6 +7,14 @@ use crate::support::{message, Error};
 /// ASGP4 Trigger: telecommand 32, 0 bytes. Table 88.
 ///
 /// Starts an ASGP4 run.
+///
+/// ```
+/// use icd::cubeacp::Asgp4Trigger;
+///
+/// let command = Asgp4Trigger::default();
+/// assert_eq!(command.to_bytes()?, []);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

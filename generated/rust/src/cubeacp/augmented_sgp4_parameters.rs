@@ -9,6 +9,17 @@ use crate::support::{message, put, take, Coded, Error, Scale};
 /// Table 209.
 ///
 /// Settings of the SGP4 that GPS measurements augment.
+///
+/// ```
+/// use icd::cubeacp::AugmentedSgp4Parameters;
+///
+/// let mut frame = [0; AugmentedSgp4Parameters::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = AugmentedSgp4Parameters::from_bytes(&frame)?;
+/// assert_eq!(message.incl_coefficient_physical(), 1.234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -10,6 +10,15 @@ use crate::support::{message, Error};
 ///
 /// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
 /// They are written 0 and ignored.
+///
+/// ```
+/// use icd::cubeacp::ClearErrors;
+///
+/// let mut command = ClearErrors::default();
+/// command.adcs_error_flags = true;
+/// assert_eq!(command.to_bytes()?, [0x01]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

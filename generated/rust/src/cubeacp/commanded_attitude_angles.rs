@@ -9,6 +9,16 @@ use crate::support::{message, put, take, Error, Scale};
 ///
 /// Note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and yaw need a
 /// sequence and a reference. Neither is given, for estimated or for commanded angles.
+///
+/// ```
+/// use icd::cubeacp::CommandedAttitudeAngles;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = CommandedAttitudeAngles::from_bytes(&frame)?;
+/// assert_eq!(message.commanded_roll_angle_deg(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -7,6 +7,15 @@ use crate::support::{message, Error};
 /// Convert to JPG file: telecommand 57, 3 bytes. Table 91.
 ///
 /// The source is a raw or a BMP file.
+///
+/// ```
+/// use icd::cubeacp::ConvertToJpgFile;
+///
+/// let mut command = ConvertToJpgFile::default();
+/// command.source_file_counter = 123;
+/// assert_eq!(command.to_bytes()?, [0x7b, 0x00, 0x00]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

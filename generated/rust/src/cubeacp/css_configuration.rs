@@ -9,6 +9,17 @@ use crate::support::{message, Coded, Error, Scale};
 /// 183\.
 ///
 /// Pointing direction and scale of each photodiode.
+///
+/// ```
+/// use icd::cubeacp::CssConfiguration;
+///
+/// let mut frame = [0; CssConfiguration::LENGTH];
+/// frame[10] = 0x7b;
+/// let message = CssConfiguration::from_bytes(&frame)?;
+/// assert_eq!(message.css1_relative_scale_physical(), 1.23);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

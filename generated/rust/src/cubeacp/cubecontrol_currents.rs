@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// CubeControl Current Measurements: telemetry 172, 6 bytes. Table 130.
 ///
 /// Bit 22 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::CubecontrolCurrents;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = CubecontrolCurrents::from_bytes(&frame)?;
+/// assert_eq!(message.cubecontrol_3v3_current_ma(), 602.539_062_5);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -14,6 +14,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to have
 /// 10+6\*(N+1)\*M bytes, and the UART message 11+6\*N. With a frame of 4 bytes in the mask both
 /// hold only if it is filled up.
+///
+/// ```
+/// use icd::cubeacp::Cubesense2Currents;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00];
+/// let message = Cubesense2Currents::from_bytes(&frame)?;
+/// assert_eq!(message.cubesense2_3v3_current_ma(), 123.4);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,6 +9,17 @@ use crate::support::{message, put, take, Error, Scale};
 ///
 /// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
 /// They are written 0 and ignored.
+///
+/// ```
+/// use icd::cubeacp::CubesenseConfiguration;
+///
+/// let mut frame = [0; CubesenseConfiguration::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = CubesenseConfiguration::from_bytes(&frame)?;
+/// assert_eq!(message.cam1_mounting_alpha_deg(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// CubeStar Estimated Rates: telemetry 229, 6 bytes. Table 172.
 ///
 /// Bit 62 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::CubestarEstimatedRates;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = CubestarEstimatedRates::from_bytes(&frame)?;
+/// assert_eq!(message.x_axis_rate_physical(), 0.123_4);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -23,6 +23,16 @@ use crate::support::{flags, message, Coded, Error, Scale};
 ///
 /// Note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but the state
 /// frames do not tell latched flags from present states.
+///
+/// ```
+/// use icd::cubeacp::{enums, CurrentAdcsState};
+///
+/// let frame = [0x07, 0x00, 0x00, 0x00, 0x00, 0x00];
+/// let message = CurrentAdcsState::from_bytes(&frame)?;
+/// assert_eq!(message.attitude_estimation_mode, enums::EstimModeSelect::UserCodedEstimationMode);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -10,6 +10,15 @@ use crate::support::{message, Error};
 ///
 /// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A
 /// telecommand or request sent to the wrong program is taken for another one.
+///
+/// ```
+/// use icd::cubeacp::DeployMagnetometerBoom;
+///
+/// let mut command = DeployMagnetometerBoom::default();
+/// command.timeout = 123;
+/// assert_eq!(command.to_bytes()?, [0x7b]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

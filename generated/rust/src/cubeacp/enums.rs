@@ -5,6 +5,13 @@
 use crate::support::enumeration;
 
 /// AdcsRunMode: an enumeration. Table 75.
+///
+/// ```
+/// use icd::cubeacp::enums::AdcsRunMode;
+///
+/// assert_eq!(AdcsRunMode::from(3), AdcsRunMode::Simulation);
+/// assert_eq!(AdcsRunMode::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -85,6 +92,13 @@ enumeration!(AdcsRunMode: u8);
 /// Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control
 /// mode has a reference vector, and GEO tracking, inertial and two sun pointing modes are special
 /// selections. The list of control modes has none of them.
+///
+/// ```
+/// use icd::cubeacp::enums::ConModeSelect;
+///
+/// assert_eq!(ConModeSelect::from(15), ConModeSelect::TargetTrackingYawOnly);
+/// assert_eq!(ConModeSelect::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -256,6 +270,13 @@ impl From<u8> for ConModeSelect {
 enumeration!(ConModeSelect: u8);
 
 /// EstimModeSelect: an enumeration. Table 80.
+///
+/// ```
+/// use icd::cubeacp::enums::EstimModeSelect;
+///
+/// assert_eq!(EstimModeSelect::from(7), EstimModeSelect::UserCodedEstimationMode);
+/// assert_eq!(EstimModeSelect::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -350,6 +371,13 @@ enumeration!(EstimModeSelect: u8);
 /// Note ACP-045 (open): One GPS status for different receivers. The enumeration is used whatever
 /// receiver is fitted; three types are listed, among them none. Whether the values are those of the
 /// receiver or of the control program is not said.
+///
+/// ```
+/// use icd::cubeacp::enums::GpsSolutionStatus;
+///
+/// assert_eq!(GpsSolutionStatus::from(11), GpsSolutionStatus::PositionTypeIsUnauthorized);
+/// assert_eq!(GpsSolutionStatus::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -455,6 +483,13 @@ enumeration!(GpsSolutionStatus: u8);
 ///
 /// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
 /// module are spelt in four ways.
+///
+/// ```
+/// use icd::cubeacp::enums::Asgp4ModeSelect;
+///
+/// assert_eq!(Asgp4ModeSelect::from(3), Asgp4ModeSelect::Augment);
+/// assert_eq!(Asgp4ModeSelect::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -532,6 +567,13 @@ enumeration!(Asgp4ModeSelect: u8);
 ///
 /// Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for
 /// one; redundant, secondary and 2nd for the other.
+///
+/// ```
+/// use icd::cubeacp::enums::MagModeVal;
+///
+/// assert_eq!(MagModeVal::from(3), MagModeVal::None);
+/// assert_eq!(MagModeVal::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -600,6 +642,13 @@ enumeration!(MagModeVal: u8);
 /// Note ACP-056 (likely): Cameras: Cam, CubeSense, and star. Cam1 and Cam2 appear beside CubeSense1
 /// and CubeSense2, once as Cam 1; the third camera is Star, CubeStar or star tracker. That CamN is
 /// the camera of CubeSenseN is only likely.
+///
+/// ```
+/// use icd::cubeacp::enums::CamSelect;
+///
+/// assert_eq!(CamSelect::from(2), CamSelect::Star);
+/// assert_eq!(CamSelect::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -657,6 +706,13 @@ impl From<u8> for CamSelect {
 enumeration!(CamSelect: u8);
 
 /// ImSize: an enumeration. Table 96.
+///
+/// ```
+/// use icd::cubeacp::enums::ImSize;
+///
+/// assert_eq!(ImSize::from(4), ImSize::Size4);
+/// assert_eq!(ImSize::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -734,6 +790,13 @@ impl From<u8> for ImSize {
 enumeration!(ImSize: u8);
 
 /// JpgConvertResult: an enumeration. Table 100.
+///
+/// ```
+/// use icd::cubeacp::enums::JpgConvertResult;
+///
+/// assert_eq!(JpgConvertResult::from(3), JpgConvertResult::Busy);
+/// assert_eq!(JpgConvertResult::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -796,6 +859,13 @@ impl From<u8> for JpgConvertResult {
 enumeration!(JpgConvertResult: u8);
 
 /// CaptureResult: an enumeration. Table 123.
+///
+/// ```
+/// use icd::cubeacp::enums::CaptureResult;
+///
+/// assert_eq!(CaptureResult::from(5), CaptureResult::SramError);
+/// assert_eq!(CaptureResult::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -872,6 +942,13 @@ impl From<u8> for CaptureResult {
 enumeration!(CaptureResult: u8);
 
 /// DetectResult: an enumeration. Table 124.
+///
+/// ```
+/// use icd::cubeacp::enums::DetectResult;
+///
+/// assert_eq!(DetectResult::from(7), DetectResult::Success);
+/// assert_eq!(DetectResult::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -967,6 +1044,13 @@ enumeration!(DetectResult: u8);
 ///
 /// Note ACP-097 (open): StarIDModeVal is not described. The members of the identification mode have
 /// no descriptions; Lost Mode may be the lost-in-space search or a lost track.
+///
+/// ```
+/// use icd::cubeacp::enums::StarIdModeVal;
+///
+/// assert_eq!(StarIdModeVal::from(1), StarIdModeVal::LostMode);
+/// assert_eq!(StarIdModeVal::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1019,6 +1103,13 @@ impl From<u8> for StarIdModeVal {
 enumeration!(StarIdModeVal: u8);
 
 /// ExecutionWaypoints: an enumeration. Table 168.
+///
+/// ```
+/// use icd::cubeacp::enums::ExecutionWaypoints;
+///
+/// assert_eq!(ExecutionWaypoints::from(12), ExecutionWaypoints::WritingToFlash);
+/// assert_eq!(ExecutionWaypoints::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1135,6 +1226,13 @@ enumeration!(ExecutionWaypoints: u8);
 ///
 /// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
 /// module are spelt in four ways.
+///
+/// ```
+/// use icd::cubeacp::enums::AsgpError;
+///
+/// assert_eq!(AsgpError::from(3), AsgpError::Overflow);
+/// assert_eq!(AsgpError::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1206,6 +1304,13 @@ impl From<u8> for AsgpError {
 enumeration!(AsgpError: u8);
 
 /// ImSaveStatus: an enumeration. Table 177.
+///
+/// ```
+/// use icd::cubeacp::enums::ImSaveStatus;
+///
+/// assert_eq!(ImSaveStatus::from(4), ImSaveStatus::ErrorWritingToSdCard);
+/// assert_eq!(ImSaveStatus::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1275,6 +1380,13 @@ impl From<u8> for ImSaveStatus {
 enumeration!(ImSaveStatus: u8);
 
 /// AxisSelect: an enumeration. Table 180.
+///
+/// ```
+/// use icd::cubeacp::enums::AxisSelect;
+///
+/// assert_eq!(AxisSelect::from(6), AxisSelect::NotUsed);
+/// assert_eq!(AxisSelect::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1356,6 +1468,13 @@ impl From<u8> for AxisSelect {
 enumeration!(AxisSelect: u8);
 
 /// PowerSelect: an enumeration. Table 185.
+///
+/// ```
+/// use icd::cubeacp::enums::PowerSelect;
+///
+/// assert_eq!(PowerSelect::from(2), PowerSelect::PowerStateKeptTheSame);
+/// assert_eq!(PowerSelect::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1419,6 +1538,13 @@ enumeration!(PowerSelect: u8);
 ///
 /// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
 /// module are spelt in four ways.
+///
+/// ```
+/// use icd::cubeacp::enums::AsgpFilter;
+///
+/// assert_eq!(AsgpFilter::from(1), AsgpFilter::Average);
+/// assert_eq!(AsgpFilter::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1473,6 +1599,13 @@ impl From<u8> for AsgpFilter {
 enumeration!(AsgpFilter: u8);
 
 /// AcpProgramType: an enumeration. Table 202.
+///
+/// ```
+/// use icd::cubeacp::enums::AcpProgramType;
+///
+/// assert_eq!(AcpProgramType::from(1), AcpProgramType::YMomentumAcp);
+/// assert_eq!(AcpProgramType::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1529,6 +1662,13 @@ enumeration!(AcpProgramType: u8);
 /// Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control
 /// mode has a reference vector, and GEO tracking, inertial and two sun pointing modes are special
 /// selections. The list of control modes has none of them.
+///
+/// ```
+/// use icd::cubeacp::enums::SpecialConSelect;
+///
+/// assert_eq!(SpecialConSelect::from(4), SpecialConSelect::YAxisSunPointing);
+/// assert_eq!(SpecialConSelect::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1606,6 +1746,13 @@ impl From<u8> for SpecialConSelect {
 enumeration!(SpecialConSelect: u8);
 
 /// CsCamType: an enumeration. Table 204.
+///
+/// ```
+/// use icd::cubeacp::enums::CsCamType;
+///
+/// assert_eq!(CsCamType::from(1), CsCamType::NadirSensor);
+/// assert_eq!(CsCamType::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1658,6 +1805,13 @@ impl From<u8> for CsCamType {
 enumeration!(CsCamType: u8);
 
 /// GpsSelect: an enumeration. Table 205.
+///
+/// ```
+/// use icd::cubeacp::enums::GpsSelect;
+///
+/// assert_eq!(GpsSelect::from(2), GpsSelect::SkyfoxGps);
+/// assert_eq!(GpsSelect::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1715,6 +1869,13 @@ impl From<u8> for GpsSelect {
 enumeration!(GpsSelect: u8);
 
 /// GpioPort: an enumeration. Table 206.
+///
+/// ```
+/// use icd::cubeacp::enums::GpioPort;
+///
+/// assert_eq!(GpioPort::from(5), GpioPort::PortF);
+/// assert_eq!(GpioPort::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1787,6 +1948,13 @@ impl From<u8> for GpioPort {
 enumeration!(GpioPort: u8);
 
 /// GpioPortPin: an enumeration. Table 207.
+///
+/// ```
+/// use icd::cubeacp::enums::GpioPortPin;
+///
+/// assert_eq!(GpioPortPin::from(15), GpioPortPin::Pin15);
+/// assert_eq!(GpioPortPin::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1909,6 +2077,13 @@ impl From<u8> for GpioPortPin {
 enumeration!(GpioPortPin: u8);
 
 /// SdLogSelect: an enumeration. Table 211.
+///
+/// ```
+/// use icd::cubeacp::enums::SdLogSelect;
+///
+/// assert_eq!(SdLogSelect::from(1), SdLogSelect::SecondarySdCard);
+/// assert_eq!(SdLogSelect::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

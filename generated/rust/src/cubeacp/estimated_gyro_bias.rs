@@ -9,6 +9,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Bias of the rate sensors.
 ///
 /// Bit 37 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::EstimatedGyroBias;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = EstimatedGyroBias::from_bytes(&frame)?;
+/// assert_eq!(message.estimated_x_gyro_bias_deg_per_s(), 1.234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -12,6 +12,17 @@ use crate::support::{message, put, take, Error, Scale};
 /// 6\. Repeats Estimated Gyro Bias from byte 12. Repeats Estimation Innovation Vector from byte 18.
 /// Repeats Quaternion Error Vector from byte 24. Repeats Quaternion Covariance from byte 30.
 /// Repeats Angular Rate Covariance from byte 36.
+///
+/// ```
+/// use icd::cubeacp::EstimationData;
+///
+/// let mut frame = [0; EstimationData::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = EstimationData::from_bytes(&frame)?;
+/// assert_eq!(message.igrf_modelled_magnetic_field_x_ut(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -960,6 +971,83 @@ message!(EstimationData {
     z_angular_rate_covariance: ("Z Angular Rate Covariance", 320, 16)
         .scale(&Z_ANGULAR_RATE_COVARIANCE),
 });
+
+/// IGRF Modelled Magnetic Field Vector, as it is repeated from byte 0.
+impl ::core::convert::From<&EstimationData> for super::IgrfModelledMagneticFieldVector {
+    fn from(message: &EstimationData) -> Self {
+        super::IgrfModelledMagneticFieldVector {
+            field_x: message.igrf_modelled_magnetic_field_x,
+            field_y: message.igrf_modelled_magnetic_field_y,
+            field_z: message.igrf_modelled_magnetic_field_z,
+        }
+    }
+}
+
+/// Modelled Sun Vector, as it is repeated from byte 6.
+impl ::core::convert::From<&EstimationData> for super::ModelledSunVector {
+    fn from(message: &EstimationData) -> Self {
+        super::ModelledSunVector {
+            modelled_sun_vector_x: message.modelled_sun_vector_x,
+            modelled_sun_vector_y: message.modelled_sun_vector_y,
+            modelled_sun_vector_z: message.modelled_sun_vector_z,
+        }
+    }
+}
+
+/// Estimated Gyro Bias, as it is repeated from byte 12.
+impl ::core::convert::From<&EstimationData> for super::EstimatedGyroBias {
+    fn from(message: &EstimationData) -> Self {
+        super::EstimatedGyroBias {
+            estimated_x_gyro_bias: message.estimated_x_gyro_bias,
+            estimated_y_gyro_bias: message.estimated_y_gyro_bias,
+            estimated_z_gyro_bias: message.estimated_z_gyro_bias,
+        }
+    }
+}
+
+/// Estimation Innovation Vector, as it is repeated from byte 18.
+impl ::core::convert::From<&EstimationData> for super::EstimationInnovationVector {
+    fn from(message: &EstimationData) -> Self {
+        super::EstimationInnovationVector {
+            innovation_vector_x: message.innovation_vector_x,
+            innovation_vector_y: message.innovation_vector_y,
+            innovation_vector_z: message.innovation_vector_z,
+        }
+    }
+}
+
+/// Quaternion Error Vector, as it is repeated from byte 24.
+impl ::core::convert::From<&EstimationData> for super::QuaternionErrorVector {
+    fn from(message: &EstimationData) -> Self {
+        super::QuaternionErrorVector {
+            quaternion_error_q1: message.quaternion_error_q1,
+            quaternion_error_q2: message.quaternion_error_q2,
+            quaternion_error_q3: message.quaternion_error_q3,
+        }
+    }
+}
+
+/// Quaternion Covariance, as it is repeated from byte 30.
+impl ::core::convert::From<&EstimationData> for super::QuaternionCovariance {
+    fn from(message: &EstimationData) -> Self {
+        super::QuaternionCovariance {
+            q1_rms: message.quaternion_covariance_q1_rms,
+            q2_rms: message.quaternion_covariance_q2_rms,
+            q3_rms: message.quaternion_covariance_q3_rms,
+        }
+    }
+}
+
+/// Angular Rate Covariance, as it is repeated from byte 36.
+impl ::core::convert::From<&EstimationData> for super::AngularRateCovariance {
+    fn from(message: &EstimationData) -> Self {
+        super::AngularRateCovariance {
+            x_angular_rate_covariance: message.x_angular_rate_covariance,
+            y_angular_rate_covariance: message.y_angular_rate_covariance,
+            z_angular_rate_covariance: message.z_angular_rate_covariance,
+        }
+    }
+}
 
 impl crate::Telemetry for EstimationData {
     const TELEMETRY_ID: u32 = 193;

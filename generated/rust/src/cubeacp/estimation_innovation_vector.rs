@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Estimation Innovation Vector: telemetry 162, 6 bytes. Table 118.
 ///
 /// Bit 38 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::EstimationInnovationVector;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = EstimationInnovationVector::from_bytes(&frame)?;
+/// assert_eq!(message.innovation_vector_x_physical(), 0.123_4);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

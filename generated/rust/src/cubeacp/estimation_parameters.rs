@@ -16,6 +16,17 @@ use crate::support::{flags, message, put, take, Coded, Error, Scale};
 /// Note ACP-167 (certain): Estimation Parameters: more than its description. Noise covariance and
 /// sensor mask are promised; magnetometer modes, recovery and sampling periods are in the message
 /// as well.
+///
+/// ```
+/// use icd::cubeacp::EstimationParameters;
+///
+/// let mut frame = [0; EstimationParameters::LENGTH];
+/// frame[2..4].copy_from_slice(&[0xc0, 0x3f]);
+/// let message = EstimationParameters::from_bytes(&frame)?;
+/// assert_eq!(message.magnetometer_rate_filter_system_noise, 1.5);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

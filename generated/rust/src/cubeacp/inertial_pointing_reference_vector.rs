@@ -12,6 +12,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control
 /// mode has a reference vector, and GEO tracking, inertial and two sun pointing modes are special
 /// selections. The list of control modes has none of them.
+///
+/// ```
+/// use icd::cubeacp::InertialPointingReferenceVector;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = InertialPointingReferenceVector::from_bytes(&frame)?;
+/// assert_eq!(message.reference_x_physical(), 0.123_4);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -6,6 +6,16 @@ use super::enums;
 use crate::support::{message, Coded, Error};
 
 /// JPG Conversion Progress: telemetry 133, 3 bytes. Table 99.
+///
+/// ```
+/// use icd::cubeacp::JpgConversionProgress;
+///
+/// let frame = [0x7b, 0x00, 0x00];
+/// let message = JpgConversionProgress::from_bytes(&frame)?;
+/// assert_eq!(message.progress_percentage, 123);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

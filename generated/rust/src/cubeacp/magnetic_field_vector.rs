@@ -13,6 +13,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled vectors are in
 /// the orbit frame, estimated rates relative to it. Of the measured field, sun, nadir and rate
 /// vectors nothing is said; SBC for the body frame is in the list of acronyms and used nowhere.
+///
+/// ```
+/// use icd::cubeacp::MagneticFieldVector;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = MagneticFieldVector::from_bytes(&frame)?;
+/// assert_eq!(message.magnetic_field_x_ut(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,6 +9,17 @@ use crate::support::{message, put, take, Error, Scale};
 ///
 /// Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for
 /// one; redundant, secondary and 2nd for the other.
+///
+/// ```
+/// use icd::cubeacp::MagnetometerConfiguration;
+///
+/// let mut frame = [0; MagnetometerConfiguration::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = MagnetometerConfiguration::from_bytes(&frame)?;
+/// assert_eq!(message.mounting_alpha_deg(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -5,6 +5,24 @@
 //! Source: document CubeADCS Firmware Reference Manual, version 7.2, date 2020-11-03, section 6.3.
 //!
 //! It also speaks the messages of [`common`](crate::common).
+//!
+//! ```
+//! use icd::cubeacp::EstimatedAttitudeAngles;
+//! use icd::{cubeacp, wire};
+//!
+//! let mut client = wire::Client::<cubeacp::Node, { cubeacp::LONGEST }>::uart(&cubeacp::LINK)?;
+//! client.request::<EstimatedAttitudeAngles>(0)?; // at 0 ms, by any clock
+//! assert!(client.output().is_some()); // bytes for the port
+//!
+//! // What the node answers; the client is given it 20 ms later.
+//! let mut line = [0; 64];
+//! let size = wire::uart::encode(&cubeacp::LINK, &[0x92, 0xd2, 0x04, 0x00, 0x00, 0x00, 0x00], &mut line)?;
+//! let mut answer = None;
+//! client.received(20, &line[..size], |event| answer = event.message::<EstimatedAttitudeAngles>());
+//! let message = answer.unwrap();
+//! assert_eq!(message.estimated_roll_angle_deg(), 12.34);
+//! # Result::<(), icd::wire::Error>::Ok(())
+//! ```
 
 use crate::support::{write_to, Error};
 
@@ -367,6 +385,14 @@ pub const NODE_TYPE: u8 = 10;
 pub const INTERFACE_VERSION: u8 = 7;
 
 /// Every telecommand of the node.
+///
+/// ```
+/// use icd::cubeacp::Telecommand;
+///
+/// let message = Telecommand::from_bytes(icd::common::Reset::ID, &[0; 1])?;
+/// assert_eq!(message.name(), icd::common::Reset::NAME);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1281,6 +1307,14 @@ impl crate::wire::TelecommandOf<Node> for UartLogConfiguration {}
 impl crate::wire::TelecommandOf<Node> for InertialPointingReferenceVector {}
 
 /// Every telemetry of the node.
+///
+/// ```
+/// use icd::cubeacp::Telemetry;
+///
+/// let message = Telemetry::from_bytes(icd::common::Identification::ID, &[0; 8])?;
+/// assert_eq!(message.name(), icd::common::Identification::NAME);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

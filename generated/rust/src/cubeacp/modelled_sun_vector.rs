@@ -9,6 +9,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// In the orbit frame.
 ///
 /// Bit 36 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::ModelledSunVector;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = ModelledSunVector::from_bytes(&frame)?;
+/// assert_eq!(message.modelled_sun_vector_x_physical(), 0.123_4);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

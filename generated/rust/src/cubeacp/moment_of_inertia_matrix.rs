@@ -8,6 +8,17 @@ use crate::support::{message, put, take, Error};
 /// Table 199.
 ///
 /// Of the satellite.
+///
+/// ```
+/// use icd::cubeacp::MomentOfInertiaMatrix;
+///
+/// let mut frame = [0; MomentOfInertiaMatrix::LENGTH];
+/// frame[2..4].copy_from_slice(&[0xc0, 0x3f]);
+/// let message = MomentOfInertiaMatrix::from_bytes(&frame)?;
+/// assert_eq!(message.moment_of_inertia_ixx, 1.5);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -10,6 +10,17 @@ use crate::support::{message, put, take, Error, Scale};
 /// from byte 4. Repeats CubeControl Current Measurements from byte 8. Repeats Wheel Currents from
 /// byte 14. Repeats ADCS Misc Current Measurements from byte 20. Repeats ADCS Temperatures from
 /// byte 26. Repeats Rate sensor temperatures from byte 32.
+///
+/// ```
+/// use icd::cubeacp::PowerAndTemperature;
+///
+/// let mut frame = [0; PowerAndTemperature::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = PowerAndTemperature::from_bytes(&frame)?;
+/// assert_eq!(message.cubesense1_3v3_current_ma(), 123.4);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -695,6 +706,81 @@ message!(PowerAndTemperature {
     y_rate_sensor_temperature: ("Y-Rate Sensor Temperature", 272, 16).unit("C"),
     z_rate_sensor_temperature: ("Z-Rate Sensor Temperature", 288, 16).unit("C"),
 });
+
+/// CubeSense1 Current Measurements, as it is repeated from byte 0.
+impl ::core::convert::From<&PowerAndTemperature> for super::Cubesense1Currents {
+    fn from(message: &PowerAndTemperature) -> Self {
+        super::Cubesense1Currents {
+            cubesense1_3v3_current: message.cubesense1_3v3_current,
+            cubesense1_cam_sram_current: message.cubesense1_cam_sram_current,
+        }
+    }
+}
+
+/// CubeSense2 Current Measurements, as it is repeated from byte 4.
+impl ::core::convert::From<&PowerAndTemperature> for super::Cubesense2Currents {
+    fn from(message: &PowerAndTemperature) -> Self {
+        super::Cubesense2Currents {
+            cubesense2_3v3_current: message.cubesense2_3v3_current,
+            cubesense2_cam_sram_current: message.cubesense2_cam_sram_current,
+        }
+    }
+}
+
+/// CubeControl Current Measurements, as it is repeated from byte 8.
+impl ::core::convert::From<&PowerAndTemperature> for super::CubecontrolCurrents {
+    fn from(message: &PowerAndTemperature) -> Self {
+        super::CubecontrolCurrents {
+            cubecontrol_3v3_current: message.cubecontrol_3v3_current,
+            cubecontrol_5v_current: message.cubecontrol_5v_current,
+            cubecontrol_vbat_current: message.cubecontrol_vbat_current,
+        }
+    }
+}
+
+/// Wheel Currents, as it is repeated from byte 14.
+impl ::core::convert::From<&PowerAndTemperature> for super::WheelCurrents {
+    fn from(message: &PowerAndTemperature) -> Self {
+        super::WheelCurrents {
+            wheel1_current: message.wheel1_current,
+            wheel2_current: message.wheel2_current,
+            wheel3_current: message.wheel3_current,
+        }
+    }
+}
+
+/// ADCS Misc Current Measurements, as it is repeated from byte 20.
+impl ::core::convert::From<&PowerAndTemperature> for super::AdcsMiscCurrents {
+    fn from(message: &PowerAndTemperature) -> Self {
+        super::AdcsMiscCurrents {
+            cubestar_current: message.cubestar_current,
+            magnetorquer_current: message.magnetorquer_current,
+            cubestar_mcu_temperature: message.cubestar_mcu_temperature,
+        }
+    }
+}
+
+/// ADCS Temperatures, as it is repeated from byte 26.
+impl ::core::convert::From<&PowerAndTemperature> for super::AdcsTemperatures {
+    fn from(message: &PowerAndTemperature) -> Self {
+        super::AdcsTemperatures {
+            mcu_temperature: message.mcu_temperature,
+            magnetometer_temperature: message.magnetometer_temperature,
+            redundant_mag_temperature: message.redundant_mag_temperature,
+        }
+    }
+}
+
+/// Rate sensor temperatures, as it is repeated from byte 32.
+impl ::core::convert::From<&PowerAndTemperature> for super::RateSensorTemperatures {
+    fn from(message: &PowerAndTemperature) -> Self {
+        super::RateSensorTemperatures {
+            x_rate_sensor_temperature: message.x_rate_sensor_temperature,
+            y_rate_sensor_temperature: message.y_rate_sensor_temperature,
+            z_rate_sensor_temperature: message.z_rate_sensor_temperature,
+        }
+    }
+}
 
 impl crate::Telemetry for PowerAndTemperature {
     const TELEMETRY_ID: u32 = 195;

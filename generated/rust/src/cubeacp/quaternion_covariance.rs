@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Quaternion Covariance: telemetry 164, 6 bytes. Table 120.
 ///
 /// Bit 40 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::QuaternionCovariance;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = QuaternionCovariance::from_bytes(&frame)?;
+/// assert_eq!(message.q1_rms_physical(), 1.234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

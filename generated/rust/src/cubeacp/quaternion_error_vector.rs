@@ -10,6 +10,16 @@ use crate::support::{message, put, take, Error, Scale};
 ///
 /// Note ACP-075 (open): Quaternions: the fourth component. Three of four components are sent. The
 /// fourth follows up to its sign only, and which component is the scalar is not said.
+///
+/// ```
+/// use icd::cubeacp::QuaternionErrorVector;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = QuaternionErrorVector::from_bytes(&frame)?;
+/// assert_eq!(message.quaternion_error_q1_physical(), 0.123_4);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error};
 /// Rate sensor temperatures: telemetry 175, 6 bytes. Table 133.
 ///
 /// Bit 26 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::RateSensorTemperatures;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = RateSensorTemperatures::from_bytes(&frame)?;
+/// assert_eq!(message.x_rate_sensor_temperature, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

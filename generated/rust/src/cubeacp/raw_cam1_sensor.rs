@@ -13,6 +13,16 @@ use crate::support::{message, put, take, Coded, Error};
 ///
 /// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The telecommand
 /// begins with Cam1. Frame 194 and the ids 166 and 167 have Cam2 before Cam1.
+///
+/// ```
+/// use icd::cubeacp::RawCam1Sensor;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = RawCam1Sensor::from_bytes(&frame)?;
+/// assert_eq!(message.cam1_centroid_x, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -7,6 +7,16 @@ use crate::support::{message, Error};
 /// Raw CSS 1 to 6: telemetry 168, 6 bytes. Table 126.
 ///
 /// Bit 49 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::RawCss1To6;
+///
+/// let frame = [0x7b, 0x00, 0x00, 0x00, 0x00, 0x00];
+/// let message = RawCss1To6::from_bytes(&frame)?;
+/// assert_eq!(message.css1, 123);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -11,6 +11,16 @@ use crate::support::{message, Error};
 /// Erratum ACP-081 (likely): Raw CSS 7 to 10: 6 bytes announced, 4 described. Four sensors fill
 /// four of six bytes. The last two are held as reserved; the frame is probably filled up to the
 /// size of the loggable ones.
+///
+/// ```
+/// use icd::cubeacp::RawCss7To10;
+///
+/// let frame = [0x7b, 0x00, 0x00, 0x00, 0x00, 0x00];
+/// let message = RawCss7To10::from_bytes(&frame)?;
+/// assert_eq!(message.css7, 123);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,6 +9,17 @@ use crate::support::{message, put, take, Coded, Error, Scale};
 ///
 /// Repeats Raw GPS Status from byte 0. Repeats Raw GPS Time from byte 6. Repeats Raw GPS X from
 /// byte 12. Repeats Raw GPS Y from byte 18. Repeats Raw GPS Z from byte 24.
+///
+/// ```
+/// use icd::cubeacp::RawGpsMeasurements;
+///
+/// let mut frame = [0; RawGpsMeasurements::LENGTH];
+/// frame[30] = 0x7b;
+/// let message = RawGpsMeasurements::from_bytes(&frame)?;
+/// assert_eq!(message.x_pos_standard_deviation_m(), 12.3);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -307,6 +318,60 @@ message!(RawGpsMeasurements {
     y_vel_standard_deviation: ("Y-vel Standard Deviation", 272, 8).unit("m/s"),
     z_vel_standard_deviation: ("Z-vel Standard Deviation", 280, 8).unit("m/s"),
 });
+
+/// Raw GPS Status, as it is repeated from byte 0.
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsStatus {
+    fn from(message: &RawGpsMeasurements) -> Self {
+        super::RawGpsStatus {
+            gps_solution_status: message.gps_solution_status,
+            number_of_tracked_gps_satellites: message.number_of_tracked_gps_satellites,
+            number_of_gps_satellites_used_in_solution: message.number_of_gps_satellites_used_in_solution,
+            counter_for_xyz_log_from_gps: message.counter_for_xyz_log_from_gps,
+            counter_for_range_log_from_gps: message.counter_for_range_log_from_gps,
+            response_message_for_gps_log_setup: message.response_message_for_gps_log_setup,
+        }
+    }
+}
+
+/// Raw GPS Time, as it is repeated from byte 6.
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsTime {
+    fn from(message: &RawGpsMeasurements) -> Self {
+        super::RawGpsTime {
+            gps_reference_week: message.gps_reference_week,
+            gps_time_milliseconds: message.gps_time_milliseconds,
+        }
+    }
+}
+
+/// Raw GPS X, as it is repeated from byte 12.
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsX {
+    fn from(message: &RawGpsMeasurements) -> Self {
+        super::RawGpsX {
+            ecef_position_x: message.ecef_position_x,
+            ecef_velocity_x: message.ecef_velocity_x,
+        }
+    }
+}
+
+/// Raw GPS Y, as it is repeated from byte 18.
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsY {
+    fn from(message: &RawGpsMeasurements) -> Self {
+        super::RawGpsY {
+            ecef_position_y: message.ecef_position_y,
+            ecef_velocity_y: message.ecef_velocity_y,
+        }
+    }
+}
+
+/// Raw GPS Z, as it is repeated from byte 24.
+impl ::core::convert::From<&RawGpsMeasurements> for super::RawGpsZ {
+    fn from(message: &RawGpsMeasurements) -> Self {
+        super::RawGpsZ {
+            ecef_position_z: message.ecef_position_z,
+            ecef_velocity_z: message.ecef_velocity_z,
+        }
+    }
+}
 
 impl crate::Telemetry for RawGpsMeasurements {
     const TELEMETRY_ID: u32 = 210;

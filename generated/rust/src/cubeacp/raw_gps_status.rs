@@ -8,6 +8,16 @@ use crate::support::{message, Coded, Error};
 /// Raw GPS Status: telemetry 176, 6 bytes. Table 134.
 ///
 /// Bit 42 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::{enums, RawGpsStatus};
+///
+/// let frame = [0x0b, 0x00, 0x00, 0x00, 0x00, 0x00];
+/// let message = RawGpsStatus::from_bytes(&frame)?;
+/// assert_eq!(message.gps_solution_status, enums::GpsSolutionStatus::PositionTypeIsUnauthorized);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error};
 /// Raw GPS Time: telemetry 177, 6 bytes. Table 135.
 ///
 /// Bit 43 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::RawGpsTime;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = RawGpsTime::from_bytes(&frame)?;
+/// assert_eq!(message.gps_reference_week, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error};
 /// Raw Magnetometer: telemetry 170, 6 bytes. Table 128.
 ///
 /// Bit 51 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::RawMagnetometer;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = RawMagnetometer::from_bytes(&frame)?;
+/// assert_eq!(message.mag_x, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

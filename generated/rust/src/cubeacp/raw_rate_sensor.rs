@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error};
 /// Raw Rate Sensor: telemetry 216, 6 bytes. Table 164.
 ///
 /// Bit 60 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::RawRateSensor;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = RawRateSensor::from_bytes(&frame)?;
+/// assert_eq!(message.rate_x, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

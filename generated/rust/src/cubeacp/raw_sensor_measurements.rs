@@ -13,6 +13,17 @@ use crate::support::{message, put, take, Coded, Error};
 ///
 /// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The telecommand
 /// begins with Cam1. Frame 194 and the ids 166 and 167 have Cam2 before Cam1.
+///
+/// ```
+/// use icd::cubeacp::RawSensorMeasurements;
+///
+/// let mut frame = [0; RawSensorMeasurements::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = RawSensorMeasurements::from_bytes(&frame)?;
+/// assert_eq!(message.cam2_centroid_x, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -249,6 +260,78 @@ message!(RawSensorMeasurements {
     rate_y: ("RateY", 240, 16),
     rate_z: ("RateZ", 256, 16),
 });
+
+/// Raw Cam2 Sensor, as it is repeated from byte 0.
+impl ::core::convert::From<&RawSensorMeasurements> for super::RawCam2Sensor {
+    fn from(message: &RawSensorMeasurements) -> Self {
+        super::RawCam2Sensor {
+            cam2_centroid_x: message.cam2_centroid_x,
+            cam2_centroid_y: message.cam2_centroid_y,
+            cam2_capture_status: message.cam2_capture_status,
+            cam2_detection_result: message.cam2_detection_result,
+        }
+    }
+}
+
+/// Raw Cam1 Sensor, as it is repeated from byte 6.
+impl ::core::convert::From<&RawSensorMeasurements> for super::RawCam1Sensor {
+    fn from(message: &RawSensorMeasurements) -> Self {
+        super::RawCam1Sensor {
+            cam1_centroid_x: message.cam1_centroid_x,
+            cam1_centroid_y: message.cam1_centroid_y,
+            cam1_capture_status: message.cam1_capture_status,
+            cam1_detection_result: message.cam1_detection_result,
+        }
+    }
+}
+
+/// Raw CSS 1 to 6, as it is repeated from byte 12.
+impl ::core::convert::From<&RawSensorMeasurements> for super::RawCss1To6 {
+    fn from(message: &RawSensorMeasurements) -> Self {
+        super::RawCss1To6 {
+            css1: message.css1,
+            css2: message.css2,
+            css3: message.css3,
+            css4: message.css4,
+            css5: message.css5,
+            css6: message.css6,
+        }
+    }
+}
+
+/// Raw CSS 7 to 10, as it is repeated from byte 18.
+impl ::core::convert::From<&RawSensorMeasurements> for super::RawCss7To10 {
+    fn from(message: &RawSensorMeasurements) -> Self {
+        super::RawCss7To10 {
+            css7: message.css7,
+            css8: message.css8,
+            css9: message.css9,
+            css10: message.css10,
+        }
+    }
+}
+
+/// Raw Magnetometer, as it is repeated from byte 22.
+impl ::core::convert::From<&RawSensorMeasurements> for super::RawMagnetometer {
+    fn from(message: &RawSensorMeasurements) -> Self {
+        super::RawMagnetometer {
+            mag_x: message.mag_x,
+            mag_y: message.mag_y,
+            mag_z: message.mag_z,
+        }
+    }
+}
+
+/// Raw Rate Sensor, as it is repeated from byte 28.
+impl ::core::convert::From<&RawSensorMeasurements> for super::RawRateSensor {
+    fn from(message: &RawSensorMeasurements) -> Self {
+        super::RawRateSensor {
+            rate_x: message.rate_x,
+            rate_y: message.rate_y,
+            rate_z: message.rate_z,
+        }
+    }
+}
 
 impl crate::Telemetry for RawSensorMeasurements {
     const TELEMETRY_ID: u32 = 194;

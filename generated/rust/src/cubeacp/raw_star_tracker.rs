@@ -11,6 +11,17 @@ use crate::support::{flags, message, put, take, Coded, Error, Scale};
 /// Magnitude from byte 12. Repeats Star 1 Raw Data from byte 18. Repeats Star 2 Raw Data from byte
 /// 24\. Repeats Star 3 Raw Data from byte 30. Repeats Star Timing from byte 36. Repeats CubeStar
 /// Estimated Rates from byte 42. Repeats CubeStar Estimated Quaternion from byte 48.
+///
+/// ```
+/// use icd::cubeacp::RawStarTracker;
+///
+/// let mut frame = [0; RawStarTracker::LENGTH];
+/// frame[42..44].copy_from_slice(&[0xd2, 0x04]);
+/// let message = RawStarTracker::from_bytes(&frame)?;
+/// assert_eq!(message.x_axis_rate_physical(), 0.123_4);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -539,6 +550,117 @@ message!(RawStarTracker {
     q1: ("Q1", 400, 16).scale(&Q1),
     q2: ("Q2", 416, 16).scale(&Q2),
 });
+
+/// Star Performance1, as it is repeated from byte 0.
+impl ::core::convert::From<&RawStarTracker> for super::StarPerformance1 {
+    fn from(message: &RawStarTracker) -> Self {
+        super::StarPerformance1 {
+            number_of_stars_detected: message.number_of_stars_detected,
+            star_image_noise: message.star_image_noise,
+            invalid_stars: message.invalid_stars,
+            number_of_stars_identified: message.number_of_stars_identified,
+            identification_mode: message.identification_mode,
+            image_dark_value: message.image_dark_value,
+        }
+    }
+}
+
+/// Star Performance2, as it is repeated from byte 6.
+impl ::core::convert::From<&RawStarTracker> for super::StarPerformance2 {
+    fn from(message: &RawStarTracker) -> Self {
+        super::StarPerformance2 {
+            image_capture_success: message.image_capture_success,
+            detection_success: message.detection_success,
+            identification_success: message.identification_success,
+            attitude_success: message.attitude_success,
+            processing_time_error: message.processing_time_error,
+            tracking_module_enabled: message.tracking_module_enabled,
+            prediction_enabled: message.prediction_enabled,
+            comms_error: message.comms_error,
+            sample_period: message.sample_period,
+            star_1_confidence: message.star_1_confidence,
+            star_2_confidence: message.star_2_confidence,
+            star_3_confidence: message.star_3_confidence,
+        }
+    }
+}
+
+/// Star Magnitude, as it is repeated from byte 12.
+impl ::core::convert::From<&RawStarTracker> for super::StarMagnitude {
+    fn from(message: &RawStarTracker) -> Self {
+        super::StarMagnitude {
+            magnitude_star_1: message.magnitude_star_1,
+            magnitude_star_2: message.magnitude_star_2,
+            magnitude_star_3: message.magnitude_star_3,
+        }
+    }
+}
+
+/// Star 1 Raw Data, as it is repeated from byte 18.
+impl ::core::convert::From<&RawStarTracker> for super::Star1RawData {
+    fn from(message: &RawStarTracker) -> Self {
+        super::Star1RawData {
+            catalogue_star_1: message.catalogue_star_1,
+            centroid_x_star_1: message.centroid_x_star_1,
+            centroid_y_star_1: message.centroid_y_star_1,
+        }
+    }
+}
+
+/// Star 2 Raw Data, as it is repeated from byte 24.
+impl ::core::convert::From<&RawStarTracker> for super::Star2RawData {
+    fn from(message: &RawStarTracker) -> Self {
+        super::Star2RawData {
+            catalogue_star_2: message.catalogue_star_2,
+            centroid_x_star_2: message.centroid_x_star_2,
+            centroid_y_star_2: message.centroid_y_star_2,
+        }
+    }
+}
+
+/// Star 3 Raw Data, as it is repeated from byte 30.
+impl ::core::convert::From<&RawStarTracker> for super::Star3RawData {
+    fn from(message: &RawStarTracker) -> Self {
+        super::Star3RawData {
+            catalogue_star_3: message.catalogue_star_3,
+            centroid_x_star_3: message.centroid_x_star_3,
+            centroid_y_star_3: message.centroid_y_star_3,
+        }
+    }
+}
+
+/// Star Timing, as it is repeated from byte 36.
+impl ::core::convert::From<&RawStarTracker> for super::StarTiming {
+    fn from(message: &RawStarTracker) -> Self {
+        super::StarTiming {
+            capture: message.capture,
+            detection: message.detection,
+            identification: message.identification,
+        }
+    }
+}
+
+/// CubeStar Estimated Rates, as it is repeated from byte 42.
+impl ::core::convert::From<&RawStarTracker> for super::CubestarEstimatedRates {
+    fn from(message: &RawStarTracker) -> Self {
+        super::CubestarEstimatedRates {
+            x_axis_rate: message.x_axis_rate,
+            y_axis_rate: message.y_axis_rate,
+            z_axis_rate: message.z_axis_rate,
+        }
+    }
+}
+
+/// CubeStar Estimated Quaternion, as it is repeated from byte 48.
+impl ::core::convert::From<&RawStarTracker> for super::CubestarEstimatedQuaternion {
+    fn from(message: &RawStarTracker) -> Self {
+        super::CubestarEstimatedQuaternion {
+            q0: message.q0,
+            q1: message.q1,
+            q2: message.q2,
+        }
+    }
+}
 
 impl crate::Telemetry for RawStarTracker {
     const TELEMETRY_ID: u32 = 211;

@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Satellite Position (ECI): telemetry 148, 6 bytes. Table 104.
 ///
 /// Bit 31 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::SatellitePositionEci;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = SatellitePositionEci::from_bytes(&frame)?;
+/// assert_eq!(message.x_position_km(), 308.5);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,6 +9,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Latitude, longitude and altitude in the WGS-84 frame.
 ///
 /// Bit 33 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::SatellitePositionLlh;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = SatellitePositionLlh::from_bytes(&frame)?;
+/// assert_eq!(message.latitude_deg(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Satellite Velocity (ECI): telemetry 149, 6 bytes. Table 105.
 ///
 /// Bit 32 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::SatelliteVelocityEci;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = SatelliteVelocityEci::from_bytes(&frame)?;
+/// assert_eq!(message.x_velocity_m_per_s(), 308.5);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -11,6 +11,15 @@ use crate::support::{message, Coded, Error};
 ///
 /// Note ACP-055 (certain): Save Image saves before it captures. The description has the steps in
 /// the wrong order.
+///
+/// ```
+/// use icd::cubeacp::{enums, SaveImage};
+///
+/// let mut command = SaveImage::default();
+/// command.camera_select = enums::CamSelect::Star.into();
+/// assert_eq!(command.to_bytes()?, [0x02, 0x00]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

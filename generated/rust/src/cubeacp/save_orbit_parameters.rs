@@ -11,6 +11,14 @@ use crate::support::{message, Error};
 /// Note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS
 /// configuration, the orbit parameters and the system configuration. Telecommands save the current
 /// configuration and the orbit parameters; which the first covers is not said.
+///
+/// ```
+/// use icd::cubeacp::SaveOrbitParameters;
+///
+/// let command = SaveOrbitParameters::default();
+/// assert_eq!(command.to_bytes()?, []);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -16,6 +16,17 @@ use crate::support::{array, message, put, put_array, take, Coded, Error};
 /// Note ACP-186 (open): A log that is reconfigured while it runs. The mask in the file header is
 /// that of the start. Whether a new selection starts a new file, and which counter it gets, is not
 /// said.
+///
+/// ```
+/// use icd::cubeacp::SdLog1Configuration;
+///
+/// let mut frame = [0; SdLog1Configuration::LENGTH];
+/// frame[10..12].copy_from_slice(&[0xd2, 0x04]);
+/// let message = SdLog1Configuration::from_bytes(&frame)?;
+/// assert_eq!(message.log_period, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

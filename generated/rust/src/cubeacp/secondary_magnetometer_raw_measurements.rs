@@ -14,6 +14,16 @@ use crate::support::{message, put, take, Error};
 /// Note ACP-118 (likely): Secondary magnetometer: fixed or selected. The frame is named for the
 /// secondary magnetometer, with the field names of the primary one. A setting selects which
 /// magnetometer, sampled how, it shows.
+///
+/// ```
+/// use icd::cubeacp::SecondaryMagnetometerRawMeasurements;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = SecondaryMagnetometerRawMeasurements::from_bytes(&frame)?;
+/// assert_eq!(message.mag_x, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -8,6 +8,15 @@ use crate::support::{message, Coded, Error};
 /// ADCS Run Mode: telecommand 10, 1 byte. Table 74.
 ///
 /// Switches the control loop and chooses how it runs.
+///
+/// ```
+/// use icd::cubeacp::{enums, SetAdcsRunMode};
+///
+/// let mut command = SetAdcsRunMode::default();
+/// command.enabled = enums::AdcsRunMode::Simulation.into();
+/// assert_eq!(command.to_bytes()?, [0x03]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

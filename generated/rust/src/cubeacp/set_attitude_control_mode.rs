@@ -6,6 +6,15 @@ use super::enums;
 use crate::support::{message, put, take, Coded, Error};
 
 /// Set Attitude Control Mode: telecommand 13, 3 bytes. Table 77.
+///
+/// ```
+/// use icd::cubeacp::{enums, SetAttitudeControlMode};
+///
+/// let mut command = SetAttitudeControlMode::default();
+/// command.control_mode = enums::ConModeSelect::TargetTrackingYawOnly.into();
+/// assert_eq!(command.to_bytes()?, [0x0f, 0x00, 0x00]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -6,6 +6,15 @@ use super::enums;
 use crate::support::{message, Coded, Error};
 
 /// Set Attitude Estimation Mode: telecommand 14, 1 byte. Table 79.
+///
+/// ```
+/// use icd::cubeacp::{enums, SetAttitudeEstimationMode};
+///
+/// let mut command = SetAttitudeEstimationMode::default();
+/// command.attitude_estimation_mode = enums::EstimModeSelect::UserCodedEstimationMode.into();
+/// assert_eq!(command.to_bytes()?, [0x07]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

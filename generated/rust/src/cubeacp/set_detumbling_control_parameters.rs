@@ -11,6 +11,15 @@ use crate::support::{message, put, take, Error, Scale};
 ///
 /// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
 /// get id have neutral names, but for eight. Names and identifiers are held as printed.
+///
+/// ```
+/// use icd::cubeacp::SetDetumblingControlParameters;
+///
+/// let mut frame = [0; SetDetumblingControlParameters::LENGTH];
+/// let message = SetDetumblingControlParameters::from_bytes(&frame)?;
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -10,6 +10,16 @@ use crate::support::{message, Coded, Error};
 ///
 /// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
 /// get id have neutral names, but for eight. Names and identifiers are held as printed.
+///
+/// ```
+/// use icd::cubeacp::{enums, SetMagnetorquerConfiguration};
+///
+/// let frame = [0x06, 0x00, 0x00];
+/// let message = SetMagnetorquerConfiguration::from_bytes(&frame)?;
+/// assert_eq!(message.magnetorquer_1_configuration, enums::AxisSelect::NotUsed);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -10,6 +10,15 @@ use crate::support::{message, put, take, Error, Scale};
 ///
 /// Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode
 /// falls back, when the control mode is None. The member with value 0 is called No control.
+///
+/// ```
+/// use icd::cubeacp::SetMagnetorquerOutput;
+///
+/// let mut command = SetMagnetorquerOutput::default();
+/// command.set_x_duty_cycle_physical(1.234)?;
+/// assert_eq!(command.to_bytes()?, [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -8,6 +8,15 @@ use crate::support::{message, Coded, Error};
 /// Set Mode of Magnetometer Operation: telecommand 56, 1 byte. Table 89.
 ///
 /// Chooses between the main and the redundant magnetometer.
+///
+/// ```
+/// use icd::cubeacp::{enums, SetModeOfMagnetometerOperation};
+///
+/// let mut command = SetModeOfMagnetometerOperation::default();
+/// command.magnetometer_mode = enums::MagModeVal::None.into();
+/// assert_eq!(command.to_bytes()?, [0x03]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

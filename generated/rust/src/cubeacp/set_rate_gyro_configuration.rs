@@ -13,6 +13,17 @@ use crate::support::{message, put, take, Coded, Error, Scale};
 ///
 /// Note ACP-131 (certain): Gyro, rate sensor and MEMS. One sensor has three names, two of them in
 /// one message.
+///
+/// ```
+/// use icd::cubeacp::SetRateGyroConfiguration;
+///
+/// let mut frame = [0; SetRateGyroConfiguration::LENGTH];
+/// frame[3..5].copy_from_slice(&[0xd2, 0x04]);
+/// let message = SetRateGyroConfiguration::from_bytes(&frame)?;
+/// assert_eq!(message.x_rate_sensor_offset_deg_per_s(), 1.234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -14,6 +14,17 @@ use crate::support::{message, put, take, Error, Scale};
 ///
 /// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
 /// get id have neutral names, but for eight. Names and identifiers are held as printed.
+///
+/// ```
+/// use icd::cubeacp::SetStarTrackerConfiguration;
+///
+/// let mut frame = [0; SetStarTrackerConfiguration::LENGTH];
+/// frame[0..2].copy_from_slice(&[0xd2, 0x04]);
+/// let message = SetStarTrackerConfiguration::from_bytes(&frame)?;
+/// assert_eq!(message.mounting_alpha_deg(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -12,6 +12,17 @@ use crate::support::{message, put, take, Coded, Error};
 ///
 /// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
 /// get id have neutral names, but for eight. Names and identifiers are held as printed.
+///
+/// ```
+/// use icd::cubeacp::SetTrackingControllerGainParameters;
+///
+/// let mut frame = [0; SetTrackingControllerGainParameters::LENGTH];
+/// frame[2..4].copy_from_slice(&[0xc0, 0x3f]);
+/// let message = SetTrackingControllerGainParameters::from_bytes(&frame)?;
+/// assert_eq!(message.tracking_proportional_gain, 1.5);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -11,6 +11,17 @@ use crate::support::{message, put, take, Error};
 ///
 /// Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a
 /// get id have neutral names, but for eight. Names and identifiers are held as printed.
+///
+/// ```
+/// use icd::cubeacp::SetYWheelControlParameters;
+///
+/// let mut frame = [0; SetYWheelControlParameters::LENGTH];
+/// frame[2..4].copy_from_slice(&[0xc0, 0x3f]);
+/// let message = SetYWheelControlParameters::from_bytes(&frame)?;
+/// assert_eq!(message.y_momentum_control_gain, 1.5);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

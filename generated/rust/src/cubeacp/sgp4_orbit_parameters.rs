@@ -6,6 +6,17 @@ use crate::support::{message, put, take, Error};
 
 /// SGP4 Orbit Parameters: configuration, set by telecommand 45, got by telemetry 207, 64 bytes.
 /// Table 194.
+///
+/// ```
+/// use icd::cubeacp::Sgp4OrbitParameters;
+///
+/// let mut frame = [0; Sgp4OrbitParameters::LENGTH];
+/// frame[6..8].copy_from_slice(&[0xf8, 0x3f]);
+/// let message = Sgp4OrbitParameters::from_bytes(&frame)?;
+/// assert_eq!(message.inclination, 1.5);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

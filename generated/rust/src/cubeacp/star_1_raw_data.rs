@@ -9,6 +9,16 @@ use crate::support::{message, put, take, Error};
 /// Catalogue index and detected position.
 ///
 /// Bit 54 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::Star1RawData;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = Star1RawData::from_bytes(&frame)?;
+/// assert_eq!(message.catalogue_star_1, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Star 2 Body Vector: telemetry 182, 6 bytes. Table 140.
 ///
 /// Bit 17 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::Star2BodyVector;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = Star2BodyVector::from_bytes(&frame)?;
+/// assert_eq!(message.star2_body_x_physical(), 0.123_4);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,6 +9,16 @@ use crate::support::{message, put, take, Error};
 /// Of the identified stars, in instrument magnitudes.
 ///
 /// Bit 53 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::StarMagnitude;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = StarMagnitude::from_bytes(&frame)?;
+/// assert_eq!(message.magnitude_star_1, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -14,6 +14,16 @@ use crate::support::{message, Coded, Error};
 /// Note ACP-096 (certain): Star Performance2 has the description of Star Performance1. Both are
 /// described as performance parameters of the star measurement; the second holds flags, a period
 /// and confidences.
+///
+/// ```
+/// use icd::cubeacp::StarPerformance1;
+///
+/// let frame = [0x7b, 0x00, 0x00, 0x00, 0x00, 0x00];
+/// let message = StarPerformance1::from_bytes(&frame)?;
+/// assert_eq!(message.number_of_stars_detected, 123);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -13,6 +13,16 @@ use crate::support::{flags, message, put, take, Error};
 /// Note ACP-096 (certain): Star Performance2 has the description of Star Performance1. Both are
 /// described as performance parameters of the star measurement; the second holds flags, a period
 /// and confidences.
+///
+/// ```
+/// use icd::cubeacp::StarPerformance2;
+///
+/// let frame = [0x01, 0x00, 0x00, 0x00, 0x00, 0x00];
+/// let message = StarPerformance2::from_bytes(&frame)?;
+/// assert!(message.image_capture_success);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -10,6 +10,16 @@ use crate::support::{flags, message, Error};
 ///
 /// Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained.
 /// They are written 0 and ignored.
+///
+/// ```
+/// use icd::cubeacp::State;
+///
+/// let frame = [0x01];
+/// let message = State::from_bytes(&frame)?;
+/// assert!(message.adcs_config_load_error);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,6 +9,16 @@ use crate::support::{message, Coded, Error};
 ///
 /// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A
 /// telecommand or request sent to the wrong program is taken for another one.
+///
+/// ```
+/// use icd::cubeacp::StatusOfImageCaptureAndSaveOperation;
+///
+/// let frame = [0x7b, 0x00];
+/// let message = StatusOfImageCaptureAndSaveOperation::from_bytes(&frame)?;
+/// assert_eq!(message.percentage_complete, 123);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -8,6 +8,17 @@ use crate::support::{message, put, take, Error};
 /// 200, 12 bytes. Table 187.
 ///
 /// Target of the tracking control mode.
+///
+/// ```
+/// use icd::cubeacp::TrackingControllerTargetReference;
+///
+/// let mut frame = [0; TrackingControllerTargetReference::LENGTH];
+/// frame[2..4].copy_from_slice(&[0xc0, 0x3f]);
+/// let message = TrackingControllerTargetReference::from_bytes(&frame)?;
+/// assert_eq!(message.geocentric_longitude_of_target, 1.5);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -7,6 +7,14 @@ use crate::support::{message, Error};
 /// Trigger ADCS Loop: telecommand 18, 0 bytes. Table 83.
 ///
 /// Runs the control loop once. Only valid while ADCS Run Mode is Triggered.
+///
+/// ```
+/// use icd::cubeacp::TriggerAdcsLoop;
+///
+/// let command = TriggerAdcsLoop::default();
+/// assert_eq!(command.to_bytes()?, []);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -14,6 +14,16 @@ use crate::support::{message, put, take, Coded, Error, Scale};
 /// telecommand with simulated measurements is valid only in mode Triggered, and there is a mode
 /// Simulation that no other text mentions. The sentence was probably taken over from the
 /// telecommand before it.
+///
+/// ```
+/// use icd::cubeacp::TriggerSimulatedLoop;
+///
+/// let mut command = TriggerSimulatedLoop::default();
+/// command.set_x_pos_standard_deviation_m(12.3)?;
+/// let frame = command.to_bytes()?;
+/// assert_eq!(frame[121..122], [0x7b]);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -8,6 +8,17 @@ use crate::support::{array, message, put, put_array, take, Error};
 /// Table 213.
 ///
 /// Which frames are sent unasked on the UART, and how often.
+///
+/// ```
+/// use icd::cubeacp::UartLogConfiguration;
+///
+/// let mut frame = [0; UartLogConfiguration::LENGTH];
+/// frame[10..12].copy_from_slice(&[0xd2, 0x04]);
+/// let message = UartLogConfiguration::from_bytes(&frame)?;
+/// assert_eq!(message.log_period, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -6,6 +6,15 @@ use crate::support::{array, message, put_array, Error};
 
 /// User-coded Controller and Estimator Parameters: configuration, set by telecommand 29, got by
 /// telemetry 226, 96 bytes. Table 208.
+///
+/// ```
+/// use icd::cubeacp::UserCodedControllerAndEstimatorParameters;
+///
+/// let mut frame = [0; UserCodedControllerAndEstimatorParameters::LENGTH];
+/// let message = UserCodedControllerAndEstimatorParameters::from_bytes(&frame)?;
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,6 +9,16 @@ use crate::support::{message, put, take, Error, Scale};
 /// Of the X, Y and Z wheels.
 ///
 /// Bit 23 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::WheelCurrents;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = WheelCurrents::from_bytes(&frame)?;
+/// assert_eq!(message.wheel1_current_ma(), 12.34);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

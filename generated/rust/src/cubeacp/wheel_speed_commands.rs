@@ -7,6 +7,16 @@ use crate::support::{message, put, take, Error};
 /// Wheel Speed Commands: telemetry 158, 6 bytes. Table 114.
 ///
 /// Bit 8 of the log mask.
+///
+/// ```
+/// use icd::cubeacp::WheelSpeedCommands;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00, 0x00];
+/// let message = WheelSpeedCommands::from_bytes(&frame)?;
+/// assert_eq!(message.commanded_x_wheel_speed, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -14,6 +14,16 @@ use crate::support::{flags, message, put, take, Error};
 ///
 /// Note MAG-015 (open): Deployment Status and measurements end in unexplained bits. Three bits of
 /// the status and seven of each measurement are not described. They are held as reserved.
+///
+/// ```
+/// use icd::cubemag::DeploymentStatus;
+///
+/// let frame = [0xd2, 0x04, 0x00, 0x00, 0x00];
+/// let message = DeploymentStatus::from_bytes(&frame)?;
+/// assert_eq!(message.burn_current, 1_234);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

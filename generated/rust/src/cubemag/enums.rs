@@ -11,6 +11,13 @@ use crate::support::enumeration;
 /// Note MAG-008 (open): MagState has no deployed state. The service can be armed, deploying, idle
 /// or in error. A deployed boom shows as idle at best, and what a unit without a boom reports is
 /// not said.
+///
+/// ```
+/// use icd::cubemag::enums::MagState;
+///
+/// assert_eq!(MagState::from(3), MagState::Error);
+/// assert_eq!(MagState::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -82,6 +89,13 @@ enumeration!(MagState: u8);
 ///
 /// Note MAG-009 (open): MntState: Mnt is not explained. The states belong to the magnetometers by
 /// the table that uses them; Mnt stands nowhere else.
+///
+/// ```
+/// use icd::cubemag::enums::MntState;
+///
+/// assert_eq!(MntState::from(5), MntState::Error);
+/// assert_eq!(MntState::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

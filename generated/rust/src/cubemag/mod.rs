@@ -21,6 +21,14 @@ mod primary_magnetometer_measurement;
 pub use self::primary_magnetometer_measurement::PrimaryMagnetometerMeasurement;
 
 /// Every telemetry of the node.
+///
+/// ```
+/// use icd::cubemag::Telemetry;
+///
+/// let message = Telemetry::from_bytes(icd::cubemag::State::ID, &[0; 3])?;
+/// assert_eq!(message.name(), icd::cubemag::State::NAME);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -8,6 +8,17 @@ use crate::support::{message, put, take, Error};
 ///
 /// Note MAG-015 (open): Deployment Status and measurements end in unexplained bits. Three bits of
 /// the status and seven of each measurement are not described. They are held as reserved.
+///
+/// ```
+/// use icd::cubemag::RedundantMagnetometerMeasurement;
+///
+/// let mut frame = [0; RedundantMagnetometerMeasurement::LENGTH];
+/// frame[2..4].copy_from_slice(&[0xc0, 0x3f]);
+/// let message = RedundantMagnetometerMeasurement::from_bytes(&frame)?;
+/// assert_eq!(message.x_axis, 1.5);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

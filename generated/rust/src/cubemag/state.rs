@@ -12,6 +12,16 @@ use crate::support::{message, Coded, Error};
 /// Note MAG-004 (certain): Number 57 is used twice in the addendum. Both parts have a Table 57,
 /// State here and Motor Power there. They come from two documents, and the source does not say
 /// where one ends.
+///
+/// ```
+/// use icd::cubemag::{enums, State};
+///
+/// let frame = [0x03, 0x00, 0x00];
+/// let message = State::from_bytes(&frame)?;
+/// assert_eq!(message.mag_svc_state, enums::MagState::Error);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -5,6 +5,13 @@
 use crate::support::enumeration;
 
 /// WheelErrorState: an enumeration. Table 48.
+///
+/// ```
+/// use icd::cubewheel::enums::WheelErrorState;
+///
+/// assert_eq!(WheelErrorState::from(3), WheelErrorState::SpeedNotReachedTimeout);
+/// assert_eq!(WheelErrorState::default().raw(), 0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

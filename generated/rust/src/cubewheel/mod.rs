@@ -18,6 +18,14 @@ mod motor_power;
 pub use self::motor_power::MotorPower;
 
 /// Every telemetry of the node.
+///
+/// ```
+/// use icd::cubewheel::Telemetry;
+///
+/// let message = Telemetry::from_bytes(icd::cubewheel::WheelSpeed::ID, &[0; 5])?;
+/// assert_eq!(message.name(), icd::cubewheel::WheelSpeed::NAME);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -18,6 +18,16 @@ use crate::support::{message, Error};
 ///
 /// Note WHL-016 (open): Motor Power: seven bits are not described. One bit of the byte is
 /// explained; the others are held as reserved.
+///
+/// ```
+/// use icd::cubewheel::MotorPower;
+///
+/// let frame = [0x01];
+/// let message = MotorPower::from_bytes(&frame)?;
+/// assert!(message.motor_power_switch);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -19,6 +19,16 @@ use crate::support::{message, put, take, Error};
 /// Note WHL-013 (open): Momentum wheel in one place, wheel in the others. The description of the
 /// reference speed has a momentum wheel, all other texts a wheel. CubeACP has three wheels and a
 /// fourth or momentum wheel.
+///
+/// ```
+/// use icd::cubewheel::WheelReferenceSpeed;
+///
+/// let frame = [0x00, 0x00, 0xc0, 0x3f];
+/// let message = WheelReferenceSpeed::from_bytes(&frame)?;
+/// assert_eq!(message.reference_speed, 1.5);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -10,6 +10,16 @@ use crate::support::{message, put, take, Coded, Error};
 /// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag. Tables
 /// 47, 48, 56 and 57 exist in the manual with other contents, 57 also in the first part of the
 /// addendum.
+///
+/// ```
+/// use icd::cubewheel::WheelSpeed;
+///
+/// let frame = [0x00, 0x00, 0xc0, 0x3f, 0x00];
+/// let message = WheelSpeed::from_bytes(&frame)?;
+/// assert_eq!(message.wheel_speed, 1.5);
+/// assert_eq!(message.to_bytes()?, frame);
+/// # Result::<(), icd::Error>::Ok(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

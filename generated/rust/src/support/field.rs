@@ -6,6 +6,16 @@ use super::{Error, Message, Scale, Wide};
 use core::fmt::{Formatter, Result as Shown};
 
 /// What the ICD says of a field.
+///
+/// ```
+/// use icd::{Field, Message};
+///
+/// /// The heads of a table's columns.
+/// fn heads<M: Message>() -> Vec<String> {
+///     let head = |field: &Field| format!("{} ({})", field.name, field.unit);
+///     M::FIELDS.iter().map(head).collect()
+/// }
+/// ```
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Field {

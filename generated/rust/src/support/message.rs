@@ -6,6 +6,15 @@ use super::{Error, Field};
 use core::fmt::{Debug, Display};
 
 /// A message of an ICD.
+///
+/// ```
+/// use icd::{Error, Message};
+///
+/// /// Frames of one kind that lie one behind the other.
+/// fn all<M: Message>(bytes: &[u8]) -> Result<Vec<M>, Error> {
+///     bytes.chunks(M::LENGTH).map(M::from_bytes).collect()
+/// }
+/// ```
 pub trait Message: Copy + Debug + Display + Sized {
     /// What the ICD calls it.
     const NAME: &'static str;
@@ -32,12 +41,29 @@ pub trait Message: Copy + Debug + Display + Sized {
 }
 
 /// A message that can be requested: telemetry, and configuration that is read back.
+///
+/// ```
+/// use icd::Telemetry;
+///
+/// fn told<M: Telemetry>(message: &M) -> String {
+///     format!("{} {message}", M::TELEMETRY_ID)
+/// }
+/// ```
 pub trait Telemetry: Message {
     /// The id that requests it.
     const TELEMETRY_ID: u32;
 }
 
 /// A message that can be sent: a telecommand, and configuration that is set.
+///
+/// ```
+/// use icd::{Error, Telecommand};
+///
+/// /// The id and the data.
+/// fn sent<M: Telecommand>(command: &M) -> Result<(u32, Vec<u8>), Error> {
+///     Ok((M::TELECOMMAND_ID, command.to_bytes()?.as_ref().to_vec()))
+/// }
+/// ```
 pub trait Telecommand: Message {
     /// The id that sends it.
     const TELECOMMAND_ID: u32;

@@ -10,6 +10,13 @@ use core::marker::PhantomData;
 use core::ops::Deref;
 
 /// What came, or what became of the request. Each request ends in exactly one of the first three.
+///
+/// ```
+/// use icd::wire::Event;
+///
+/// let event = Event::Timeout { id: 146, attempts: 3 };
+/// assert!(matches!(event, Event::Timeout { id: 146, .. }));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]

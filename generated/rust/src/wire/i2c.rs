@@ -13,6 +13,16 @@ use super::Error;
 /// # Errors
 ///
 /// [`Error::Length`] if `out` is too small, [`Error::Unsupported`] if the ICD has no checksum.
+///
+/// ```
+/// use icd::wire::{i2c, Error, Link};
+///
+/// fn written(link: &Link, id: u8, data: &[u8]) -> Result<Vec<u8>, Error> {
+///     let mut out = [0; 64];
+///     let size = i2c::write(link, id, data, true, &mut out)?;
+///     Ok(out[..size].to_vec())
+/// }
+/// ```
 pub fn write(
     link: &Link,
     id: u8,

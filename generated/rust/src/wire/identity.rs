@@ -22,6 +22,15 @@ pub struct Identity {
 /// # Errors
 ///
 /// [`Error::Length`] if the frame has another length, [`Error::Unsupported`] if the ICD has none.
+///
+/// ```
+/// use icd::wire::{identify, Error, Link};
+///
+/// /// Whether the node that sent the frame is the one of this link.
+/// fn is_ours(link: &Link, frame: &[u8]) -> Result<bool, Error> {
+///     Ok(identify(link, frame)?.matches)
+/// }
+/// ```
 pub fn identify(link: &Link, frame: &[u8]) -> Result<Identity, Error> {
     let step = link.identification.as_ref().ok_or(Error::Unsupported)?;
     let (expected, actual) = (step.fresh.len(), frame.len());

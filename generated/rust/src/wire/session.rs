@@ -69,6 +69,9 @@ impl fmt::Display for Failure {
                 code.map_or(Ok(()), |code| write!(out, ", code {code}"))?;
                 reason.map_or(Ok(()), |reason| write!(out, ": {reason:?}"))
             }
+            Self::Timeout { id, attempts: 1 } => {
+                write!(out, "no answer to request {id}, asked once")
+            }
             Self::Timeout { id, attempts } => {
                 write!(out, "no answer to request {id}, asked {attempts} times")
             }
@@ -94,6 +97,18 @@ type OnEvent<T> = Box<dyn FnMut(&NodeEvent<'_, T>)>;
 ///
 /// The port is yours. Its `read` must come back after a while, be it with nothing (`WouldBlock` or
 /// `TimedOut`), for the clock is looked at in between: set a time-out of some milliseconds.
+///
+/// ```
+/// use icd::wire::{session::Failure, Session, TelemetryOf};
+/// use std::io::{Read, Write};
+///
+/// fn show<T, P: Read + Write, M: TelemetryOf<T>, const N: usize>(
+///     session: &mut Session<T, P, N>,
+/// ) -> Result<(), Failure> {
+///     println!("{}", session.get::<M>()?);
+///     Ok(())
+/// }
+/// ```
 pub struct Session<T, P, const N: usize> {
     client: Client<T, N>,
     port: P,

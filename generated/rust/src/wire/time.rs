@@ -6,6 +6,14 @@ use super::link::{Link, TimeForm, TimePart};
 use super::Error;
 
 /// A date and time, which may be none that the calendar has.
+///
+/// ```
+/// use icd::wire::DosTime;
+///
+/// let time = DosTime { year: 2024, month: 2, day: 29, ..DosTime::default() };
+/// assert!(time.is_valid());
+/// assert!(!DosTime { year: 2023, ..time }.is_valid());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DosTime {

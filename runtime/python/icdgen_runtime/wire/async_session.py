@@ -48,7 +48,7 @@ class AsyncSession(Exchanges):
         Raises `RefusedError`, `ReplyTimeoutError` and what `Client.request` does.
         """
         outcome = await self._run(self._exchange(self.client.request, message))
-        return message.from_bytes(executed(outcome).data)
+        return message.from_bytes(executed(outcome, message.NAME).data)
 
     async def ask(self, message: type[M]) -> OutcomeOf[M]:
         """Requests telemetry, or reads a setting; its outcome.
@@ -60,7 +60,8 @@ class AsyncSession(Exchanges):
 
     async def send(self, message: Message, repeat: bool = False) -> None:
         """Sends a telecommand or a setting; raises like `get` and `Client.send`."""
-        executed(await self._run(self._exchange(self.client.send, message, repeat)))
+        outcome = await self._run(self._exchange(self.client.send, message, repeat))
+        executed(outcome, message.NAME)
 
     async def start(self, request: Request) -> Outcome:
         """Any request; its outcome. Raises what `Client.start` does."""

@@ -24,7 +24,7 @@ class BusSession(Exchanges):
         Raises `RefusedError`, `ReplyTimeoutError` and what `Client.request` does.
         """
         outcome = self._run(self._exchange(self.client.request, message))
-        return message.from_bytes(executed(outcome).data)
+        return message.from_bytes(executed(outcome, message.NAME).data)
 
     def ask(self, message: type[M]) -> OutcomeOf[M]:
         """Requests telemetry, or reads a setting; its outcome.
@@ -36,7 +36,8 @@ class BusSession(Exchanges):
 
     def send(self, message: Message, repeat: bool = False) -> None:
         """Sends a telecommand or a setting; raises like `get` and `Client.send`."""
-        executed(self._run(self._exchange(self.client.send, message, repeat)))
+        outcome = self._run(self._exchange(self.client.send, message, repeat))
+        executed(outcome, message.NAME)
 
     def start(self, request: Request) -> Outcome:
         """Any request; its outcome. Raises what `Client.start` does."""
@@ -90,7 +91,7 @@ class Session(BusSession):
 
     The port is yours: ``write(data)`` sends, ``read(seconds)`` returns what has come,
     after so many seconds at the latest, if need be nothing; `serial_port` makes them of
-    a serial port. What they raise ends the request. ``clock`` gives seconds.
+    a serial port, `socket_port` of a socket. What they raise ends the request. ``clock`` gives seconds.
     ``on_event`` is told of what comes unasked, such as logs, and by `run` of refusals
     with a code that the ICD does not have.
     """

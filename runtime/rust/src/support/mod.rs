@@ -26,6 +26,13 @@ pub(crate) use self::text::{text, text_array};
 pub(crate) use self::wide::{Big, Wide};
 
 /// Why bytes are not a message, or a message or value cannot be encoded.
+///
+/// ```
+/// use icdgen_runtime::Error;
+///
+/// let error = Error::Range { field: "Mode" };
+/// assert_eq!(error.to_string(), "the value does not fit `Mode`");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -77,6 +84,15 @@ impl core::error::Error for Error {}
 impl std::error::Error for Error {}
 
 /// An enumeration whose values can be made from every number and back.
+///
+/// ```
+/// use icdgen_runtime::Enumeration;
+///
+/// /// Whether the ICD has a name for a number.
+/// fn is_known<E: Enumeration>(raw: E::Raw) -> bool {
+///     E::from(raw).name().is_some()
+/// }
+/// ```
 pub trait Enumeration:
     Copy + fmt::Debug + fmt::Display + From<Self::Raw> + Into<Self::Raw>
 {
@@ -88,6 +104,17 @@ pub trait Enumeration:
 }
 
 /// A value of an enumeration as it is on the wire, so that every number is kept.
+///
+/// ```
+/// use icdgen_runtime::{Coded, Enumeration};
+///
+/// fn told<E: Enumeration>(mode: Coded<E>) -> String {
+///     match mode.known() {
+///         Some(known) => format!("{known}"),
+///         None => format!("no mode that the ICD knows: {}", mode.raw()),
+///     }
+/// }
+/// ```
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Coded<E: Enumeration>(E::Raw);
 

@@ -4,6 +4,25 @@ use super::link::{CrcForm, Link};
 use super::Error;
 
 /// A CRC that is fed piece by piece.
+///
+/// ```
+/// use icdgen_runtime::wire::link::CrcForm;
+/// use icdgen_runtime::wire::Crc;
+///
+/// let form = CrcForm {
+///     width: 16,
+///     polynomial: 0x1021,
+///     init: 0,
+///     reflect_in: false,
+///     reflect_out: false,
+///     xor_out: 0,
+///     empty: None,
+/// };
+/// let mut crc = Crc::new(&form);
+/// crc.feed(b"1234");
+/// crc.feed(b"56789");
+/// assert_eq!(crc.result(), 0x31c3);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Crc<'a> {
     form: &'a CrcForm,
@@ -13,6 +32,26 @@ pub struct Crc<'a> {
 }
 
 /// What makes a CRC fast: 1 KiB, which may be a `static`.
+///
+/// ```
+/// use icdgen_runtime::wire::link::CrcForm;
+/// use icdgen_runtime::wire::{Crc, Table};
+///
+/// static FORM: CrcForm = CrcForm {
+///     width: 8,
+///     polynomial: 0x07,
+///     init: 0,
+///     reflect_in: false,
+///     reflect_out: false,
+///     xor_out: 0,
+///     empty: None,
+/// };
+/// static TABLE: Table = Table::new(&FORM);
+///
+/// let mut crc = Crc::with_table(&FORM, &TABLE);
+/// crc.feed(b"123456789");
+/// assert_eq!(crc.result(), 0xf4);
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Table([u32; 256]);
 

@@ -140,6 +140,17 @@ impl<'a> Entry<'a> {
 }
 
 /// Reads a log file in pieces of any size. `N` bytes must be enough for the header and for an entry.
+///
+/// ```
+/// use icdgen_runtime::wire::{log, Error, Link};
+///
+/// /// Entries of a log file.
+/// fn count(link: &'static Link, file: &[u8]) -> Result<usize, Error> {
+///     let (mut reader, mut found) = (log::Reader::<2048>::new(link)?, 0);
+///     reader.feed(file, |_| found += 1);
+///     Ok(found)
+/// }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Reader<const N: usize> {
     form: &'static LogFile,
@@ -316,6 +327,16 @@ fn begun(out: &mut [u8], size: usize) -> Result<&mut [u8], Error> {
 }
 
 /// An unsolicited log.
+///
+/// ```
+/// use icdgen_runtime::wire::{log, Error, Link};
+///
+/// /// The ids of the frames in an unsolicited log.
+/// fn ids(link: &'static Link, message: &[u8]) -> Result<Vec<Option<u8>>, Error> {
+///     let message = log::Message::decode(link, message)?;
+///     Ok(message.frames().map(|frame| frame.id).collect())
+/// }
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Message<'a> {
     layout: &'static LogMask,

@@ -36,5 +36,5 @@ pub use self::link::{Bus, Link, Reason, Settings};
 pub use self::message::{Linked, NodeLink, TelecommandOf, TelemetryOf};
 pub use self::request::{Direction, Request, Started};
 #[cfg(feature = "std")]
-pub use self::session::Session;
+pub use self::session::{Failure, Session};
 pub use self::time::DosTime;

@@ -10,6 +10,13 @@ pub enum Direction {
 }
 
 /// A request. Times and lengths are looked up by its id.
+///
+/// ```
+/// use icdgen_runtime::wire::{Direction, Request};
+///
+/// let request = Request { repeat: true, ..Request::telecommand(13, &[3, 0, 0]) };
+/// assert_eq!((request.direction, request.data.len()), (Direction::Telecommand, 3));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Request<'a> {
     /// What kind of request it is.

@@ -5,6 +5,21 @@ use super::link::{Framing, Link};
 use super::Error;
 
 /// Bytes of the message on the line.
+///
+/// ```
+/// use icdgen_runtime::wire::link::Framing;
+/// use icdgen_runtime::wire::uart;
+///
+/// let framing = Framing {
+///     escape: 0x1f,
+///     start: 0x7f,
+///     end: 0xff,
+///     escaped: 0x1f,
+///     escapes_id: false,
+///     ignores_other: false,
+/// };
+/// assert_eq!(uart::encoded_length(&framing, &[13, 0x00, 0x1f]), 2 + 1 + 1 + 2 + 2);
+/// ```
 #[must_use]
 pub fn encoded_length(framing: &Framing, message: &[u8]) -> usize {
     let escapes = message.iter().enumerate().filter(|(position, byte)| {
@@ -19,6 +34,17 @@ pub fn encoded_length(framing: &Framing, message: &[u8]) -> usize {
 ///
 /// [`Error::Length`] if there is no message or `out` is too small, [`Error::Unsupported`] if the ICD
 /// describes no framing.
+///
+/// ```
+/// use icdgen_runtime::wire::{uart, Error, Link};
+///
+/// fn sent(link: &Link, message: &[u8], port: &mut Vec<u8>) -> Result<(), Error> {
+///     let mut line = [0; 64];
+///     let size = uart::encode(link, message, &mut line)?;
+///     port.extend_from_slice(&line[..size]);
+///     Ok(())
+/// }
+/// ```
 pub fn encode(link: &Link, message: &[u8], out: &mut [u8]) -> Result<usize, Error> {
     let framing = link.framing.as_ref().ok_or(Error::Unsupported)?;
     if message.is_empty() {
@@ -112,6 +138,22 @@ pub enum Event<'a> {
 }
 
 /// Finds the messages in a stream; `N` is the size of its buffer.
+///
+/// ```
+/// use icdgen_runtime::wire::{uart, Error, Link};
+///
+/// /// The messages in what a line recorder kept, each with its id in front.
+/// fn messages(link: &'static Link, recorded: &[u8]) -> Result<Vec<Vec<u8>>, Error> {
+///     let mut found = Vec::new();
+///     let mut decoder = uart::Decoder::<512>::new(link)?;
+///     decoder.feed(recorded, |event| {
+///         if let uart::Event::Message(message) = event {
+///             found.push(message.to_vec());
+///         }
+///     });
+///     Ok(found)
+/// }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Decoder<const N: usize> {
     framing: &'static Framing,

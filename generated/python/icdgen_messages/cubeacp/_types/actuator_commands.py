@@ -21,6 +21,10 @@ class ActuatorCommands(_base.Message):
     IDS = (ID,)
     LENGTH = 12
     TABLE = 151
+    PARTS = (
+        ("cubeacp", "MagnetorquerCommand", 0),
+        ("cubeacp", "WheelSpeedCommands", 48),
+    )
 
     x_magnetorquer_command: int = _base.field("X Magnetorquer Command", 0, 16, "int", default=0, unit="10ms units")
     """X Magnetorquer Command: bits 0 to 15, raw -32768 to 32767, in 10ms units.

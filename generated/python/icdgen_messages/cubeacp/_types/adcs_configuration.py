@@ -46,6 +46,24 @@ class AdcsConfiguration(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 504
     TABLE = 192
+    PARTS = (
+        ("cubeacp", "SetMagnetorquerConfiguration", 0),
+        ("cubeacp", "SetWheelConfiguration", 24),
+        ("cubeacp", "SetRateGyroConfiguration", 56),
+        ("cubeacp", "CssConfiguration", 136),
+        ("cubeacp", "CubesenseConfiguration", 304),
+        ("cubeacp", "MagnetometerConfiguration", 1200),
+        ("cubeacp", "RedundantMagConfiguration", 1440),
+        ("cubeacp", "SetStarTrackerConfiguration", 1680),
+        ("cubeacp", "SetDetumblingControlParameters", 2104),
+        ("cubeacp", "SetYWheelControlParameters", 2216),
+        ("cubeacp", "SetReactionWheelControlParameters", 2376),
+        ("cubeacp", "SetTrackingControllerGainParameters", 2480),
+        ("cubeacp", "MomentOfInertiaMatrix", 2584),
+        ("cubeacp", "EstimationParameters", 2776),
+        ("cubeacp", "AugmentedSgp4Parameters", 3024),
+        ("cubeacp", "UserCodedControllerAndEstimatorParameters", 3264),
+    )
 
     magnetorquer_1_configuration: AxisSelect = _base.field(
         "Magnetorquer 1 Configuration", 0, 8, "enum", default=AxisSelect.POSITIVE_X

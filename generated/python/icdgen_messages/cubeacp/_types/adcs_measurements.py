@@ -28,6 +28,20 @@ class AdcsMeasurements(_base.Message):
     IDS = (ID,)
     LENGTH = 72
     TABLE = 150
+    PARTS = (
+        ("cubeacp", "MagneticFieldVector", 0),
+        ("cubeacp", "CoarseSunVector", 48),
+        ("cubeacp", "FineSunVector", 96),
+        ("cubeacp", "NadirVector", 144),
+        ("cubeacp", "RateSensorRates", 192),
+        ("cubeacp", "WheelSpeed", 240),
+        ("cubeacp", "Star1BodyVector", 288),
+        ("cubeacp", "Star1OrbitVector", 336),
+        ("cubeacp", "Star2BodyVector", 384),
+        ("cubeacp", "Star2OrbitVector", 432),
+        ("cubeacp", "Star3BodyVector", 480),
+        ("cubeacp", "Star3OrbitVector", 528),
+    )
 
     magnetic_field_x: int = _base.field("Magnetic Field X", 0, 16, "int", default=0, unit="uT")
     """Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68

@@ -40,6 +40,17 @@ class AdcsState(_base.Message):
     IDS = (ID,)
     LENGTH = 54
     TABLE = 149
+    PARTS = (
+        ("cubeacp", "CurrentAdcsState", 0),
+        ("cubeacp", "CurrentAdcsState2", 48),
+        ("cubeacp", "EstimatedAttitudeAngles", 96),
+        ("cubeacp", "EstimatedQuaternion", 144),
+        ("cubeacp", "EstimatedAngularRates", 192),
+        ("cubeacp", "SatellitePositionEci", 240),
+        ("cubeacp", "SatelliteVelocityEci", 288),
+        ("cubeacp", "SatellitePositionLlh", 336),
+        ("cubeacp", "EcefPosition", 384),
+    )
 
     attitude_estimation_mode: EstimModeSelect = _base.field(
         "Attitude Estimation Mode", 0, 4, "enum", default=EstimModeSelect.NO_ATTITUDE_ESTIMATION

@@ -26,6 +26,15 @@ class EstimationData(_base.Message):
     IDS = (ID,)
     LENGTH = 42
     TABLE = 152
+    PARTS = (
+        ("cubeacp", "IgrfModelledMagneticFieldVector", 0),
+        ("cubeacp", "ModelledSunVector", 48),
+        ("cubeacp", "EstimatedGyroBias", 96),
+        ("cubeacp", "EstimationInnovationVector", 144),
+        ("cubeacp", "QuaternionErrorVector", 192),
+        ("cubeacp", "QuaternionCovariance", 240),
+        ("cubeacp", "AngularRateCovariance", 288),
+    )
 
     igrf_modelled_magnetic_field_x: int = _base.field(
         "IGRF Modelled Magnetic Field X", 0, 16, "int", default=0, unit="uT"

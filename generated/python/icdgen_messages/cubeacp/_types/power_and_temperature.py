@@ -25,6 +25,15 @@ class PowerAndTemperature(_base.Message):
     IDS = (ID,)
     LENGTH = 38
     TABLE = 154
+    PARTS = (
+        ("cubeacp", "Cubesense1Currents", 0),
+        ("cubeacp", "Cubesense2Currents", 32),
+        ("cubeacp", "CubecontrolCurrents", 64),
+        ("cubeacp", "WheelCurrents", 112),
+        ("cubeacp", "AdcsMiscCurrents", 160),
+        ("cubeacp", "AdcsTemperatures", 208),
+        ("cubeacp", "RateSensorTemperatures", 256),
+    )
 
     cubesense1_3v3_current: int = _base.field("CubeSense1 3V3 Current", 0, 16, "uint", default=0, unit="mA")
     """CubeSense1 3V3 Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.1`, 0 to

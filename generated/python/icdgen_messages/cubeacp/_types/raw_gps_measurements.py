@@ -23,6 +23,13 @@ class RawGpsMeasurements(_base.Message):
     IDS = (ID,)
     LENGTH = 36
     TABLE = 158
+    PARTS = (
+        ("cubeacp", "RawGpsStatus", 0),
+        ("cubeacp", "RawGpsTime", 48),
+        ("cubeacp", "RawGpsX", 96),
+        ("cubeacp", "RawGpsY", 144),
+        ("cubeacp", "RawGpsZ", 192),
+    )
 
     gps_solution_status: GpsSolutionStatus = _base.field(
         "Gps Solution Status", 0, 8, "enum", default=GpsSolutionStatus.SOLUTION_COMPUTED

@@ -29,6 +29,14 @@ class RawSensorMeasurements(_base.Message):
     IDS = (ID,)
     LENGTH = 34
     TABLE = 153
+    PARTS = (
+        ("cubeacp", "RawCam2Sensor", 0),
+        ("cubeacp", "RawCam1Sensor", 48),
+        ("cubeacp", "RawCss1To6", 96),
+        ("cubeacp", "RawCss7To10", 144),
+        ("cubeacp", "RawMagnetometer", 176),
+        ("cubeacp", "RawRateSensor", 224),
+    )
 
     cam2_centroid_x: int = _base.field("Cam2 centroid X", 0, 16, "int", default=0)
     """Cam2 centroid X: bits 0 to 15, raw -32768 to 32767.

@@ -26,6 +26,17 @@ class RawStarTracker(_base.Message):
     IDS = (ID,)
     LENGTH = 54
     TABLE = 159
+    PARTS = (
+        ("cubeacp", "StarPerformance1", 0),
+        ("cubeacp", "StarPerformance2", 48),
+        ("cubeacp", "StarMagnitude", 96),
+        ("cubeacp", "Star1RawData", 144),
+        ("cubeacp", "Star2RawData", 192),
+        ("cubeacp", "Star3RawData", 240),
+        ("cubeacp", "StarTiming", 288),
+        ("cubeacp", "CubestarEstimatedRates", 336),
+        ("cubeacp", "CubestarEstimatedQuaternion", 384),
+    )
 
     number_of_stars_detected: int = _base.field("Number of stars detected", 0, 8, "uint", default=0, unit="stars")
     """Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.

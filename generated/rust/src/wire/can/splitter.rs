@@ -8,6 +8,15 @@ use super::super::Error;
 use super::{Message, Packet, PACKET_BYTES};
 
 /// The packets of a message, in the order in which they are sent.
+///
+/// ```
+/// use icd::wire::can::{Message, Packet, Splitter};
+/// use icd::wire::{Error, Link};
+///
+/// fn packets(link: &'static Link, message: &Message<'_>) -> Result<Vec<Packet>, Error> {
+///     Ok(Splitter::new(link, message)?.collect())
+/// }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Splitter<'a> {
     data: &'a [u8],

@@ -57,6 +57,24 @@ enum Port<const N: usize> {
 ///
 /// Bytes, packets or transactions that came are handed over, output is taken, and [`Client::tick`] is
 /// called at the [`Client::deadline`].
+///
+/// ```
+/// use icd::wire::{Client, Error, TelemetryOf};
+///
+/// /// Asks for a frame and hands over what `port` answers to the bytes that it is given.
+/// fn asked<T, M: TelemetryOf<T>, const N: usize>(
+///     client: &mut Client<T, N>,
+///     mut port: impl FnMut(&[u8]) -> Vec<u8>,
+/// ) -> Result<Option<M>, Error> {
+///     let (mut input, mut found) = (Vec::new(), None);
+///     client.request::<M>(0)?;
+///     while let Some(bytes) = client.output() {
+///         input.extend(port(bytes));
+///     }
+///     client.received(1, &input, |event| found = found.or(event.message()));
+///     Ok(found)
+/// }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Client<T, const N: usize> {
     port: Port<N>,

@@ -8,6 +8,20 @@ use super::super::links::MAP_BYTES;
 use super::super::Error;
 
 /// Which packets of a block are there, in the form in which the node wants it.
+///
+/// ```
+/// use icd::wire::files::HoleMap;
+/// use icd::wire::{Error, Link};
+///
+/// /// The packets of a block of eight that are still to come.
+/// fn missing(link: &Link, seen: &[u32]) -> Result<Vec<u32>, Error> {
+///     let mut map = HoleMap::new(link, 8)?;
+///     for number in seen {
+///         map.set(*number)?;
+///     }
+///     Ok(map.missing().collect())
+/// }
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HoleMap {
     bytes: [u8; MAP_BYTES],

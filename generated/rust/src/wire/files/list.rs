@@ -34,6 +34,15 @@ enum State {
 }
 
 /// Lists the files of the node, one after the other.
+///
+/// ```
+/// use icd::wire::files::{Entry, List};
+/// use icd::wire::{Error, Link};
+///
+/// fn listing<'a>(link: &'static Link, seen: &'a mut Vec<Entry>) -> Result<List<impl FnMut(Entry) + 'a>, Error> {
+///     List::new(link, move |entry| seen.push(entry))
+/// }
+/// ```
 #[derive(Clone, Debug)]
 pub struct List<F> {
     core: Core,

@@ -2,17 +2,7 @@
 
 //! File transfer: procedures over a client, hole maps, and the entries of the index file.
 //!
-//! A procedure says which request comes next and is told what became of it:
-//!
-//! ```text
-//! let end = loop {
-//!     while client.advance(now, &mut procedure)? { ... send client.output() ... }
-//!     if let Some(end) = procedure.result() { break end; }
-//!     ... wait for input until client.deadline() or procedure.deadline(), whichever is earlier ...
-//!     client.received(now, input, |event| procedure.event(now, &event));
-//!     ... send client.output() ...
-//! };
-//! ```
+//! A [`Procedure`] says which request comes next and is told what became of it.
 //!
 //! A refusal with a code that the ICD does not have is taken for a damaged acknowledge, which tells
 //! nothing: what may be repeated is asked again, as often as the client would.

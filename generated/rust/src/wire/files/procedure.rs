@@ -32,6 +32,28 @@ pub enum End {
 }
 
 /// A procedure, which says which request comes next and is told what became of it.
+///
+/// ```
+/// use icd::wire::files::{End, Procedure};
+/// use icd::wire::{Client, Error};
+///
+/// /// Runs a procedure; `exchange` writes bytes to the port and reads what has come, `now` is a clock.
+/// fn run<T, const N: usize>(
+///     client: &mut Client<T, N>,
+///     procedure: &mut dyn Procedure,
+///     mut exchange: impl FnMut(Option<&[u8]>) -> Vec<u8>,
+///     now: impl Fn() -> u32,
+/// ) -> Result<End, Error> {
+///     loop {
+///         while client.advance(now(), procedure)? {}
+///         if let Some(end) = procedure.result() {
+///             return Ok(end);
+///         }
+///         let input = exchange(client.output());
+///         client.received(now(), &input, |event| procedure.event(now(), &event));
+///     }
+/// }
+/// ```
 pub trait Procedure {
     /// The next request, once; None while there is nothing to send.
     fn next(&mut self, now: u32) -> Option<Request<'_>>;

@@ -51,6 +51,27 @@ pub enum Event<'a> {
 }
 
 /// Puts messages of at most `N` bytes together, `SENDERS` at once.
+///
+/// ```
+/// use icdgen_runtime::wire::can::{Event, Joiner, Packet};
+///
+/// /// Bytes of data in all messages that these packets make up.
+/// fn bytes<const N: usize, const SENDERS: usize>(
+///     joiner: &mut Joiner<N, SENDERS>,
+///     now: u32,
+///     packets: &[Packet],
+/// ) -> usize {
+///     let mut count = 0;
+///     for packet in packets {
+///         joiner.feed(now, packet, |event| {
+///             if let Event::Message(message) = event {
+///                 count += message.data.len();
+///             }
+///         });
+///     }
+///     count
+/// }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Joiner<const N: usize, const SENDERS: usize> {
     link: &'static Link,

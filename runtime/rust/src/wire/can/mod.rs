@@ -60,6 +60,14 @@ pub struct Message<'a> {
 }
 
 /// A CAN frame: 29-bit identifier and data.
+///
+/// ```
+/// use icdgen_runtime::wire::can::Packet;
+///
+/// let packet = Packet::new(0x0101_0701, &[90]).unwrap();
+/// assert_eq!(packet.data(), [90]);
+/// assert!(Packet::new(1, &[0; 9]).is_none());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Packet {
     /// The identifier.

@@ -22,6 +22,15 @@ pub struct IndexEntry<'a> {
 }
 
 /// The entries of an index file, one after the other.
+///
+/// ```
+/// use icdgen_runtime::wire::files::IndexEntries;
+/// use icdgen_runtime::wire::{Error, Link};
+///
+/// fn count(link: &'static Link, index_file: &[u8]) -> Result<usize, Error> {
+///     Ok(IndexEntries::new(link, index_file)?.count())
+/// }
+/// ```
 #[derive(Clone, Debug)]
 pub struct IndexEntries<'a> {
     form: &'static IndexForm,

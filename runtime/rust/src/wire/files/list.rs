@@ -32,6 +32,15 @@ enum State {
 }
 
 /// Lists the files of the node, one after the other.
+///
+/// ```
+/// use icdgen_runtime::wire::files::{Entry, List};
+/// use icdgen_runtime::wire::{Error, Link};
+///
+/// fn listing<'a>(link: &'static Link, seen: &'a mut Vec<Entry>) -> Result<List<impl FnMut(Entry) + 'a>, Error> {
+///     List::new(link, move |entry| seen.push(entry))
+/// }
+/// ```
 #[derive(Clone, Debug)]
 pub struct List<F> {
     core: Core,

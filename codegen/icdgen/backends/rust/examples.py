@@ -1,0 +1,160 @@
+"""Examples in the documentation of generated code, which ``cargo test --doc`` runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from icdgen import codec
+from icdgen.backends.rust.accessors import accessors
+from icdgen.backends.rust.names import ENUMS_MODULE, field_name, type_name
+from icdgen.backends.rust.text import double, integer, mask
+from icdgen.describe import EnumDescription, MessageDescription, NodeDescription
+from icdgen.describe.description import Direction
+from icdgen.describe.examples import Example, Shown, example
+from icdgen.describe.links import LinkDescription
+
+_WHOLE = 8  # bytes of a frame that is written out; of a longer one, those that are not 0
+
+
+def message_example(message: MessageDescription, crate: str) -> list[str]:
+    """Lines of code: a frame is decoded, a value read, and encoded again; of what can only be sent, one is made and encoded."""
+    shown = example(message)
+    is_received = message.model.telemetry_id is not None
+    body = _received(message, shown) if is_received else _sent(message, shown)
+    return _fallible([*_imports(message, shown.shown, crate), "", *body], crate)
+
+
+def enum_example(enum: EnumDescription, crate: str) -> list[str]:
+    """Lines of code: a value and what it is called."""
+    name, member = type_name(enum), enum.members[-1] if enum.members else None
+    first = enum.member(member.model.value) if member else None
+    tests = [f"assert_eq!({name}::from({integer(first.model.value)}), {name}::{type_name(first)});"] if first else []
+    path = f"{crate}::{enum.node.name}::{ENUMS_MODULE}::{name}"
+    return _fenced([f"use {path};", "", *tests, f"assert_eq!({name}::default().raw(), 0);"])
+
+
+def direction_example(direction: Direction, node: NodeDescription, crate: str) -> list[str]:
+    """Lines of code: a frame of zeros is dispatched by its id."""
+    message, id = direction.messages[0]
+    name, one = direction.kind.capitalize(), f"{crate}::{message.node.name}::{type_name(message)}"
+    return _fallible(
+        [
+            f"use {crate}::{node.name}::{name};",
+            "",
+            f"let message = {name}::from_bytes({one}::{id.upper()}, &[0; {message.model.length}])?;",
+            f"assert_eq!(message.name(), {one}::NAME);",
+        ],
+        crate,
+    )
+
+
+def client_example(node: NodeDescription, link: LinkDescription, crate: str) -> list[str]:
+    """Lines of code: a client on UART asks for a message and is answered; none where that cannot be, or no message is short."""
+    known = [one for one in node.telemetry if one.model.telemetry_id in link.facts.telemetry]
+    asked = [one for one in known if one.model.length <= _WHOLE]
+    if link.facts.framing is None or not asked:
+        return []
+    message = next((one for one in asked if any(field.steps for field in one.members)), asked[0])
+    one, name = example(message), type_name(message)
+    answer = _bytes(bytes([message.model.telemetry_id or 0, *one.frame]))
+    client = f"Client::<{node.name}::Node, {{ {node.name}::LONGEST }}>"
+    return _fallible(
+        [
+            *_imports(message, one.shown, crate),
+            f"use {crate}::{{{node.name}, wire}};",
+            "",
+            f"let mut client = wire::{client}::uart(&{node.name}::LINK)?;",
+            f"client.request::<{name}>(0)?; // at 0 ms, by any clock",
+            "assert!(client.output().is_some()); // bytes for the port",
+            "",
+            "// What the node answers; the client is given it 20 ms later.",
+            "let mut line = [0; 64];",
+            f"let size = wire::uart::encode(&{node.name}::LINK, &{answer}, &mut line)?;",
+            "let mut answer = None;",
+            f"client.received(20, &line[..size], |event| answer = event.message::<{name}>());",
+            "let message = answer.unwrap();",
+            _read(one.shown) if one.shown else "assert_eq!(message.to_bytes()?, []);",
+        ],
+        f"{crate}::wire",
+    )
+
+
+def _fallible(lines: Iterable[str], crate: str) -> list[str]:
+    """The lines as a doctest in which ``?`` may stand."""
+    return _fenced((*lines, f"# Result::<(), {crate}::Error>::Ok(())"))
+
+
+def _fenced(lines: Iterable[str]) -> list[str]:
+    return ["```", *lines, "```"]
+
+
+def _imports(message: MessageDescription, shown: Shown | None, crate: str) -> list[str]:
+    home, name = f"{crate}::{message.node.name}", type_name(message)
+    enum = shown.field.enum if shown else None
+    if enum is None:
+        return [f"use {home}::{name};"]
+    if enum.node is message.node:
+        return [f"use {home}::{{{ENUMS_MODULE}, {name}}};"]
+    return [f"use {crate}::{enum.node.name}::{ENUMS_MODULE};", f"use {home}::{name};"]
+
+
+def _received(message: MessageDescription, one: Example) -> list[str]:
+    lines = [f"let frame = {_bytes(one.frame)};"]
+    if len(one.frame) > _WHOLE:
+        lines = [f"let mut frame = [0; {type_name(message)}::LENGTH];"]
+        lines += [_put(start, run) for start, run in one.runs]
+    return [
+        *lines,
+        f"let message = {type_name(message)}::from_bytes(&frame)?;",
+        *([_read(one.shown)] if one.shown else []),
+        "assert_eq!(message.to_bytes()?, frame);",
+    ]
+
+
+def _sent(message: MessageDescription, one: Example) -> list[str]:
+    name = type_name(message)
+    lines = [f"let command = {name}::default();"]
+    if one.shown:
+        lines = [f"let mut command = {name}::default();", _written(one.shown)]
+    if len(one.frame) <= _WHOLE:
+        return [*lines, f"assert_eq!(command.to_bytes()?, {_bytes(one.frame)});"]
+    places = (f"assert_eq!(frame[{start}..{start + len(run)}], {_bytes(run)});" for start, run in one.runs)
+    return [*lines, "let frame = command.to_bytes()?;", *places]
+
+
+def _read(shown: Shown) -> str:
+    field = shown.field
+    if shown.physical is not None:
+        return f"assert_eq!(message.{field.physical_name}(), {double(shown.physical)});"
+    value = f"message.{field_name(field)}"
+    return f"assert!({value});" if field.model.type == "bool" else f"assert_eq!({value}, {_value(shown)});"
+
+
+def _written(shown: Shown) -> str:
+    field = shown.field
+    if shown.physical is not None and accessors(field)[0].raw:
+        return f"command.set_{field.physical_name}({double(shown.physical)})?;"
+    into = ".into()" if field.enum else ""
+    return f"command.{field_name(field)} = {_value(shown)}{into};"
+
+
+def _value(shown: Shown) -> str:
+    """The raw value."""
+    field, raw = shown.field, shown.raw
+    if field.enum is not None:
+        member = field.enum.member(raw)
+        assert member is not None, "an example of an enumeration is a member of it"
+        return f"{ENUMS_MODULE}::{type_name(field.enum)}::{type_name(member)}"
+    if field.model.type == "bool":
+        return "true" if raw else "false"
+    return double(codec.float_value(field.model, raw)) if field.model.type == "float" else integer(raw)
+
+
+def _put(start: int, run: bytes) -> str:
+    if len(run) == 1:
+        return f"frame[{start}] = {mask(run[0])};"
+    return f"frame[{start}..{start + len(run)}].copy_from_slice(&{_bytes(run)});"
+
+
+def _bytes(data: bytes) -> str:
+    return f"[{', '.join(map(mask, data))}]"

@@ -1,0 +1,47 @@
+"""The messages that a composite message repeats, as conversions from it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from icdgen.backends.lines import STEP, bracketed
+from icdgen.backends.rust.names import field_name, type_name
+from icdgen.backends.rust.text import WIDTH
+from icdgen.describe import MessageDescription
+from icdgen.describe.comments import part_comment
+from icdgen.describe.parts import Copied, parts_of
+
+
+class Part(NamedTuple):
+    """``type``: the message, or an array of as many as it is repeated; ``values`` are what each is made of."""
+
+    about: str
+    type: str
+    is_array: bool
+    values: tuple[tuple[str, ...], ...]
+    message: str
+
+
+def parts(message: MessageDescription) -> list[Part]:
+    """Those of a composite message."""
+    found = []
+    for one in parts_of(message):
+        path = _path(one.message, message)
+        count = len(one.begins)
+        kind = f"[{path}; {count}]" if count > 1 else path
+        values = tuple(tuple(map(_value, one.copies(message, begin))) for begin in one.begins)
+        found.append(Part(part_comment(one.message.model, one.begins), kind, count > 1, values, path))
+    return found
+
+
+def _path(part: MessageDescription, composite: MessageDescription) -> str:
+    """The type as the file of the composite message writes it."""
+    return f"super::{type_name(part)}" if part.node is composite.node else f"crate::{part.node.name}::{type_name(part)}"
+
+
+def _value(copied: Copied) -> str:
+    name = field_name(copied.member)
+    twins = [f"message.{field_name(one)}" for one in copied.twins]
+    if copied.is_whole:
+        return f"{name}: {twins[0]}"
+    return bracketed(f"{name}: [", twins, "]", WIDTH - len(STEP) * 4, STEP * 4)

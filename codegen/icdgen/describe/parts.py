@@ -1,0 +1,51 @@
+"""The messages that a composite message repeats (``contains``), and which of its values are theirs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from icdgen.describe.description import FieldDescription, MessageDescription
+
+
+class Copied(NamedTuple):
+    """A member of a part, and what of the composite message has its value.
+
+    Of an array that stands as one in both that is the array; else there is one twin for each element.
+    """
+
+    member: FieldDescription
+    twins: tuple[FieldDescription, ...]
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether one assignment copies the member."""
+        return len(self.twins) == 1 and self.twins[0].count == self.member.count
+
+
+class PartDescription(NamedTuple):
+    """A message that a composite message repeats."""
+
+    message: MessageDescription
+    begins: tuple[int, ...]  # the bits at which it does, in the order of the ICD
+
+    def copies(self, composite: MessageDescription, begin: int) -> Iterator[Copied]:
+        """What its members are of a message, from a bit on."""
+        fields = {field.model.at: field for field in composite.fields}
+        arrays = {field.model.at: field for field in composite.members if field.count}
+        for member in self.message.members:
+            at = begin + member.model.at
+            array = arrays.get(at) if member.count else None
+            if array is not None and array.count == member.count:
+                yield Copied(member, (array,))
+            else:
+                yield Copied(member, tuple(fields[begin + one.model.at] for one in member.elements or (member,)))
+
+
+def parts_of(composite: MessageDescription) -> tuple[PartDescription, ...]:
+    """Each message that it repeats, but for those that hold nothing."""
+    begins: dict[MessageDescription, list[int]] = {}
+    for part, begin in composite.contained:
+        if part.fields:
+            begins.setdefault(part, []).append(begin)
+    return tuple(PartDescription(part, tuple(bits)) for part, bits in begins.items())

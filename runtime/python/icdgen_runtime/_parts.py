@@ -1,0 +1,50 @@
+"""The messages that a composite message repeats."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from . import _lazy
+from ._base import Message
+from ._errors import IcdError
+
+
+def part(kind: type[_lazy.M], message: Message, index: int) -> _lazy.M:
+    """One of the parts that are of a class. Raises `IcdError` if there is none."""
+    key = kind.NODE, kind.__name__
+    begins = [begin for *one, begin in message.PARTS if tuple(one) == key]
+    if not begins:
+        raise IcdError(f"{type(message).__name__} does not repeat {kind.__name__}")
+    if not 0 <= index < len(begins):
+        raise IcdError(
+            f"{type(message).__name__} repeats {kind.__name__} {len(begins)} times, "
+            f"and has none with the index {index}"
+        )
+    return _read(kind, _values(message), begins[index])
+
+
+def parts(message: Message) -> _lazy.Iterator[Message]:
+    """All of them, in the order of the frame."""
+    values = _values(message)
+    for node, name, begin in message.PARTS:
+        kind: type[Message] = getattr(import_module(f"{__package__}.{node}"), name)
+        yield _read(kind, values, begin)
+
+
+def _values(message: Message) -> dict[int, _lazy.Any]:
+    """The values by the bits at which they begin, each element of an array."""
+    found: dict[int, _lazy.Any] = {}
+    for info in message.FIELDS:
+        value = getattr(message, info.attribute)
+        for one, raw in zip(info.parts, value if info.elements else (value,)):
+            found[one.at] = raw
+    return found
+
+
+def _read(kind: type[_lazy.M], values: dict[int, _lazy.Any], begin: int) -> _lazy.M:
+    """The message whose values begin so many bits after its own places."""
+    found: dict[str, _lazy.Any] = {}
+    for info in kind.FIELDS:
+        raw = tuple(values[begin + one.at] for one in info.parts)
+        found[info.attribute] = raw if info.elements else raw[0]
+    return kind(**found)

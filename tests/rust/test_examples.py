@@ -1,0 +1,59 @@
+"""The examples in the documentation of generated code do what they say."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.rust import harness
+from tests.rust.tools import STD, Toolchain
+
+DECLARED = re.compile(r"^pub (?:struct|enum|trait) (\w+)", re.MULTILINE)
+EXAMPLE = re.compile(r"^ *//[/!] ```$", re.MULTILINE)
+PASSED = re.compile(r"test result: ok. (\d+) passed; 0 failed; 0 ignored")
+
+
+def examples(crate: Path) -> int:
+    """How many there are."""
+    return sum(len(EXAMPLE.findall(file.read_text())) for file in crate.parent.rglob("*.rs")) // 2
+
+
+def compiled(crate: Path, folder: Path) -> Path:
+    """The library, which must not abort, for examples do not."""
+    return Toolchain("default").library(crate, folder, "0", "-C", "panic=unwind", *STD)
+
+
+def test_each_of_them_runs(subject, tmp_path):
+    library = compiled(subject.crate, tmp_path)
+    said = Toolchain("default").tested(subject.crate, library)
+    assert sum(map(int, PASSED.findall(said))) == examples(subject.crate) > 0
+
+
+def test_every_message_enumeration_and_direction_has_one(subject):
+    for node in subject.icd.nodes:
+        for file in (subject.crate.parent / node.name).glob("*.rs"):
+            parts = DECLARED.split(file.read_text())
+            for before, name in zip(parts[:-1:2], parts[1::2], strict=True):
+                comment = before.rsplit("\n\n", 1)[-1]
+                assert name == "Node" or len(EXAMPLE.findall(comment)) == 2, f"{file.name}: {name}"
+
+
+def test_every_node_that_can_be_asked_on_uart_shows_how(shipped):
+    for node in shipped.icd.nodes:
+        text = (shipped.crate.parent / node.name / "mod.rs").read_text()
+        assert ("//! ```" in text) == ("pub use crate::wire::links" in text and "pub enum Telemetry" in text), node.name
+
+
+def test_one_that_says_otherwise_fails(shipped, tmp_path):
+    library = compiled(shipped.crate, tmp_path)
+    text = harness.texts(shipped.icd)["src/cubeacp/estimated_attitude_angles.rs"]
+    start = text.index("/// ```")
+    example = text[start : text.index("#[derive", start)]
+    wrong = tmp_path / "wrong.rs"
+    wrong.write_text(example.replace("12.34)", "12.35)") + "pub struct Shown;\n")
+    with pytest.raises(AssertionError, match=r"12\.35"):
+        Toolchain("default").tested(wrong, library)
+    wrong.write_text(f"{example}pub struct Shown;\n")
+    assert PASSED.search(Toolchain("default").tested(wrong, library))
