@@ -301,7 +301,7 @@ messages:
   - {name: Poll, id: 0x0601, kind: telecommand, length: 0}
   - name: Settings
     set_id: 0x0601
-    get_id: 0x0601
+    get_id: 0x0602
     kind: configuration
     length: 2
     fields:
@@ -309,7 +309,7 @@ messages:
       - {at: 8, bits: 8, name: Rate, type: uint, unit: Hz}
   - name: Other settings
     set_id: 0x0601
-    get_id: 0x0601
+    get_id: 0x0602
     kind: configuration
     length: 2
     fields:

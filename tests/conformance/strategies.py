@@ -8,6 +8,7 @@ from itertools import pairwise
 from hypothesis import strategies as st
 
 from icdgen.icd import exact, formula
+from tests.conformance.sharing import sharing
 
 # Words that mean something to a language, to generated code, or to a template; alone each would be a bad identifier.
 _WORDS = (
@@ -106,7 +107,10 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
             message["length"] += message["reserved"]
         if fields:
             message["fields"] = fields
-        messages.append(message)
+        if "id" in message and draw(st.integers(0, 3)) == 0:
+            messages += draw(sharing(message, names, _fields(enums, orders | own)))
+        else:
+            messages.append(message)
     messages.append(_uses_all(names.one("message"), enums, ids(first_id + 59)))
     node = {"name": name, "title": draw(st.sampled_from(("Plain", 'Odd "*/ {{ \\'))), **orders}
     if ids.bits != 8:

@@ -13,11 +13,12 @@ from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.errata import tellers, told_elsewhere
 from icdgen.describe.named import Named
+from icdgen.describe.shared_ids import Candidate, Under, sharing
 from icdgen.describe.storage import Storage, holding, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
-from icdgen.icd.variants import Variant, common_length, ids_of
+from icdgen.icd.variants import Ids, Variant, common_length, ids_of
 from icdgen.layout import signs
 
 
@@ -229,9 +230,9 @@ class MessageDescription(Named[Message]):
 
     @cached_property
     def comment(self) -> Comment:
-        bits = self._description.node(self.node).log_bits
-        telemetry_id = self.model.telemetry_id
-        return message_comment(self.model, None if telemetry_id is None else bits.get(telemetry_id))
+        node, telemetry_id = self._description.node(self.node), self.model.telemetry_id
+        bit = None if telemetry_id is None else node.log_bits.get(telemetry_id)
+        return message_comment(self.model, bit, sharing(node.known_ids, self.model))
 
 
 class Direction(NamedTuple):
@@ -239,43 +240,6 @@ class Direction(NamedTuple):
 
     kind: str  # "telecommand" | "telemetry"
     messages: tuple[tuple[MessageDescription, str], ...]
-
-
-class Candidate(NamedTuple):
-    """A message under an id, the name of its id there, and what bytes show that a frame of its length is it."""
-
-    message: MessageDescription
-    id_name: str
-    signs: tuple[layout.Sign, ...]
-
-
-class Under(NamedTuple):
-    """The messages of one id, in the order in which a frame is tried with them."""
-
-    id: int
-    candidates: tuple[Candidate, ...]
-    length: int | None  # that all of them have; None if they have several
-
-    @property
-    def first(self) -> Candidate:
-        """One of them, whose constant says the id."""
-        return self.candidates[0]
-
-    @property
-    def is_shared(self) -> bool:
-        """Whether it takes more than the id to know the message."""
-        return len(self.candidates) > 1
-
-    @property
-    def rest(self) -> Candidate | None:
-        """The candidate that is left when the frame is none of the others: nothing but its length may be wrong."""
-        last = self.candidates[-1]
-        return last if not self.is_shared or (self.length is not None and not last.signs) else None
-
-    @property
-    def tried(self) -> tuple[Candidate, ...]:
-        """Those that a frame has to be looked at for."""
-        return self.candidates if self.rest is None else self.candidates[:-1]
 
 
 class NodeDescription:
@@ -331,8 +295,13 @@ class NodeDescription:
         return any(one.is_shared for one in self._ids[direction])
 
     @cached_property
+    def known_ids(self) -> Ids:
+        """All messages that it speaks, by their ids."""
+        return ids_of(self._description.icd, self.model)
+
+    @cached_property
     def _ids(self) -> dict[str, tuple[Under, ...]]:
-        known = ids_of(self._description.icd, self.model)
+        known = self.known_ids
         named = {"telecommand": "set_id", "telemetry": "get_id"}
         return {
             direction: tuple(self._under(other, id, those) for id, those in getattr(known, direction).items())

@@ -67,7 +67,12 @@ def are_told_apart(one: Spoken, other: Spoken) -> bool:
     mine, its = _constants(*one), _constants(*other)
     if any(its.get(place, value) != value for place, value in mine.items()):
         return True
-    return mine.items() < its.items() or its.items() < mine.items()
+    return is_narrower(one, other) or is_narrower(other, one)
+
+
+def is_narrower(one: Spoken, other: Spoken) -> bool:
+    """Whether the first has the length and all constants of the second, and more: its frames are some of those of the second."""
+    return one[0].length == other[0].length and _constants(*one).items() > _constants(*other).items()
 
 
 def common_length(group: Sequence[Variant]) -> int | None:

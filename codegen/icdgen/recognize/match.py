@@ -120,7 +120,7 @@ def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
         if right is not None:
             return wrong_checksum(message, right, data)
     _, first, id, data = next(iter(known.values()))
-    if any(message.length == len(data) for _, message, _, data in known.values()):
+    if len(known) > 1 and any(message.length == len(data) for _, message, _, data in known.values()):
         return none_of([message for _, message, _, _ in known.values()], f"the {len(data)} bytes after the id {id}")
     told = " or ".join(f"`{m.name}` ({describe(m)}) has {m.length} bytes" for _, m, _, _ in known.values())
     return BadLength(
@@ -129,9 +129,10 @@ def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
 
 
 def none_of(messages: Sequence[Message], data: str) -> NotFound:
-    """Data of the length of a message, but with constants of none that has the id."""
-    names = ", ".join(f"`{one.name}`" for one in messages)
-    return NotFound(f"{data} have the constants of none of {names}", "name the message to have them read all the same")
+    """Data that are of none of the messages that share an id."""
+    told = ", ".join(f"`{one.name}` ({describe(one)}, {one.length} bytes)" for one in messages)
+    help = "a byte was damaged, or there are too many; name the message to have them read all the same"
+    return NotFound(f"{data} are like none of {told}, by length and constants", help)
 
 
 def wrong_checksum(message: Message, right: bytes, data: bytes) -> BadLength:

@@ -19,7 +19,7 @@ class MessageLines:
 
 @dataclass(slots=True)
 class NodeLines:
-    """``head``: key of the file's head -> line; ``ids``: direction -> line; ``shared``: of each frame; the others by their names."""
+    """``head``: key of the file's head -> line; ``ids``: direction -> line; ``shared``: in order; the others by name."""
 
     head: dict[str, int] = field(default_factory=dict)
     ids: dict[str, int] = field(default_factory=dict)

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from icdgen.render import Renderer
 
 _SPELLING = (
-    byte_count, call, comment, described, head, like, literal, prose, names.constant, names.enumerator, names.enumerator_of, names.stem,
-    sentence, text_comment, words,
+    byte_count, call, comment, described, head, like, literal, prose, names.constant, names.enumerator,
+    names.enumerator_of, names.stem, sentence, text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}
 """What templates spell names and text with."""

@@ -80,7 +80,7 @@ def _functions() -> dict[str, object]:
 
     found = (
         fields.annotation, fields.declaration, fields.exact, fields.physical, fields.scaled, fields.view_info, fields.whole,
-        fields.whole_comment, names.class_name, physical_comment, nodes.literals, nodes.mapping, text.docstring, text.documented, text.literal,
-        text.prose, text_comment,
+        fields.whole_comment, names.class_name, physical_comment, nodes.literals, nodes.mapping, text.docstring,
+        text.documented, text.literal, text.prose, text_comment,
     )  # fmt: skip
     return {function.__name__: function for function in found}
