@@ -84,9 +84,12 @@ def _same_id(node: Node, first: Use, use: Use, is_linked: bool) -> Fault:
     other = f"{quote(first.source.get('name'))} ({line_of(first.source.at(first.key), place)})"
     message = f"{use.direction} id {use.id} already belongs to {other}{together(node, use.node)}"
     help = f"correct one `{use.key}`"
-    if first.message is not None and use.message is not None and not is_linked:
-        message += ", and nothing tells the two apart"
-        help += ", or give each a field with another `const` at the same place"
+    if first.message is not None and use.message is not None:
+        if not is_linked:
+            message += ", and nothing tells the two apart"
+            help += ", or give each a field with another `const` at the same place"
+        elif _are_told_apart(first, use):
+            message += ", and the links that `protocol` describes tell a message by its id alone"
     return Fault(use.source, place, message, help)
 
 
