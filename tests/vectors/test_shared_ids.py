@@ -50,7 +50,9 @@ def hold(icd: Icd, source: random.Random) -> int:
         for direction, known in zip(("telecommand", "telemetry"), ids_of(icd, node), strict=True):
             for id, group in known.items():
                 frames = [row.frame for row in rows if (row.direction, row.id) == (direction, id)]
-                for frame in [*frames, *(source.randbytes(one.message.length) for one in group)] if len(group) > 1 else ():
+                for frame in (
+                    [*frames, *(source.randbytes(one.message.length) for one in group)] if len(group) > 1 else ()
+                ):
                     assert told(icd, group, frame) == demanded(icd, group, frame), (direction, id, frame.hex())
                     compared += 1
     return compared

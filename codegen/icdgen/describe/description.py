@@ -13,7 +13,7 @@ from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.errata import tellers, told_elsewhere
 from icdgen.describe.named import Named
-from icdgen.describe.shared_ids import Candidate, Under, sharing
+from icdgen.describe.shared_ids import sharing
 from icdgen.describe.storage import Storage, holding, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.identifiers import Identifier
@@ -240,6 +240,43 @@ class Direction(NamedTuple):
 
     kind: str  # "telecommand" | "telemetry"
     messages: tuple[tuple[MessageDescription, str], ...]
+
+
+class Candidate(NamedTuple):
+    """A message under an id, the name of its id there, and what bytes show that a frame of its length is it."""
+
+    message: MessageDescription
+    id_name: str
+    signs: tuple[layout.Sign, ...]
+
+
+class Under(NamedTuple):
+    """The messages of one id, in the order in which a frame is tried with them."""
+
+    id: int
+    candidates: tuple[Candidate, ...]
+    length: int | None  # that all of them have; None if they have several
+
+    @property
+    def first(self) -> Candidate:
+        """One of them, whose constant says the id."""
+        return self.candidates[0]
+
+    @property
+    def is_shared(self) -> bool:
+        """Whether it takes more than the id to know the message."""
+        return len(self.candidates) > 1
+
+    @property
+    def rest(self) -> Candidate | None:
+        """The candidate that is left when the frame is none of the others: nothing but its length may be wrong."""
+        last = self.candidates[-1]
+        return last if not self.is_shared or (self.length is not None and not last.signs) else None
+
+    @property
+    def tried(self) -> tuple[Candidate, ...]:
+        """Those that a frame has to be looked at for."""
+        return self.candidates if self.rest is None else self.candidates[:-1]
 
 
 class NodeDescription:

@@ -1,59 +1,16 @@
-"""The messages of an id, and what is said of one that shares it: with which others, and what shows that a frame is of this one."""
+"""What is said of a message that shares its id: with which others, and what shows that a frame is of this one."""
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
 
 from icdgen.describe.comments import words
 from icdgen.describe.numbers import byte_count, value_text
 from icdgen.icd.model import Message
 from icdgen.icd.variants import Ids, Variant, common_length, is_narrower
-from icdgen.layout import Sign
-
-if TYPE_CHECKING:
-    from icdgen.describe.description import MessageDescription
-
-
-class Candidate(NamedTuple):
-    """A message under an id, the name of its id there, and what bytes show that a frame of its length is it."""
-
-    message: MessageDescription
-    id_name: str
-    signs: tuple[Sign, ...]
-
-
-class Under(NamedTuple):
-    """The messages of one id, in the order in which a frame is tried with them."""
-
-    id: int
-    candidates: tuple[Candidate, ...]
-    length: int | None  # that all of them have; None if they have several
-
-    @property
-    def first(self) -> Candidate:
-        """One of them, whose constant says the id."""
-        return self.candidates[0]
-
-    @property
-    def is_shared(self) -> bool:
-        """Whether it takes more than the id to know the message."""
-        return len(self.candidates) > 1
-
-    @property
-    def rest(self) -> Candidate | None:
-        """The candidate that is left when the frame is none of the others: nothing but its length may be wrong."""
-        last = self.candidates[-1]
-        return last if not self.is_shared or (self.length is not None and not last.signs) else None
-
-    @property
-    def tried(self) -> tuple[Candidate, ...]:
-        """Those that a frame has to be looked at for."""
-        return self.candidates if self.rest is None else self.candidates[:-1]
 
 
 def sharing(ids: Ids, message: Message) -> str:
     """``Shares its id with Ephemeris and Almanac, and has Type 1.`` Empty if it has an id of its own. ``ids``: of its node."""
-    said = {}
+    said: dict[str, None] = {}
     for id, known in ((message.telecommand_id, ids.telecommand), (message.telemetry_id, ids.telemetry)):
         group = known[id] if id is not None else ()
         if len(group) > 1:
