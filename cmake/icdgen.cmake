@@ -1,4 +1,6 @@
-# C and other code from ICDs as a step of the build.
+# C and other code from ICDs as a step of the build. `icdgen --cmake-dir` says in which folder this file lies:
+#
+#   cmake -DCMAKE_MODULE_PATH="$(icdgen --cmake-dir)" ...
 #
 #   include(icdgen)
 #   icdgen_add_library(<target> LANG c ICDS <file>... [OUT <folder>] [TEMPLATES <folder>] [HEADER_ONLY])

@@ -37,7 +37,7 @@ class _Commands(click.Group):
         return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        if args and args[0] not in (*_COMMANDS, "--help", "-h", "--version"):
+        if args and args[0] not in (*_COMMANDS, "--help", "-h", "--version", "--cmake-dir"):
             _refuse_mistyped(args[0])
             args = [_DEFAULT, *args]
         return super().parse_args(ctx, args)
@@ -74,6 +74,14 @@ def _refuse_mistyped(word: str) -> None:
     raise UserError(f"there is no command `{word}`, and no file of that name", meant or "`icdgen --help` lists them")
 
 
+def _show_cmake_dir(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if wanted:
+        from icdgen import shipped
+
+        click.echo(shipped.cmake().as_posix())  # as CMake takes paths everywhere
+        ctx.exit()
+
+
 @click.group(
     cls=_Commands,
     invoke_without_command=True,
@@ -81,6 +89,14 @@ def _refuse_mistyped(word: str) -> None:
     epilog="`icdgen --lang c` is short for `icdgen generate --lang c`. Exit status: 0 clean, 1 findings, 2 misuse.",
 )
 @click.version_option(__version__, prog_name="icdgen")
+@click.option(
+    "--cmake-dir",
+    is_flag=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_show_cmake_dir,
+    help="Show the folder of the CMake module, for CMAKE_MODULE_PATH, and exit.",
+)
 @click.pass_context
 def icdgen(ctx: click.Context) -> None:
     """Code, golden vectors and documentation from validated device ICDs."""

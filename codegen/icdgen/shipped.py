@@ -1,4 +1,4 @@
-"""Where the shipped templates, runtimes, ICDs and the manual lie: in the wheel under ``icdgen/data``, in a checkout at its top."""
+"""Where what is shipped beside the code lies: in the wheel under ``icdgen/data``, in a checkout at its top."""
 
 from __future__ import annotations
 
@@ -29,6 +29,11 @@ def runtimes() -> Path:
 def icds() -> Path:
     """Folder of the shipped ICDs."""
     return _root() / "icd"
+
+
+def cmake() -> Path:
+    """Folder of the CMake module."""
+    return _root() / "cmake"
 
 
 def docs() -> Path:

@@ -22,4 +22,6 @@
 
 #include "support/text.h"
 
+#include "support/field.h"
+
 #endif /* ICDGEN_H */

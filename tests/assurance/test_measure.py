@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
+import sys
 
 import pytest
 
 from icdgen.loading import load
-from tests.assurance.measure import coverage, misra, python_coverage, rest, sizes
+from tests.assurance.measure import coverage, misra, python_coverage, rest, rust_coverage, rust_rest, sizes
 from tests.assurance.measure.measurement import Measured, share
 from tests.assurance.test_pack import make
 
@@ -103,3 +105,43 @@ def test_branches_of_python_are_found():
         4,
     ]
     assert python_coverage.executable("if TYPE_CHECKING:\n    import a\nx = 1\n") == {1, 3}
+
+
+COV = """\
+#!{python}
+import pathlib, sys
+words = sys.argv
+assert words[1:3] == ["show", "--object"] and words[4::2] == ["--instr-profile"] * len(words[4::2])
+assert all(pathlib.Path(one).stat().st_size > 0 for one in (words[3], *words[5::2])) and words[5:]
+source = next(one / "source/rust/src" for one in pathlib.Path(words[3]).parents if (one / "source").is_dir())
+for path in sorted(source.rglob("*.rs")):
+    print(path)
+    print("    1|       |// a comment")
+    print("    2|      {count}|" + "code")
+    print()
+"""
+
+
+@pytest.mark.parametrize(("count", "status"), [(3, 0), (0, 1)])
+def test_lines_of_rust_that_were_not_executed_are_told_and_fail(demo, tmp_path, monkeypatch, capsys, count, status):
+    """The programs are built, run and counted as ever; what reads the counts is no part of Rust and is replaced."""
+    cov = tmp_path / "bin" / "cov"
+    cov.parent.mkdir()
+    cov.write_text(COV.replace("{python}", sys.executable).replace("{count}", str(count)))
+    cov.chmod(0o755)
+    monkeypatch.setenv("PATH", str(cov.parent), prepend=os.pathsep)
+    assert rust_coverage.main(["--out", str(tmp_path / "measured"), str(demo)]) == status
+    rows = of(tmp_path / "measured", "coverage-rust")["rows"]
+    assert ["demo/set_roll.rs", "1", "1" if count else "0"] in rows
+    assert ("demo/set_roll.rs:2: not executed" in capsys.readouterr().err) == bool(status)
+    if not status:
+        out = make(demo, tmp_path / "pack", "--measured", str(tmp_path / "measured"))
+        assert {path.name for path in out.iterdir()} >= {"coverage-rust.html", "coverage-rust.csv"}
+
+
+def test_what_only_rust_has_is_asked_of_every_message_enumeration_and_id(demo):
+    text = rust_rest.source(load([demo]).icd)
+    assert (
+        "message::<icd::demo::EstimatedRoll>(&[0, 0, 0])" in text
+        and "icd::demo::Telemetry::from_bytes(255, &[])" in text
+    )

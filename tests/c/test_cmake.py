@@ -42,6 +42,14 @@ def test_the_example_decodes_a_frame(tmp_path, generator):
     assert run(tmp_path / "decode", "77", "00", status=1) == "no telemetry 77\n"
 
 
+INSTALLED = """\
+cmake_minimum_required(VERSION 3.20)
+project(installed C)
+include(icdgen)
+icdgen_add_library(wheel LANG c ICDS wheel.yaml)
+add_executable(program main.c)
+target_link_libraries(program PRIVATE wheel)
+"""
 USER = """\
 cmake_minimum_required(VERSION 3.20)
 project(user C)
@@ -64,6 +72,17 @@ messages:
     fields:
       - {{at: 0, bits: 8, name: Level, type: uint}}
 """
+
+
+def test_the_command_line_says_where_the_module_is(tmp_path):
+    """As the README has it: a project of somebody who installed icdgen."""
+    folder = run(sys.executable, "-m", "icdgen", "--cmake-dir").strip()
+    (tmp_path / "wheel.yaml").write_text(NODE.format(name="wheel", include="", message="Speed", id=1))
+    (tmp_path / "CMakeLists.txt").write_text(INSTALLED)
+    (tmp_path / "main.c").write_text('#include "wheel.h"\nint main(void) { return 0; }\n')
+    command = f"-DICDGEN_COMMAND={sys.executable};-m;icdgen"
+    run("cmake", f"-DCMAKE_MODULE_PATH={folder}", "-S", tmp_path, "-B", tmp_path / "build", command)
+    run("cmake", "--build", tmp_path / "build")
 
 
 @pytest.mark.parametrize("generator", GENERATORS)

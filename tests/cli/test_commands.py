@@ -99,6 +99,13 @@ class TestDecode:
         )
         assert [field["raw"] for field in data["fields"]] == [-1234, 13]
 
+    @pytest.mark.parametrize("name", ["Estimated Roll", "estimated roll", "estimated_roll"])
+    def test_the_only_node_need_not_be_named(self, icdgen, demo, name):
+        named = icdgen("decode", "demo", "Estimated Roll", "2efb 01", "--icd", demo).out
+        assert icdgen("decode", name, "2efb 01", "--icd", demo).out == named
+        assert icdgen("decode", name, "2e", "fb", "01", "--icd", demo).out == named
+        assert "`Estimated Roll`" in icdgen("decode", "Estimatd Roll", "2efb 01", "--icd", demo).err
+
     def test_a_frame_from_a_file_hex_or_binary_and_from_standard_input(self, icdgen, demo, tmp_path, monkeypatch):
         (tmp_path / "frame.hex").write_text("2e fb\n01\n")
         (tmp_path / "frame.bin").write_bytes(b"\x2e\xfb\x01")
@@ -184,6 +191,10 @@ class TestShow:
 
     def test_a_message_for_people(self, icdgen, demo):
         assert "Roll Angle" in icdgen("show", "demo", "146", "--icd", demo).out
+
+    @pytest.mark.parametrize("item", ["Set Roll", "146", "Mode"])
+    def test_the_only_node_need_not_be_named(self, icdgen, demo, item):
+        assert icdgen("show", item, "--icd", demo).out == icdgen("show", "demo", item, "--icd", demo).out
 
 
 def test_an_icd_with_findings_stops_every_command_with_1(icdgen, demo):

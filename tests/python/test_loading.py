@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import subprocess
 import sys
+from importlib import import_module
+from pathlib import Path
 
 import pytest
 
@@ -33,6 +36,29 @@ def test_a_star_brings_all_that_a_node_has(shipped):
     assert told == "146 True cubeacp"
     missing = "print([n for n in dir(cubeacp) if n[0] != '_' and n not in globals()])"
     assert run(shipped, f"{code}{missing}") == "['TYPE_CHECKING', 'annotations']"
+
+
+def test_every_public_module_lists_its_names_as_a_literal(package):
+    """Type checkers and editors read it there; and all of it can be imported."""
+    files = [file for file in (package.folder / package.name).rglob("*.py") if _is_public(file)]
+    for file in files:
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        (names,) = (ast.literal_eval(one.value) for one in tree.body if _assigns(one, "__all__"))
+        defined = {one.name for one in tree.body if isinstance(one, (ast.ClassDef, ast.FunctionDef))}
+        assert {name for name in defined if name[0] != "_"} <= {*names} and len({*names}) == len(names), file
+        path = ".".join(file.relative_to(package.folder).with_suffix("").parts).removesuffix(".__init__")
+        module = import_module(path)
+        assert all(hasattr(module, name) for name in names), file
+    assert len(files) > len(package.icd.nodes) + 10
+
+
+def _is_public(file: Path) -> bool:
+    """Whether users import from it: the package, its nodes, the wire layer; or it holds the types and links of a node."""
+    return file.name == "_link.py" or (file.parent.name == "_types") != (file.name == "__init__.py")
+
+
+def _assigns(statement: ast.stmt, name: str) -> bool:
+    return isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) == name
 
 
 def test_the_wire_layer_is_loaded_when_it_is_used(shipped):

@@ -37,6 +37,7 @@ def test_views_stand_behind_the_fields_of_a_message(views):
     assert list(message.as_dict()) == own + seen
     assert list(message.as_dict(physical=True))[4] == "across_v"
     assert views.from_dict(message.as_dict()) == views.from_json(message.to_json(physical=True)) == message
+    assert views.from_physical(**message.as_dict(physical=True)) == message
     assert "across" not in repr(message) and message == views(narrow=31) != views(narrow=30)
 
 

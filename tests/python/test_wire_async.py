@@ -101,6 +101,49 @@ def test_a_file_is_downloaded_while_the_loop_goes_on(wire, acp, place):
     assert shown[-1] == (768, 768) and turns > 10
 
 
+class Quiet:
+    """A writer to which nothing is written."""
+
+    def write(self, data):
+        raise AssertionError(data)
+
+
+@pytest.mark.parametrize("turns", range(6))
+def test_a_cancellation_at_the_moment_that_bytes_come_loses_neither(wire, acp, turns):
+    """Bytes come, and some turns of the loop later the task is cancelled, unless it is done by then."""
+
+    async def talk():
+        reader = asyncio.StreamReader()
+        device = wire.AsyncSession(acp.LINK, reader, Quiet())
+        waiting = asyncio.create_task(device.wait())
+        for _ in range(3):
+            await asyncio.sleep(0)
+        reader.feed_data(b"\x1f\x7f\x92\0\1\2\3\4\5\x1f\xff")
+        for _ in range(turns):
+            await asyncio.sleep(0)
+        if waiting.cancel():
+            with pytest.raises(asyncio.CancelledError):
+                await waiting
+            return await device.wait()
+        return await waiting
+
+    (event,) = asyncio.run(talk())
+    assert event.data == bytes((146, *range(6)))
+
+
+def test_a_cancelled_session_leaves_the_streams_to_whoever_reads_next(wire, acp):
+    async def talk():
+        reader = asyncio.StreamReader()
+        device = wire.AsyncSession(acp.LINK, reader, Quiet())
+        with pytest.raises(asyncio.TimeoutError):
+            await asyncio.wait_for(device.wait(), 0.01)
+        assert not [task for task in asyncio.all_tasks() if task is not asyncio.current_task()]
+        reader.feed_data(b"free")
+        return await reader.read(4)
+
+    assert asyncio.run(talk()) == b"free"
+
+
 def test_a_request_that_is_cancelled_leaves_the_session_free(wire, acp, place):
     async def silent(reader, writer):
         await reader.read()

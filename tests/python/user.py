@@ -12,6 +12,7 @@ from icdgen_messages.cubeacp import (
     decode_telecommand,
     decode_telemetry,
 )
+from icdgen_messages.cubewheel import *  # noqa: F403
 from icdgen_messages.wire import AsyncSession, Client, Done, Download, Event, Refused, Session, UartDecoder
 
 
@@ -41,6 +42,11 @@ def commands() -> list[bytes]:
     field: FieldInfo = CurrentAdcsState.FIELDS[number]
     print(label, field.unit, field.scale, state.as_dict(physical=True), AdcsState.LENGTH)
     return [angles.to_bytes(), again.to_bytes(), Reset().to_bytes(), decode_telecommand(1, b"\x5a").to_bytes()]
+
+
+def turned(data: bytes) -> float:
+    """The speed of a wheel, whose type came by a star."""
+    return WheelSpeed.from_bytes(data).wheel_speed  # noqa: F405
 
 
 def columns(data: bytes) -> float:

@@ -78,10 +78,14 @@ def get(name: str) -> Backend:
         return _load(known[name])
     found = plug_ins()
     if name not in found:
-        there = ", ".join(sorted({*_BUILT_IN, *found}))
+        from difflib import get_close_matches
+
+        there = sorted({*_BUILT_IN, *found})
+        close = get_close_matches(name.lower(), there, 1) or [one for one in there if one.startswith(name.lower())]
+        help = "a backend of another package must be installed beside icdgen"
         raise UnknownBackend(
-            f"there is no backend `{name}`; there are: {there}",
-            "a backend of another package must be installed beside icdgen",
+            f"there is no backend `{name}`; there are: {', '.join(there)}",
+            f"did you mean `{close[0]}`?" if close else help,
         )
     from icdgen.backends.plug_in import PlugIn
 

@@ -29,18 +29,20 @@ def exploded(head: str, items: Sequence[str], tail: str, indent: str = "", last:
     return f"{head}\n{indent}{STEP}{rows}{last}" + (f"\n{indent}{tail}" if last else tail)
 
 
-def wrapped(text: str, width: int, hang: str = "") -> list[str]:
-    """The words of a text on lines of at most ``width`` characters, as far as words allow; all but the first after ``hang``."""
+def wrapped(text: str, width: int) -> list[str]:
+    """The words of a text on lines of at most ``width`` characters, as far as words allow."""
     if len(text) <= width:
         return [text]
-    lines, line = [], ""
-    for word in text.split():
-        if line.strip() and len(line) + 1 + len(word) > width:
-            lines.append(line)
-            line = hang + word
-        else:
-            line = f"{line} {word}" if line else word
-    return [*lines, line]
+    rest, lines = " ".join(text.split()), []
+    while len(rest) > width:
+        end = rest.rfind(" ", 0, width + 1)
+        if end < 0:
+            end = rest.find(" ")  # behind a word that is longer than a line
+        if end < 0:
+            break
+        lines.append(rest[:end])
+        rest = rest[end + 1 :]
+    return [*lines, rest]
 
 
 def commented(paragraphs: Iterable[str], width: int, start: str, is_spaced: bool = False) -> list[str]:

@@ -34,8 +34,8 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
 
     FRAME may have its framing, id and checksum or not; it may be - for standard input, @FILE or the name of a file, text or
     bytes as they came over the line, with any number of frames. NODE (a name) and MESSAGE (an id or a name) are found where
-    the frame tells them; what is ambiguous is said. JSON is an object, of several frames an array. Exit status: 1 if a field
-    that must hold a constant holds something else.
+    the frame tells them; what is ambiguous is said. NODE may be left out where there is one only. JSON is an object, of
+    several frames an array. Exit status: 1 if a field that must hold a constant holds something else.
     """
     from icdgen import recognize
 
@@ -49,13 +49,19 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
 def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | None, str | None, str | bytes]:
     """Node, message and frame: a word is the node or the message if there is one of that name."""
     from icdgen.values.errors import Ambiguous, NotFound
-    from icdgen.values.find import find_message, find_node, find_sharing
+    from icdgen.values.find import by_name, find_message, find_node, find_sharing, only_node
 
     node = message = None
+    only = only_node(icd)
     if len(words) == 1 and words[0].lower() in {n.name for n in icd.nodes}:
         raise UserError(f"there is no frame for {words[0]}", "give it after the node, or - for standard input")
-    if len(words) > 1 and (words[0].lower() in {n.name for n in icd.nodes} or not _is_frame(words)):
-        node = find_node(icd, words.pop(0)).name
+    if len(words) > 1:
+        if words[0].lower() in {n.name for n in icd.nodes}:
+            node = find_node(icd, words.pop(0)).name
+        elif only and not _is_bytes(words[0]) and by_name(icd.messages_of(only), words[0], only.vocabulary):
+            node = only.name
+        elif not _is_frame(words):
+            node = only.name if only else find_node(icd, words.pop(0)).name
     if node is not None and len(words) > 1:
         try:
             find_message(icd, node, words[0], kind)

@@ -22,6 +22,8 @@ from icdgen.commands.common import icd_option, load_or_exit
 def show(node: str | None, item: str | None, icds: tuple[Path, ...], kind: str | None, form: str) -> None:
     """Show the nodes, the messages of NODE, or one ITEM of it: a message by id or name, an enumeration, an erratum.
 
+    NODE may be left out where there is one only.
+
     --format json prints everything, in a stable form for programs (schema: show.schema.json in the package).
     """
     from icdgen import tables

@@ -105,10 +105,14 @@ def field_comment(field: Field, told: Mapping[str, str]) -> Comment:
     if field.const is not None:
         facts.append(f"Always {value_text(field.const)}.")
     if field.limits is not None:
-        facts.append(f"Must be {limits_text(bounds(field.limits), field)}.")
+        facts.append(_limits(field))
     facts += (f"{value_text(special.value)}: {sentence(special.meaning)}" for special in field.special)
     head = f"{words(field.name)}: {_place(field)}{_meaning(field)}."
     return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, told)
+
+
+def _limits(field: Field) -> str:
+    return f"Must be {limits_text(bounds(field.limits), field)}, which setters do not check."
 
 
 def limits_text(limits: Iterable[Bound], field: Field) -> str:
@@ -164,5 +168,5 @@ def text_comment(field: Field) -> str:
 
 def physical_comment(field: Field, scaled: Steps) -> str:
     """What the physical value is, its range and its limits."""
-    limits = f" Must be {limits_text(bounds(field.limits), field)}." if field.limits is not None else ""
+    limits = f" {_limits(field)}" if field.limits is not None else ""
     return f"{physical_name(field)}: {span_text(scaled)}.{limits}"

@@ -6,11 +6,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 from icdgen.describe.description import Description, FieldDescription
+from icdgen.frozen import dataclass
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol import facts as protocol_facts
 from icdgen.protocol.declared import Fact

@@ -221,7 +221,7 @@ class _Builder:
         if _HEX.match(text):
             return int(text, 16) if len(text) < 40 else text
         if _DECIMAL.match(text):
-            return float(text) if len(text) < 40 else text
+            return _number(text) if len(text) < 40 else text
         if _TREACHEROUS.match(text) and text not in (".", "-"):
             help = f'write "{text}" in quotes if it is text, a plain decimal or 0x number if it is a number'
             self.add("ICD003", f"YAML readers disagree about what `{text}` is", event, help)
@@ -242,6 +242,12 @@ class _Builder:
 
     def add(self, code: str, message: str, event: Event, help: str) -> None:
         self.findings.append(Finding(code, message, place_of((self.name, event.start_mark, event.end_mark)), help))
+
+
+def _number(text: str) -> int | float:
+    """A decimal; ``4.0`` is 4, as it is a whole number by JSON Schema, too."""
+    whole, _, rest = text.partition(".")
+    return float(text) if rest.strip("0") else int(whole)
 
 
 def _after(name: str, before: str) -> Place:

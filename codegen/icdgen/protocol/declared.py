@@ -9,10 +9,12 @@ are all made from that line. After a change, `python -m scripts.protocol_facts` 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from enum import Enum, auto
 from functools import cache
 from typing import Any, Final
+
+from icdgen.frozen import dataclass
 
 BYTE, U16, U32 = 0xFF, 0xFFFF, 0xFFFF_FFFF
 MOST_MS = 0x7FFF_FFFF  # of a time: half of what 32 bits hold, so that times can be compared where clocks run over

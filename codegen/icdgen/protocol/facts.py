@@ -5,10 +5,10 @@ A part that the ICD does not describe is None. Times are milliseconds, sizes byt
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import ceil
 from typing import TypeVar
 
+from icdgen.frozen import dataclass
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol.reading import Assumption, Reader
 from icdgen.protocol.sections import (

@@ -6,10 +6,11 @@ A part stands for a section of the ICD (`PLACES`). Times are milliseconds, sizes
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from icdgen import codec
+from icdgen.frozen import dataclass
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message, Node
 from icdgen.protocol.declared import (
     BYTE,

@@ -13,7 +13,7 @@ from icdgen.icd.wire_ids import DEFAULT_BITS, size
 from icdgen.show.fields import field_table
 from icdgen.tables import Column, clean, render
 from icdgen.values.errors import NotFound
-from icdgen.values.find import by_name, describe, find_message, find_node
+from icdgen.values.find import by_name, describe, find_message, find_named, find_node
 
 _NODES = [
     Column("node", fixed=True),
@@ -43,13 +43,16 @@ _MESSAGES = [
 def to_text(icd: Icd, selection: Sequence[str] = (), width: int | None = None, kind: str | None = None) -> str:
     """Without a selection the nodes; of one node its messages; of a node and a name or id that message.
 
-    The second name may also be an enumeration or an erratum's id. ``width`` is that of the terminal, None for a pipe.
+    The second name may also be an enumeration or an erratum's id; the node need not be named if it is the only one.
+    ``width`` is that of the terminal, None for a pipe.
     Raises `NotFound` or `Ambiguous`.
     """
     if not selection:
         return _nodes(icd, width)
-    node = find_node(icd, selection[0])
-    return _one(icd, node, selection[1], width, kind) if len(selection) > 1 else _node(icd, node, width, kind)
+    if len(selection) > 1:
+        return _one(icd, find_node(icd, selection[0]), selection[1], width, kind)
+    node, items = find_named(icd, selection)
+    return _one(icd, node, items[0], width, kind) if items else _node(icd, node, width, kind)
 
 
 def _nodes(icd: Icd, width: int | None) -> str:

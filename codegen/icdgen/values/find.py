@@ -42,6 +42,12 @@ def is_part(icd: Icd, node: Node) -> bool:
     return any(node.name in other.includes for other in icd.nodes)
 
 
+def only_node(icd: Icd) -> Node | None:
+    """The node that need not be named, as there is no other."""
+    alone = [node for node in icd.nodes if not is_part(icd, node)]
+    return alone[0] if len(alone) == 1 else None
+
+
 def find_named(icd: Icd, words: Sequence[str]) -> tuple[Node, list[str]]:
     """The node that the first word names, and the other words; where there is one node only, it need not be named.
 
@@ -49,12 +55,13 @@ def find_named(icd: Icd, words: Sequence[str]) -> tuple[Node, list[str]]:
     """
     if words and words[0].strip().lower() in {node.name for node in icd.nodes}:
         return find_node(icd, words[0]), list(words[1:])
-    alone = [node for node in icd.nodes if not is_part(icd, node)]
-    if len(alone) == 1:
-        return alone[0], list(words)
+    only = only_node(icd)
+    if only is not None:
+        return only, list(words)
     if words:
         return find_node(icd, words[0]), []  # says that there is none, and which was probably meant
-    raise NotFound("it is not said which node is meant", f"nodes: {', '.join(node.name for node in alone)}")
+    names = ", ".join(node.name for node in icd.nodes if not is_part(icd, node))
+    raise NotFound("it is not said which node is meant", f"nodes: {names}")
 
 
 def find_frame(icd: Icd, words: Sequence[str]) -> tuple[Node, str, list[str]]:

@@ -11,12 +11,12 @@
  * The checksum of no parameters is 0xFF, so 07 FF is Deploy Magnetometer Boom with a time-out of 255 s. The ids are the
  * vendor's and stay. The bootloader knows no checksums, so that none is sent over its link; who sends them to CubeACP
  * must know that CubeACP runs.
- * @note Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The two programs
- * answer on the same buses and addresses. These ids are a different message in each, of another length in three cases,
- * so who is answering must be known first.
- * @note Note BOOT-005 (certain): Clear Error Flags and Clear Errors. The bootloader clears with Clear Error Flags, the
+ * @note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The two programs answer
+ * on the same buses and addresses. These ids are a different message in each, of another length in three cases, so who
+ * is answering must be known first.
+ * @note BOOT-005 (certain): Clear Error Flags and Clear Errors. The bootloader clears with Clear Error Flags, the
  * control program with Clear Errors, and the protocol section names the second for both.
- * @note Note BOOT-006 (open): What the bootloader does with telecommands of the control program. The ids of the control
+ * @note BOOT-006 (open): What the bootloader does with telecommands of the control program. The ids of the control
  * program are unknown to the bootloader, but four are known with another meaning; telecommand 7 meant to deploy a boom
  * clears flags. The reverse is worse: 7 sent to clear flags deploys the boom.
  */
@@ -64,6 +64,13 @@ static inline icd_status_t bootloader_clear_error_flags_encode(
     (void)message;
     (void)buffer;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *bootloader_clear_error_flags_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
 }
 
 #endif /* BOOTLOADER_CLEAR_ERROR_FLAGS_H */

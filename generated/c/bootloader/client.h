@@ -749,7 +749,7 @@ static inline icd_status_t bootloader_send_copy_to_internal_flash(
         context);
 }
 
-/** Requests Identification. */
+/** Requests Identification, as icd_client_request(). */
 static inline icd_status_t bootloader_request_identification(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
@@ -764,7 +764,7 @@ static inline icd_status_t bootloader_receive_identification(common_identificati
     return common_identification_decode(message, event->data, event->length);
 }
 
-/** Requests Boot And Running Program Status. */
+/** Requests Boot And Running Program Status, as icd_client_request(). */
 static inline icd_status_t bootloader_request_boot_and_running_program_status(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
@@ -781,7 +781,7 @@ static inline icd_status_t bootloader_receive_boot_and_running_program_status(
     return common_boot_and_running_program_status_decode(message, event->data, event->length);
 }
 
-/** Requests Boot Index and Status. */
+/** Requests Boot Index and Status, as icd_client_request(). */
 static inline icd_status_t bootloader_request_boot_index_and_status(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
@@ -798,7 +798,7 @@ static inline icd_status_t bootloader_receive_boot_index_and_status(
     return common_boot_index_and_status_decode(message, event->data, event->length);
 }
 
-/** Requests Last Logged Event. */
+/** Requests Last Logged Event, as icd_client_request(). */
 static inline icd_status_t bootloader_request_last_logged_event(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
@@ -815,7 +815,7 @@ static inline icd_status_t bootloader_receive_last_logged_event(
     return common_last_logged_event_decode(message, event->data, event->length);
 }
 
-/** Requests SRAM Latchup counters. */
+/** Requests SRAM Latchup counters, as icd_client_request(). */
 static inline icd_status_t bootloader_request_sram_latchup_counters(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
@@ -832,7 +832,7 @@ static inline icd_status_t bootloader_receive_sram_latchup_counters(
     return common_sram_latchup_counters_decode(message, event->data, event->length);
 }
 
-/** Requests EDAC Error Counters. */
+/** Requests EDAC Error Counters, as icd_client_request(). */
 static inline icd_status_t bootloader_request_edac_error_counters(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
@@ -849,7 +849,7 @@ static inline icd_status_t bootloader_receive_edac_error_counters(
     return common_edac_error_counters_decode(message, event->data, event->length);
 }
 
-/** Requests Communication Status. */
+/** Requests Communication Status, as icd_client_request(). */
 static inline icd_status_t bootloader_request_communication_status(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
@@ -866,7 +866,7 @@ static inline icd_status_t bootloader_receive_communication_status(
     return common_communication_status_decode(message, event->data, event->length);
 }
 
-/** Requests SD card format/erase progress. */
+/** Requests SD card format/erase progress, as icd_client_request(). */
 static inline icd_status_t bootloader_request_sd_card_format_erase_progress(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
@@ -883,7 +883,7 @@ static inline icd_status_t bootloader_receive_sd_card_format_erase_progress(
     return common_sd_card_format_erase_progress_decode(message, event->data, event->length);
 }
 
-/** Requests Telecommand Acknowledge. */
+/** Requests Telecommand Acknowledge, as icd_client_request(). */
 static inline icd_status_t bootloader_request_telecommand_acknowledge(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
@@ -900,7 +900,7 @@ static inline icd_status_t bootloader_receive_telecommand_acknowledge(
     return common_telecommand_acknowledge_decode(message, event->data, event->length);
 }
 
-/** Requests File Download Buffer with File Contents. */
+/** Requests File Download Buffer with File Contents, as icd_client_request(). */
 static inline icd_status_t bootloader_request_file_download_buffer_with_file_contents(
     bootloader_client_t *client,
     uint32_t now)
@@ -922,7 +922,7 @@ static inline icd_status_t bootloader_receive_file_download_buffer_with_file_con
     return common_file_download_buffer_with_file_contents_decode(message, event->data, event->length);
 }
 
-/** Requests Download Block Ready. */
+/** Requests Download Block Ready, as icd_client_request(). */
 static inline icd_status_t bootloader_request_download_block_ready(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
@@ -939,7 +939,7 @@ static inline icd_status_t bootloader_receive_download_block_ready(
     return common_download_block_ready_decode(message, event->data, event->length);
 }
 
-/** Requests File Information. */
+/** Requests File Information, as icd_client_request(). */
 static inline icd_status_t bootloader_request_file_information(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
@@ -956,7 +956,7 @@ static inline icd_status_t bootloader_receive_file_information(
     return common_file_information_decode(message, event->data, event->length);
 }
 
-/** Requests Initialize Upload Complete. */
+/** Requests Initialize Upload Complete, as icd_client_request(). */
 static inline icd_status_t bootloader_request_initialize_upload_complete(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
@@ -973,7 +973,7 @@ static inline icd_status_t bootloader_receive_initialize_upload_complete(
     return common_initialize_upload_complete_decode(message, event->data, event->length);
 }
 
-/** Requests Upload Block Complete. */
+/** Requests Upload Block Complete, as icd_client_request(). */
 static inline icd_status_t bootloader_request_upload_block_complete(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
@@ -990,7 +990,7 @@ static inline icd_status_t bootloader_receive_upload_block_complete(
     return common_upload_block_complete_decode(message, event->data, event->length);
 }
 
-/** Requests Block Checksum. */
+/** Requests Block Checksum, as icd_client_request(). */
 static inline icd_status_t bootloader_request_block_checksum(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
@@ -1005,7 +1005,7 @@ static inline icd_status_t bootloader_receive_block_checksum(common_block_checks
     return common_block_checksum_decode(message, event->data, event->length);
 }
 
-/** Requests Cache enabled state. */
+/** Requests Cache enabled state, as icd_client_request(). */
 static inline icd_status_t bootloader_request_cache_enabled_state(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
@@ -1022,7 +1022,7 @@ static inline icd_status_t bootloader_receive_cache_enabled_state(
     return common_cache_enabled_state_decode(message, event->data, event->length);
 }
 
-/** Requests SRAM Scrub Parameters. */
+/** Requests SRAM Scrub Parameters, as icd_client_request(). */
 static inline icd_status_t bootloader_request_sram_scrub_parameters(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
@@ -1039,7 +1039,7 @@ static inline icd_status_t bootloader_receive_sram_scrub_parameters(
     return common_sram_scrub_parameters_decode(message, event->data, event->length);
 }
 
-/** Requests Current Unix Time. */
+/** Requests Current Unix Time, as icd_client_request(). */
 static inline icd_status_t bootloader_request_current_unix_time(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
@@ -1056,7 +1056,7 @@ static inline icd_status_t bootloader_receive_current_unix_time(
     return common_current_unix_time_decode(message, event->data, event->length);
 }
 
-/** Requests Unix Time Save to Flash. */
+/** Requests Unix Time Save to Flash, as icd_client_request(). */
 static inline icd_status_t bootloader_request_unix_time_save_to_flash(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
@@ -1073,7 +1073,7 @@ static inline icd_status_t bootloader_receive_unix_time_save_to_flash(
     return common_unix_time_save_to_flash_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 1. */
+/** Requests Hole Map 1, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_1(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
@@ -1088,7 +1088,7 @@ static inline icd_status_t bootloader_receive_hole_map_1(common_hole_map_1_t *me
     return common_hole_map_1_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 2. */
+/** Requests Hole Map 2, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_2(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
@@ -1103,7 +1103,7 @@ static inline icd_status_t bootloader_receive_hole_map_2(common_hole_map_2_t *me
     return common_hole_map_2_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 3. */
+/** Requests Hole Map 3, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_3(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
@@ -1118,7 +1118,7 @@ static inline icd_status_t bootloader_receive_hole_map_3(common_hole_map_3_t *me
     return common_hole_map_3_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 4. */
+/** Requests Hole Map 4, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_4(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
@@ -1133,7 +1133,7 @@ static inline icd_status_t bootloader_receive_hole_map_4(common_hole_map_4_t *me
     return common_hole_map_4_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 5. */
+/** Requests Hole Map 5, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_5(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
@@ -1148,7 +1148,7 @@ static inline icd_status_t bootloader_receive_hole_map_5(common_hole_map_5_t *me
     return common_hole_map_5_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 6. */
+/** Requests Hole Map 6, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_6(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
@@ -1163,7 +1163,7 @@ static inline icd_status_t bootloader_receive_hole_map_6(common_hole_map_6_t *me
     return common_hole_map_6_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 7. */
+/** Requests Hole Map 7, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_7(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
@@ -1178,7 +1178,7 @@ static inline icd_status_t bootloader_receive_hole_map_7(common_hole_map_7_t *me
     return common_hole_map_7_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 8. */
+/** Requests Hole Map 8, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_8(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);
@@ -1193,7 +1193,7 @@ static inline icd_status_t bootloader_receive_hole_map_8(common_hole_map_8_t *me
     return common_hole_map_8_decode(message, event->data, event->length);
 }
 
-/** Requests Bootloader State. */
+/** Requests Bootloader State, as icd_client_request(). */
 static inline icd_status_t bootloader_request_state(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, BOOTLOADER_STATE_ID);
@@ -1208,7 +1208,7 @@ static inline icd_status_t bootloader_receive_state(bootloader_state_t *message,
     return bootloader_state_decode(message, event->data, event->length);
 }
 
-/** Requests Program Information. */
+/** Requests Program Information, as icd_client_request(). */
 static inline icd_status_t bootloader_request_program_information(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, BOOTLOADER_PROGRAM_INFORMATION_ID);
@@ -1225,7 +1225,7 @@ static inline icd_status_t bootloader_receive_program_information(
     return bootloader_program_information_decode(message, event->data, event->length);
 }
 
-/** Requests Copy To Internal Flash Progress. */
+/** Requests Copy To Internal Flash Progress, as icd_client_request(). */
 static inline icd_status_t bootloader_request_copy_to_internal_flash_progress(bootloader_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_ID);

@@ -24,15 +24,15 @@
 typedef struct {
     /**
      * Source Program Index: bits 0 to 7.
-     * @note Note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense. The source may be the
-     * internal program itself or the bootloader. The result is not described.
+     * @note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense. The source may be the internal
+     * program itself or the bootloader. The result is not described.
      */
     bootloader_programs_list_t source_program_index;
     /**
      * Bootloader overwrite flag: bits 8 to 15, raw 0 to 255. To be used with great caution. 90 (0x5A): overwrite the
      * boot segment.
-     * @note Note BOOT-012 (likely): Bootloader overwrite flag is a magic number. A field of 8 bits is called a flag and
-     * acts at one value. Which value to send otherwise is not said; anything else is assumed to leave the boot segment
+     * @note BOOT-012 (likely): Bootloader overwrite flag is a magic number. A field of 8 bits is called a flag and acts
+     * at one value. Which value to send otherwise is not said; anything else is assumed to leave the boot segment
      * alone.
      */
     uint8_t overwrite;
@@ -70,6 +70,17 @@ static inline icd_status_t bootloader_copy_to_internal_flash_encode(
     buffer[0] = message->source_program_index;
     buffer[1] = message->overwrite;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *bootloader_copy_to_internal_flash_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Source Program Index", "", 0u, 8u, 1u, NULL, 0u},
+        {"Bootloader overwrite flag", "", 8u, 8u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* BOOTLOADER_COPY_TO_INTERNAL_FLASH_H */

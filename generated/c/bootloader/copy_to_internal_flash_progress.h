@@ -6,10 +6,10 @@
 /**
  * @file
  * Copy To Internal Flash Progress: telemetry 233, 1 byte. Table 71.
- * @note Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The two programs
- * answer on the same buses and addresses. These ids are a different message in each, of another length in three cases,
- * so who is answering must be known first.
- * @note Note BOOT-020 (open): Progress frame without progress. The frame tells busy and error, not how far the copy has
+ * @note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The two programs answer
+ * on the same buses and addresses. These ids are a different message in each, of another length in three cases, so who
+ * is answering must be known first.
+ * @note BOOT-020 (open): Progress frame without progress. The frame tells busy and error, not how far the copy has
  * come; and no time-out is suggested for it, although 2 s are for reading.
  */
 
@@ -60,6 +60,17 @@ static inline icd_status_t bootloader_copy_to_internal_flash_progress_encode(
     }
     buffer[0] = ICDGEN_U8(message->busy | (message->error << 1));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *bootloader_copy_to_internal_flash_progress_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Busy", "", 0u, 1u, 1u, NULL, 0u},
+        {"Error", "", 1u, 1u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_H */

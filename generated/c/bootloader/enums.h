@@ -13,7 +13,7 @@
 
 /**
  * BootSetProgramsList: an enumeration. Table 63.
- * @note Note BOOT-009 (certain): Three enumerations of program places. BootSetProgramsList, ProgramsList and
+ * @note BOOT-009 (certain): Three enumerations of program places. BootSetProgramsList, ProgramsList and
  * BootProgramsList overlap. The internal program is 1 in all, the bootloader 0 in one and 2 in another, where 2 is
  * EEPROM in the first.
  */
@@ -41,7 +41,7 @@ typedef uint8_t bootloader_programs_list_t;
 enum {
     /**
      * Bootloader (0).
-     * @note Note BOOT-009 (certain): Three enumerations of program places. BootSetProgramsList, ProgramsList and
+     * @note BOOT-009 (certain): Three enumerations of program places. BootSetProgramsList, ProgramsList and
      * BootProgramsList overlap. The internal program is 1 in all, the bootloader 0 in one and 2 in another, where 2 is
      * EEPROM in the first.
      */
@@ -50,10 +50,10 @@ enum {
     BOOTLOADER_PROGRAMS_LIST_INTERNAL_FLASH_PROGRAM = 1,
     /**
      * EEPROM (2).
-     * @note Note BOOT-009 (certain): see Bootloader.
-     * @note Note BOOT-010 (open): ProgramsList: places that are no flash programs. The text knows seven areas of
-     * external flash and the internal one. EEPROM and eight files of the SD card are listed too; whether they can be
-     * read or copied from is not said.
+     * @note BOOT-009 (certain): see Bootloader.
+     * @note BOOT-010 (open): ProgramsList: places that are no flash programs. The text knows seven areas of external
+     * flash and the internal one. EEPROM and eight files of the SD card are listed too; whether they can be read or
+     * copied from is not said.
      */
     BOOTLOADER_PROGRAMS_LIST_EEPROM = 2,
     /** External Flash Program 1 (3). */
@@ -72,42 +72,42 @@ enum {
     BOOTLOADER_PROGRAMS_LIST_EXTERNAL_FLASH_PROGRAM_7 = 9,
     /**
      * SD User file 1 (10).
-     * @note Note BOOT-010 (open): see EEPROM.
+     * @note BOOT-010 (open): see EEPROM.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_1 = 10,
     /**
      * SD User file 2 (11).
-     * @note Note BOOT-010 (open): see EEPROM.
+     * @note BOOT-010 (open): see EEPROM.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_2 = 11,
     /**
      * SD User file 3 (12).
-     * @note Note BOOT-010 (open): see EEPROM.
+     * @note BOOT-010 (open): see EEPROM.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_3 = 12,
     /**
      * SD User file 4 (13).
-     * @note Note BOOT-010 (open): see EEPROM.
+     * @note BOOT-010 (open): see EEPROM.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_4 = 13,
     /**
      * SD User file 5 (14).
-     * @note Note BOOT-010 (open): see EEPROM.
+     * @note BOOT-010 (open): see EEPROM.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_5 = 14,
     /**
      * SD User file 6 (15).
-     * @note Note BOOT-010 (open): see EEPROM.
+     * @note BOOT-010 (open): see EEPROM.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_6 = 15,
     /**
      * SD User file 7 (16).
-     * @note Note BOOT-010 (open): see EEPROM.
+     * @note BOOT-010 (open): see EEPROM.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_7 = 16,
     /**
      * SD User file 8 (17).
-     * @note Note BOOT-010 (open): see EEPROM.
+     * @note BOOT-010 (open): see EEPROM.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_8 = 17
 };

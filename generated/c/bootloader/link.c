@@ -186,6 +186,7 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
     };
 #endif
     static const icd_crc_form_t crc16 = {
+        /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, table */
         16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, ICDGEN_TABLE(crc16_table),
     };
     static const icd_time_form_t packed_time = {
@@ -427,36 +428,36 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
      * it reads 3 Failed boot attempts before the third, and at that value no start is said to follow.
      */
     static const icd_link_t link = {
-        nodes,
+        nodes, /* whose messages */
         2u, /* how many */
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        telecommands,
-        telemetry,
+        telecommands, /* what can be sent */
+        telemetry, /* what can be requested */
         31u, 30u, /* how many */
         23u, 23u, 23u, /* longest telecommand, reply, any */
         22u, /* longest without id and checksum */
         110, /* node type */
         3, /* interface version */
-        {1000u, 3u, 20u, 5000u},
-        errors,
+        {1000u, 3u, 20u, 5000u}, /* ms for a reply, retries, ms between polls, ms of polling */
+        errors, /* error codes */
         5u, 0u, /* how many; no error */
-        &framing,
-        &acknowledge,
+        &framing, /* framing of the UART */
+        &acknowledge, /* acknowledges on the UART */
         87, /* I2C address */
         5000, /* boot time in ms */
-        &polled,
-        &can,
-        NULL,
-        &crc16,
-        NULL,
-        NULL,
-        NULL,
-        &packed_time,
-        &index_entry,
-        &hole_map,
-        &files,
+        &polled, /* what is polled for an acknowledge */
+        &can, /* CAN */
+        NULL, /* checksums of messages */
+        &crc16, /* CRC of files */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        NULL, /* unsolicited logs */
+        &packed_time, /* packed times */
+        &index_entry, /* index of files */
+        &hole_map, /* hole map */
+        &files, /* file transfer */
         &list, /* list */
         &download, /* download */
         &upload, /* upload */

@@ -7,9 +7,9 @@
  * @file
  * Program Information: telemetry 232, 8 bytes. Table 70.
  * Answer to Read Program Information, to be polled until it is not busy.
- * @note Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The two programs
- * answer on the same buses and addresses. These ids are a different message in each, of another length in three cases,
- * so who is answering must be known first.
+ * @note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The two programs answer
+ * on the same buses and addresses. These ids are a different message in each, of another length in three cases, so who
+ * is answering must be known first.
  */
 
 #include "../icdgen.h"
@@ -24,9 +24,9 @@
 typedef struct {
     /**
      * Program Index: bits 0 to 7.
-     * @note Note BOOT-018 (open): Read Program Information: whether the answer belongs to the request. The request and
-     * the frame each have a program index. Whether the frame still shows the previous one while busy, and how a wrong
-     * index shows, is not said.
+     * @note BOOT-018 (open): Read Program Information: whether the answer belongs to the request. The request and the
+     * frame each have a program index. Whether the frame still shows the previous one while busy, and how a wrong index
+     * shows, is not said.
      */
     bootloader_programs_list_t program_index;
     /** Busy: bit 8. Still reading. */
@@ -35,13 +35,13 @@ typedef struct {
      * File Size: bits 16 to 47, raw 0 to 4294967295, in byte.
      * @note Erratum BOOT-021 (certain): Size of a program has its unit in words only. Bytes stand in the description,
      * not as a unit of measure.
-     * @note Note BOOT-019 (open): Program Information: what the checksum covers. File size and checksum are given for a
+     * @note BOOT-019 (open): Program Information: what the checksum covers. File size and checksum are given for a
      * place in flash, which has no file. Whether the checksum runs over the size or over the whole area is not said.
      */
     uint32_t file_size;
     /**
      * Checksum: bits 48 to 63, raw 0 to 65535. CRC-16.
-     * @note Note BOOT-019 (open): see File Size.
+     * @note BOOT-019 (open): see File Size.
      */
     uint16_t checksum;
 } bootloader_program_information_t;
@@ -82,6 +82,19 @@ static inline icd_status_t bootloader_program_information_encode(
     icdgen_store_u32le(&buffer[2], message->file_size);
     icdgen_store_u16le(&buffer[6], message->checksum);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *bootloader_program_information_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Program Index", "", 0u, 8u, 1u, NULL, 0u},
+        {"Busy", "", 8u, 1u, 1u, NULL, 0u},
+        {"File Size", "byte", 16u, 32u, 1u, NULL, 0u},
+        {"Checksum", "", 48u, 16u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
 }
 
 #endif /* BOOTLOADER_PROGRAM_INFORMATION_H */

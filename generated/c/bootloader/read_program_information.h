@@ -55,4 +55,14 @@ static inline icd_status_t bootloader_read_program_information_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *bootloader_read_program_information_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Program Index", "", 0u, 8u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
+}
+
 #endif /* BOOTLOADER_READ_PROGRAM_INFORMATION_H */

@@ -8,9 +8,9 @@
  * Run Selected Program: telecommand 101, 0 bytes. Table 64.
  * Starts the program in internal flash at once.
  * The node restarts instead of acknowledging it.
- * @note Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere. Its name refers to a
- * selection, the text to the internal flash program. What it does to the boot status, and whether it is acknowledged
- * before the program starts, is not said.
+ * @note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere. Its name refers to a selection,
+ * the text to the internal flash program. What it does to the boot status, and whether it is acknowledged before the
+ * program starts, is not said.
  */
 
 #include "../icdgen.h"
@@ -56,6 +56,13 @@ static inline icd_status_t bootloader_run_selected_program_encode(
     (void)message;
     (void)buffer;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *bootloader_run_selected_program_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
 }
 
 #endif /* BOOTLOADER_RUN_SELECTED_PROGRAM_H */

@@ -21,7 +21,7 @@
 typedef struct {
     /**
      * Program Index: bits 0 to 7.
-     * @note Note BOOT-007 (certain): Set Boot Index selects among one. The telecommand is to choose a program, but its
+     * @note BOOT-007 (certain): Set Boot Index selects among one. The telecommand is to choose a program, but its
      * enumeration has one member and the text forbids others. Its use is a side effect that the table does not mention:
      * it sets the boot status back.
      */
@@ -58,6 +58,16 @@ static inline icd_status_t bootloader_set_boot_index_encode(
     }
     buffer[0] = message->program_index;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *bootloader_set_boot_index_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Program Index", "", 0u, 8u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
 }
 
 #endif /* BOOTLOADER_SET_BOOT_INDEX_H */

@@ -9,9 +9,9 @@
  * Up-time, SRAM state and error flags. The error flags stay set until Clear Error Flags.
  * @note Erratum BOOT-013 (open): Bootloader State: 6 bytes announced, 28 bits described. The last 20 bits of the frame
  * are not explained. They are held as reserved.
- * @note Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The two programs
- * answer on the same buses and addresses. These ids are a different message in each, of another length in three cases,
- * so who is answering must be known first.
+ * @note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program. The two programs answer
+ * on the same buses and addresses. These ids are a different message in each, of another length in three cases, so who
+ * is answering must be known first.
  */
 
 #include "../icdgen.h"
@@ -25,9 +25,9 @@
 typedef struct {
     /**
      * Up-time (s): bits 0 to 15, raw 0 to 65535, in s.
-     * @note Note BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds. Name and description differ, and
-     * the name repeats the unit. The field ends at 65535 s, while the bootloader may stay for ever; what it shows then
-     * is not said.
+     * @note BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds. Name and description differ, and the
+     * name repeats the unit. The field ends at 65535 s, while the bootloader may stay for ever; what it shows then is
+     * not said.
      */
     uint16_t uptime;
     /** SRAM1 is enabled: bit 16. */
@@ -36,13 +36,13 @@ typedef struct {
     bool sram2_is_enabled;
     /**
      * SRAM Latch-up Error occurred and could not be recovered: bit 18.
-     * @note Note BOOT-017 (certain): Latch-up has three spellings. Latch-up in the flags of the bootloader, latchups
-     * and Latchup in the common frames, latch-up in the text.
+     * @note BOOT-017 (certain): Latch-up has three spellings. Latch-up in the flags of the bootloader, latchups and
+     * Latchup in the common frames, latch-up in the text.
      */
     bool sram_latchup_error;
     /**
      * SRAM Latch-up Occurred but recovered after power cycle: bit 19.
-     * @note Note BOOT-017 (certain): see SRAM Latch-up Error occurred and could not be recovered.
+     * @note BOOT-017 (certain): see SRAM Latch-up Error occurred and could not be recovered.
      */
     bool sram_latchup_recovered;
     /** SD card initialisation error: bit 20. */
@@ -61,7 +61,7 @@ typedef struct {
     bool boot_register_corrupt;
     /**
      * Communications Error with Radio: bit 27.
-     * @note Note BOOT-016 (open): Bootloader State: a radio that the manual does not know. A flag reports communication
+     * @note BOOT-016 (open): Bootloader State: a radio that the manual does not know. A flag reports communication
      * errors with a radio. No radio, bus to it or setting for it is mentioned anywhere.
      */
     bool communications_error_with_radio;
@@ -137,6 +137,28 @@ static inline icd_status_t bootloader_state_encode(
     buffer[3] = ICDGEN_U8(flags_3);
     (void)memset(&buffer[4], 0, 2u);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *bootloader_state_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Up-time (s)", "s", 0u, 16u, 1u, NULL, 0u},
+        {"SRAM1 is enabled", "", 16u, 1u, 1u, NULL, 0u},
+        {"SRAM2 is enabled", "", 17u, 1u, 1u, NULL, 0u},
+        {"SRAM Latch-up Error occurred and could not be recovered", "", 18u, 1u, 1u, NULL, 0u},
+        {"SRAM Latch-up Occurred but recovered after power cycle", "", 19u, 1u, 1u, NULL, 0u},
+        {"SD card initialisation error", "", 20u, 1u, 1u, NULL, 0u},
+        {"SD card read error", "", 21u, 1u, 1u, NULL, 0u},
+        {"SD card write error", "", 22u, 1u, 1u, NULL, 0u},
+        {"External Flash Error", "", 23u, 1u, 1u, NULL, 0u},
+        {"Internal Flash Error", "", 24u, 1u, 1u, NULL, 0u},
+        {"EEPROM Error", "", 25u, 1u, 1u, NULL, 0u},
+        {"Boot Register Corrupt", "", 26u, 1u, 1u, NULL, 0u},
+        {"Communications Error with Radio", "", 27u, 1u, 1u, NULL, 0u},
+    };
+    *count = 13u;
+    return fields;
 }
 
 #endif /* BOOTLOADER_STATE_H */

@@ -7,7 +7,7 @@
  * @file
  * Advance File List Read Pointer: telecommand 113, 0 bytes. Table 18.
  * Makes File Information describe the next file.
- * @note Note COM-040 (certain): A flow diagram is referred to without its number. The process is described by the flow
+ * @note COM-040 (certain): A flow diagram is referred to without its number. The process is described by the flow
  * diagram in nothing; figure 14 is meant.
  */
 
@@ -54,6 +54,13 @@ static inline icd_status_t common_advance_file_list_read_pointer_encode(
     (void)message;
     (void)buffer;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_advance_file_list_read_pointer_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
 }
 
 #endif /* COMMON_ADVANCE_FILE_LIST_READ_POINTER_H */

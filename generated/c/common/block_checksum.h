@@ -7,7 +7,7 @@
  * @file
  * Block Checksum: telemetry 246, 2 bytes. Table 46.
  * CRC-16 of the received upload block, to be compared before the block is finalized.
- * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
+ * @note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
  * upload are in the list common to both programs, the procedure belongs to the bootloader. Whether the ACP answers
  * them, refuses them, or uploads somewhere is not said.
  */
@@ -23,7 +23,7 @@
 typedef struct {
     /**
      * Checksum: bits 0 to 15, raw 0 to 65535.
-     * @note Note COM-106 (open): Checksum of an uploaded block is asked for before its length is known. The test comes
+     * @note COM-106 (open): Checksum of an uploaded block is asked for before its length is known. The test comes
      * before the block is committed, but the length of the block is first sent when it is committed. Over how many
      * bytes the node computes it for a short last block is open.
      */
@@ -60,6 +60,16 @@ static inline icd_status_t common_block_checksum_encode(
     }
     icdgen_store_u16le(&buffer[0], message->checksum);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_block_checksum_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Checksum", "", 0u, 16u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
 }
 
 #endif /* COMMON_BLOCK_CHECKSUM_H */

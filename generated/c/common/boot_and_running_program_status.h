@@ -7,8 +7,8 @@
  * @file
  * Boot And Running Program Status: telemetry 129, 6 bytes. Table 28.
  * Causes of the last reset and reboot, and the running program.
- * @note Note COM-062 (certain): Capitals of the boot status frame differ in the text. Boot And Running Program Status
- * is Boot and Running Program Status in the text.
+ * @note COM-062 (certain): Capitals of the boot status frame differ in the text. Boot And Running Program Status is
+ * Boot and Running Program Status in the text.
  */
 
 #include "../icdgen.h"
@@ -23,19 +23,19 @@
 typedef struct {
     /**
      * Cause of MCU Reset: bits 0 to 3. From a hardware register of the MCU.
-     * @note Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap. Both are described as the reason of the
-     * last reset. That the first comes from a hardware register and the second from the software can be inferred only;
-     * which one holds when they disagree is not said.
+     * @note COM-059 (open): Cause of MCU Reset and Boot Cause overlap. Both are described as the reason of the last
+     * reset. That the first comes from a hardware register and the second from the software can be inferred only; which
+     * one holds when they disagree is not said.
      */
     common_reset_cause_t cause_of_mcu_reset;
     /**
      * Boot Cause: bits 4 to 7. Why the CubeComputer last rebooted.
-     * @note Note COM-059 (open): see Cause of MCU Reset.
+     * @note COM-059 (open): see Cause of MCU Reset.
      */
     common_boot_cause_t boot_cause;
     /**
      * Boot Counter: bits 8 to 23, raw 0 to 65535. How often the CubeComputer has booted.
-     * @note Note COM-058 (certain): Reset Counter and Boot Counter are the same field. The text calls the counter Reset
+     * @note COM-058 (certain): Reset Counter and Boot Counter are the same field. The text calls the counter Reset
      * Counter and, a few paragraphs later, Boot Counter; the table has Boot Counter only. The text counts starts of the
      * bootloader, the table boots of the CubeComputer.
      */
@@ -44,13 +44,13 @@ typedef struct {
     common_boot_programs_list_t boot_program_index;
     /**
      * Firmware version (Major): bits 32 to 39, raw 0 to 255.
-     * @note Note COM-061 (open): Firmware version stands in two frames. Both frames hold major and minor version in
-     * bytes. Whether frame 129 gives that of the running program or of the one to be booted is not said.
+     * @note COM-061 (open): Firmware version stands in two frames. Both frames hold major and minor version in bytes.
+     * Whether frame 129 gives that of the running program or of the one to be booted is not said.
      */
     uint8_t firmware_version_major;
     /**
      * Firmware version (Minor): bits 40 to 47, raw 0 to 255.
-     * @note Note COM-061 (open): see Firmware version (Major).
+     * @note COM-061 (open): see Firmware version (Major).
      */
     uint8_t firmware_version_minor;
 } common_boot_and_running_program_status_t;
@@ -116,6 +116,21 @@ static inline icd_status_t common_boot_and_running_program_status_encode(
     buffer[4] = message->firmware_version_major;
     buffer[5] = message->firmware_version_minor;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_boot_and_running_program_status_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Cause of MCU Reset", "", 0u, 4u, 1u, NULL, 0u},
+        {"Boot Cause", "", 4u, 4u, 1u, NULL, 0u},
+        {"Boot Counter", "", 8u, 16u, 1u, NULL, 0u},
+        {"Boot Program Index", "", 24u, 8u, 1u, NULL, 0u},
+        {"Firmware version (Major)", "", 32u, 8u, 1u, NULL, 0u},
+        {"Firmware version (Minor)", "", 40u, 8u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
 }
 
 #endif /* COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_H */

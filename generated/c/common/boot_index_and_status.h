@@ -21,8 +21,8 @@
 typedef struct {
     /**
      * Program Index: bits 0 to 7.
-     * @note Note COM-069 (open): Program Index of the boot status can be the bootloader. The frame shows which program
-     * is selected to boot, with an enumeration that has the bootloader; only the internal program can be selected.
+     * @note COM-069 (open): Program Index of the boot status can be the bootloader. The frame shows which program is
+     * selected to boot, with an enumeration that has the bootloader; only the internal program can be selected.
      */
     common_boot_programs_list_t program_index;
     /** Boot Status: bits 8 to 15. */
@@ -61,6 +61,17 @@ static inline icd_status_t common_boot_index_and_status_encode(
     buffer[0] = message->program_index;
     buffer[1] = message->boot_status;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_boot_index_and_status_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Program Index", "", 0u, 8u, 1u, NULL, 0u},
+        {"Boot Status", "", 8u, 8u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* COMMON_BOOT_INDEX_AND_STATUS_H */

@@ -21,8 +21,8 @@
 typedef struct {
     /**
      * Enabled state: bit 0.
-     * @note Note COM-108 (open): Cache enabled state: which cache, and the default. The setting switches a cache that
-     * the manual does not mention anywhere else.
+     * @note COM-108 (open): Cache enabled state: which cache, and the default. The setting switches a cache that the
+     * manual does not mention anywhere else.
      */
     bool enabled_state;
 } common_cache_enabled_state_t;
@@ -57,6 +57,16 @@ static inline icd_status_t common_cache_enabled_state_encode(
     }
     buffer[0] = ICDGEN_U8(message->enabled_state);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_cache_enabled_state_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Enabled state", "", 0u, 1u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
 }
 
 #endif /* COMMON_CACHE_ENABLED_STATE_H */

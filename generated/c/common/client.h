@@ -666,7 +666,7 @@ static inline icd_status_t common_send_hole_map_8(
         context);
 }
 
-/** Requests Identification. */
+/** Requests Identification, as icd_client_request(). */
 static inline icd_status_t common_request_identification(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
@@ -681,7 +681,7 @@ static inline icd_status_t common_receive_identification(common_identification_t
     return common_identification_decode(message, event->data, event->length);
 }
 
-/** Requests Boot And Running Program Status. */
+/** Requests Boot And Running Program Status, as icd_client_request(). */
 static inline icd_status_t common_request_boot_and_running_program_status(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
@@ -698,7 +698,7 @@ static inline icd_status_t common_receive_boot_and_running_program_status(
     return common_boot_and_running_program_status_decode(message, event->data, event->length);
 }
 
-/** Requests Boot Index and Status. */
+/** Requests Boot Index and Status, as icd_client_request(). */
 static inline icd_status_t common_request_boot_index_and_status(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
@@ -715,7 +715,7 @@ static inline icd_status_t common_receive_boot_index_and_status(
     return common_boot_index_and_status_decode(message, event->data, event->length);
 }
 
-/** Requests Last Logged Event. */
+/** Requests Last Logged Event, as icd_client_request(). */
 static inline icd_status_t common_request_last_logged_event(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
@@ -732,7 +732,7 @@ static inline icd_status_t common_receive_last_logged_event(
     return common_last_logged_event_decode(message, event->data, event->length);
 }
 
-/** Requests SRAM Latchup counters. */
+/** Requests SRAM Latchup counters, as icd_client_request(). */
 static inline icd_status_t common_request_sram_latchup_counters(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
@@ -749,7 +749,7 @@ static inline icd_status_t common_receive_sram_latchup_counters(
     return common_sram_latchup_counters_decode(message, event->data, event->length);
 }
 
-/** Requests EDAC Error Counters. */
+/** Requests EDAC Error Counters, as icd_client_request(). */
 static inline icd_status_t common_request_edac_error_counters(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
@@ -766,7 +766,7 @@ static inline icd_status_t common_receive_edac_error_counters(
     return common_edac_error_counters_decode(message, event->data, event->length);
 }
 
-/** Requests Communication Status. */
+/** Requests Communication Status, as icd_client_request(). */
 static inline icd_status_t common_request_communication_status(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
@@ -783,7 +783,7 @@ static inline icd_status_t common_receive_communication_status(
     return common_communication_status_decode(message, event->data, event->length);
 }
 
-/** Requests SD card format/erase progress. */
+/** Requests SD card format/erase progress, as icd_client_request(). */
 static inline icd_status_t common_request_sd_card_format_erase_progress(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
@@ -800,7 +800,7 @@ static inline icd_status_t common_receive_sd_card_format_erase_progress(
     return common_sd_card_format_erase_progress_decode(message, event->data, event->length);
 }
 
-/** Requests Telecommand Acknowledge. */
+/** Requests Telecommand Acknowledge, as icd_client_request(). */
 static inline icd_status_t common_request_telecommand_acknowledge(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
@@ -817,7 +817,7 @@ static inline icd_status_t common_receive_telecommand_acknowledge(
     return common_telecommand_acknowledge_decode(message, event->data, event->length);
 }
 
-/** Requests File Download Buffer with File Contents. */
+/** Requests File Download Buffer with File Contents, as icd_client_request(). */
 static inline icd_status_t common_request_file_download_buffer_with_file_contents(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID);
@@ -837,7 +837,7 @@ static inline icd_status_t common_receive_file_download_buffer_with_file_content
     return common_file_download_buffer_with_file_contents_decode(message, event->data, event->length);
 }
 
-/** Requests Download Block Ready. */
+/** Requests Download Block Ready, as icd_client_request(). */
 static inline icd_status_t common_request_download_block_ready(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
@@ -854,7 +854,7 @@ static inline icd_status_t common_receive_download_block_ready(
     return common_download_block_ready_decode(message, event->data, event->length);
 }
 
-/** Requests File Information. */
+/** Requests File Information, as icd_client_request(). */
 static inline icd_status_t common_request_file_information(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
@@ -869,7 +869,7 @@ static inline icd_status_t common_receive_file_information(common_file_informati
     return common_file_information_decode(message, event->data, event->length);
 }
 
-/** Requests Initialize Upload Complete. */
+/** Requests Initialize Upload Complete, as icd_client_request(). */
 static inline icd_status_t common_request_initialize_upload_complete(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
@@ -886,7 +886,7 @@ static inline icd_status_t common_receive_initialize_upload_complete(
     return common_initialize_upload_complete_decode(message, event->data, event->length);
 }
 
-/** Requests Upload Block Complete. */
+/** Requests Upload Block Complete, as icd_client_request(). */
 static inline icd_status_t common_request_upload_block_complete(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
@@ -903,7 +903,7 @@ static inline icd_status_t common_receive_upload_block_complete(
     return common_upload_block_complete_decode(message, event->data, event->length);
 }
 
-/** Requests Block Checksum. */
+/** Requests Block Checksum, as icd_client_request(). */
 static inline icd_status_t common_request_block_checksum(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
@@ -918,7 +918,7 @@ static inline icd_status_t common_receive_block_checksum(common_block_checksum_t
     return common_block_checksum_decode(message, event->data, event->length);
 }
 
-/** Requests Cache enabled state. */
+/** Requests Cache enabled state, as icd_client_request(). */
 static inline icd_status_t common_request_cache_enabled_state(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
@@ -935,7 +935,7 @@ static inline icd_status_t common_receive_cache_enabled_state(
     return common_cache_enabled_state_decode(message, event->data, event->length);
 }
 
-/** Requests SRAM Scrub Parameters. */
+/** Requests SRAM Scrub Parameters, as icd_client_request(). */
 static inline icd_status_t common_request_sram_scrub_parameters(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
@@ -952,7 +952,7 @@ static inline icd_status_t common_receive_sram_scrub_parameters(
     return common_sram_scrub_parameters_decode(message, event->data, event->length);
 }
 
-/** Requests Current Unix Time. */
+/** Requests Current Unix Time, as icd_client_request(). */
 static inline icd_status_t common_request_current_unix_time(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
@@ -969,7 +969,7 @@ static inline icd_status_t common_receive_current_unix_time(
     return common_current_unix_time_decode(message, event->data, event->length);
 }
 
-/** Requests Unix Time Save to Flash. */
+/** Requests Unix Time Save to Flash, as icd_client_request(). */
 static inline icd_status_t common_request_unix_time_save_to_flash(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
@@ -986,7 +986,7 @@ static inline icd_status_t common_receive_unix_time_save_to_flash(
     return common_unix_time_save_to_flash_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 1. */
+/** Requests Hole Map 1, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_1(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
@@ -1001,7 +1001,7 @@ static inline icd_status_t common_receive_hole_map_1(common_hole_map_1_t *messag
     return common_hole_map_1_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 2. */
+/** Requests Hole Map 2, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_2(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
@@ -1016,7 +1016,7 @@ static inline icd_status_t common_receive_hole_map_2(common_hole_map_2_t *messag
     return common_hole_map_2_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 3. */
+/** Requests Hole Map 3, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_3(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
@@ -1031,7 +1031,7 @@ static inline icd_status_t common_receive_hole_map_3(common_hole_map_3_t *messag
     return common_hole_map_3_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 4. */
+/** Requests Hole Map 4, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_4(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
@@ -1046,7 +1046,7 @@ static inline icd_status_t common_receive_hole_map_4(common_hole_map_4_t *messag
     return common_hole_map_4_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 5. */
+/** Requests Hole Map 5, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_5(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
@@ -1061,7 +1061,7 @@ static inline icd_status_t common_receive_hole_map_5(common_hole_map_5_t *messag
     return common_hole_map_5_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 6. */
+/** Requests Hole Map 6, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_6(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
@@ -1076,7 +1076,7 @@ static inline icd_status_t common_receive_hole_map_6(common_hole_map_6_t *messag
     return common_hole_map_6_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 7. */
+/** Requests Hole Map 7, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_7(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
@@ -1091,7 +1091,7 @@ static inline icd_status_t common_receive_hole_map_7(common_hole_map_7_t *messag
     return common_hole_map_7_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 8. */
+/** Requests Hole Map 8, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_8(common_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);

@@ -23,58 +23,58 @@
 typedef struct {
     /**
      * Telecommand counter: bits 0 to 15, raw 0 to 65535. Telecommands received.
-     * @note Note COM-082 (open): Counters: served or received. The text counts commands and requests that have been
-     * served, the table those that have been received. Refused ones make the difference.
+     * @note COM-082 (open): Counters: served or received. The text counts commands and requests that have been served,
+     * the table those that have been received. Refused ones make the difference.
      */
     uint16_t telecommand_counter;
     /**
      * Telemetry request counter: bits 16 to 31, raw 0 to 65535. Requests received.
-     * @note Note COM-082 (open): see Telecommand counter.
+     * @note COM-082 (open): see Telecommand counter.
      */
     uint16_t telemetry_request_counter;
     /**
      * Telecommand buffer overrun: bit 32. The buffer overflowed while a telecommand came in.
-     * @note Note COM-081 (open): Which telecommand clears the communication error flags. For the I2C flag a Clear
-     * Errors telecommand is named. It exists in the control program only, and by its table clears ADCS and HK flags. Of
-     * the other flags, and of the bootloader, nothing is said.
+     * @note COM-081 (open): Which telecommand clears the communication error flags. For the I2C flag a Clear Errors
+     * telecommand is named. It exists in the control program only, and by its table clears ADCS and HK flags. Of the
+     * other flags, and of the bootloader, nothing is said.
      */
     bool telecommand_buffer_overrun;
     /**
      * UART protocol error: bit 33.
-     * @note Note COM-078 (open): UART: what a receiver does on an invalid escape or an unfinished message. An ESC
-     * followed by anything else should not occur, and a start without a preceding end sets a flag. Whether the message
-     * begun is dropped or goes on, and after which pause, is not said.
-     * @note Note COM-081 (open): see Telecommand buffer overrun.
+     * @note COM-078 (open): UART: what a receiver does on an invalid escape or an unfinished message. An ESC followed
+     * by anything else should not occur, and a start without a preceding end sets a flag. Whether the message begun is
+     * dropped or goes on, and after which pause, is not said.
+     * @note COM-081 (open): see Telecommand buffer overrun.
      */
     bool uart_protocol_error;
     /**
      * UART incomplete message: bit 34. A message began before the one before it had ended.
-     * @note Note COM-078 (open): see UART protocol error.
-     * @note Note COM-081 (open): see Telecommand buffer overrun.
+     * @note COM-078 (open): see UART protocol error.
+     * @note COM-081 (open): see Telecommand buffer overrun.
      */
     bool uart_incomplete_message;
     /**
      * I2C telemetry error: bit 35. More bytes were read than the frame has. Stays set until Clear Errors.
-     * @note Note COM-079 (open): I2C telemetry error: too many bytes, or any wrong number. The text sets the flag for
-     * an incorrect number of bytes, read past the end or incomplete. The table sets it only for more bytes than the
-     * frame has.
-     * @note Note COM-080 (likely): I2C: reading one byte more is both an error and the way to get the checksum. An
-     * incorrect number of bytes sets an error flag, yet the control program allows one more for the checksum. The flag
-     * must then be set from the second extra byte on; the text does not say so.
-     * @note Note COM-081 (open): see Telecommand buffer overrun.
+     * @note COM-079 (open): I2C telemetry error: too many bytes, or any wrong number. The text sets the flag for an
+     * incorrect number of bytes, read past the end or incomplete. The table sets it only for more bytes than the frame
+     * has.
+     * @note COM-080 (likely): I2C: reading one byte more is both an error and the way to get the checksum. An incorrect
+     * number of bytes sets an error flag, yet the control program allows one more for the checksum. The flag must then
+     * be set from the second extra byte on; the text does not say so.
+     * @note COM-081 (open): see Telecommand buffer overrun.
      */
     bool i2c_telemetry_error;
     /**
      * I2C telecommand buffer error: bit 36. A telecommand was longer than the buffer.
-     * @note Note COM-081 (open): see Telecommand buffer overrun.
-     * @note Note COM-083 (open): Two buffer errors have the same description. The flags for I2C and CAN are both
-     * explained as a telecommand larger than the buffer; the size of neither buffer is given.
+     * @note COM-081 (open): see Telecommand buffer overrun.
+     * @note COM-083 (open): Two buffer errors have the same description. The flags for I2C and CAN are both explained
+     * as a telecommand larger than the buffer; the size of neither buffer is given.
      */
     bool i2c_telecommand_buffer_error;
     /**
      * CAN telecommand buffer error: bit 37. A telecommand was longer than the buffer.
-     * @note Note COM-081 (open): see Telecommand buffer overrun.
-     * @note Note COM-083 (open): see I2C telecommand buffer error.
+     * @note COM-081 (open): see Telecommand buffer overrun.
+     * @note COM-083 (open): see I2C telecommand buffer error.
      */
     bool can_telecommand_buffer_error;
 } common_communication_status_t;
@@ -133,6 +133,23 @@ static inline icd_status_t common_communication_status_encode(
         (message->can_telecommand_buffer_error << 5));
     buffer[5] = 0u;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_communication_status_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Telecommand counter", "", 0u, 16u, 1u, NULL, 0u},
+        {"Telemetry request counter", "", 16u, 16u, 1u, NULL, 0u},
+        {"Telecommand buffer overrun", "", 32u, 1u, 1u, NULL, 0u},
+        {"UART protocol error", "", 33u, 1u, 1u, NULL, 0u},
+        {"UART incomplete message", "", 34u, 1u, 1u, NULL, 0u},
+        {"I2C telemetry error", "", 35u, 1u, 1u, NULL, 0u},
+        {"I2C telecommand buffer error", "", 36u, 1u, 1u, NULL, 0u},
+        {"CAN telecommand buffer error", "", 37u, 1u, 1u, NULL, 0u},
+    };
+    *count = 8u;
+    return fields;
 }
 
 #endif /* COMMON_COMMUNICATION_STATUS_H */

@@ -21,14 +21,13 @@
 typedef struct {
     /**
      * Current Unix Time: bits 0 to 31, raw 0 to 4294967295, in s. Since 1970-01-01 00:00.
-     * @note Note COM-111 (open): Unix time: time zone and leap seconds are not given. The epoch is stated without UTC,
-     * and the offset against GPS time is not mentioned although GPS time is a telemetry frame of its own.
+     * @note COM-111 (open): Unix time: time zone and leap seconds are not given. The epoch is stated without UTC, and
+     * the offset against GPS time is not mentioned although GPS time is a telemetry frame of its own.
      */
     uint32_t current_unix_time;
     /**
      * Milliseconds: bits 32 to 47, raw 0 to 65535, in ms.
-     * @note Note COM-110 (open): Milliseconds: range is not given. The field has 16 bits; values above 999 are not
-     * excluded.
+     * @note COM-110 (open): Milliseconds: range is not given. The field has 16 bits; values above 999 are not excluded.
      */
     uint16_t milliseconds;
 } common_current_unix_time_t;
@@ -65,6 +64,17 @@ static inline icd_status_t common_current_unix_time_encode(
     icdgen_store_u32le(&buffer[0], message->current_unix_time);
     icdgen_store_u16le(&buffer[4], message->milliseconds);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_current_unix_time_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Current Unix Time", "s", 0u, 32u, 1u, NULL, 0u},
+        {"Milliseconds", "ms", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* COMMON_CURRENT_UNIX_TIME_H */

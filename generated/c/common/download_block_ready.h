@@ -7,8 +7,8 @@
  * @file
  * Download Block Ready: telemetry 242, 5 bytes. Table 42.
  * Whether the block asked for by Load File Download Block is in the buffer.
- * @note Note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be polled, and when
- * to give up, is not said. For files a time is suggested for two of the operations only.
+ * @note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be polled, and when to
+ * give up, is not said. For files a time is suggested for two of the operations only.
  */
 
 #include "../icdgen.h"
@@ -24,9 +24,9 @@ typedef struct {
     bool ready;
     /**
      * ParameterError: bit 1. Message length and hole map together led to invalid array lengths.
-     * @note Note COM-097 (open): ParameterError refers to arrays that no message has. The combination of message length
-     * and hole map is said to have led to invalid array lengths. Which combinations do is not said, and the download
-     * text does not mention the flag.
+     * @note COM-097 (open): ParameterError refers to arrays that no message has. The combination of message length and
+     * hole map is said to have led to invalid array lengths. Which combinations do is not said, and the download text
+     * does not mention the flag.
      */
     bool parameter_error;
     /** Block CRC16 Checksum: bits 8 to 23, raw 0 to 65535. */
@@ -74,6 +74,19 @@ static inline icd_status_t common_download_block_ready_encode(
     icdgen_store_u16le(&buffer[1], message->block_crc16_checksum);
     icdgen_store_u16le(&buffer[3], message->block_length);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_download_block_ready_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Ready", "", 0u, 1u, 1u, NULL, 0u},
+        {"ParameterError", "", 1u, 1u, 1u, NULL, 0u},
+        {"Block CRC16 Checksum", "", 8u, 16u, 1u, NULL, 0u},
+        {"Block Length", "byte", 24u, 16u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
 }
 
 #endif /* COMMON_DOWNLOAD_BLOCK_READY_H */

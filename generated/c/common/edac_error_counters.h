@@ -22,14 +22,14 @@ typedef struct {
     uint16_t single_sram_upsets;
     /**
      * Double SRAM upsets: bits 16 to 31, raw 0 to 65535. Counted per byte.
-     * @note Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been. The frame is said to count
-     * errors that were detected and corrected. It has counters for double and multiple upsets in a byte, which such a
-     * code detects at best.
+     * @note COM-077 (likely): EDAC: errors counted as corrected cannot all have been. The frame is said to count errors
+     * that were detected and corrected. It has counters for double and multiple upsets in a byte, which such a code
+     * detects at best.
      */
     uint16_t double_sram_upsets;
     /**
      * Multiple SRAM upsets: bits 32 to 47, raw 0 to 65535. Counted per byte.
-     * @note Note COM-077 (likely): see Double SRAM upsets.
+     * @note COM-077 (likely): see Double SRAM upsets.
      */
     uint16_t multiple_sram_upsets;
 } common_edac_error_counters_t;
@@ -68,6 +68,18 @@ static inline icd_status_t common_edac_error_counters_encode(
     icdgen_store_u16le(&buffer[2], message->double_sram_upsets);
     icdgen_store_u16le(&buffer[4], message->multiple_sram_upsets);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_edac_error_counters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Single SRAM upsets", "", 0u, 16u, 1u, NULL, 0u},
+        {"Double SRAM upsets", "", 16u, 16u, 1u, NULL, 0u},
+        {"Multiple SRAM upsets", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* COMMON_EDAC_ERROR_COUNTERS_H */

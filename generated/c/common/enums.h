@@ -13,8 +13,8 @@
 
 /**
  * FileType: an enumeration. Table 16.
- * @note Note COM-037 (open): FileType begins at 2 and jumps to 15. Values 0, 1 and 5 to 14 are not explained. Value 0
- * ends the file list, since an entry of zeroes does.
+ * @note COM-037 (open): FileType begins at 2 and jumps to 15. Values 0, 1 and 5 to 14 are not explained. Value 0 ends
+ * the file list, since an entry of zeroes does.
  */
 typedef uint8_t common_file_type_t;
 
@@ -27,9 +27,9 @@ enum {
     COMMON_FILE_TYPE_BMP_IMAGE = 4,
     /**
      * Index (15).
-     * @note Note COM-038 (open): Index file: neither length nor counter is given. The index, Index in the list and
-     * Index File in the text, is fetched like a file, but the number of entries is known only once it has been read,
-     * and which counter to send with its type is not said.
+     * @note COM-038 (open): Index file: neither length nor counter is given. The index, Index in the list and Index
+     * File in the text, is fetched like a file, but the number of entries is known only once it has been read, and
+     * which counter to send with its type is not said.
      */
     COMMON_FILE_TYPE_INDEX = 15
 };
@@ -53,16 +53,16 @@ static inline const char *common_file_type_name(common_file_type_t value)
 
 /**
  * FileUploadDestination: an enumeration. Table 20. The SD card destinations are not supported.
- * @note Note COM-045 (certain): Names of the flash areas differ between two lists. Flash program 1 of the upload is
- * External Flash Program 1 of the bootloader, with the same number.
+ * @note COM-045 (certain): Names of the flash areas differ between two lists. Flash program 1 of the upload is External
+ * Flash Program 1 of the bootloader, with the same number.
  */
 typedef uint8_t common_file_upload_destination_t;
 
 enum {
     /**
      * EEPROM (2).
-     * @note Note COM-044 (open): FileUploadDestination: EEPROM is listed, the text knows flash only. A new firmware
-     * file can only go to the external flash, so value 2 is either unsupported too or for something not described.
+     * @note COM-044 (open): FileUploadDestination: EEPROM is listed, the text knows flash only. A new firmware file can
+     * only go to the external flash, so value 2 is either unsupported too or for something not described.
      */
     COMMON_FILE_UPLOAD_DESTINATION_EEPROM = 2,
     /** Flash program 1 (3). */
@@ -81,43 +81,43 @@ enum {
     COMMON_FILE_UPLOAD_DESTINATION_FLASH_PROGRAM_7 = 9,
     /**
      * SD User file 1 (10).
-     * @note Note COM-043 (certain): FileUploadDestination: eight members are not supported. The SD user files are
-     * listed as destinations, and the text says that they are not supported.
+     * @note COM-043 (certain): FileUploadDestination: eight members are not supported. The SD user files are listed as
+     * destinations, and the text says that they are not supported.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_1 = 10,
     /**
      * SD User file 2 (11).
-     * @note Note COM-043 (certain): see SD User file 1.
+     * @note COM-043 (certain): see SD User file 1.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_2 = 11,
     /**
      * SD User file 3 (12).
-     * @note Note COM-043 (certain): see SD User file 1.
+     * @note COM-043 (certain): see SD User file 1.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_3 = 12,
     /**
      * SD User file 4 (13).
-     * @note Note COM-043 (certain): see SD User file 1.
+     * @note COM-043 (certain): see SD User file 1.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_4 = 13,
     /**
      * SD User file 5 (14).
-     * @note Note COM-043 (certain): see SD User file 1.
+     * @note COM-043 (certain): see SD User file 1.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_5 = 14,
     /**
      * SD User file 6 (15).
-     * @note Note COM-043 (certain): see SD User file 1.
+     * @note COM-043 (certain): see SD User file 1.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_6 = 15,
     /**
      * SD User file 7 (16).
-     * @note Note COM-043 (certain): see SD User file 1.
+     * @note COM-043 (certain): see SD User file 1.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_7 = 16,
     /**
      * SD User file 8 (17).
-     * @note Note COM-043 (certain): see SD User file 1.
+     * @note COM-043 (certain): see SD User file 1.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_8 = 17
 };
@@ -189,25 +189,25 @@ enum {
     COMMON_RESET_CAUSE_BACKUP_BROWN_OUT = 9,
     /**
      * Backup Mode Reset (10).
-     * @note Note COM-064 (certain): ResetCause: two spellings of one source. BackupModeRST stands beside Backup Mode
-     * RST and Backup Mode Reset. Identifiers come out alike.
+     * @note COM-064 (certain): ResetCause: two spellings of one source. BackupModeRST stands beside Backup Mode RST and
+     * Backup Mode Reset. Identifiers come out alike.
      */
     COMMON_RESET_CAUSE_BACKUP_MODE_RESET = 10,
     /**
      * Backup Mode RST and Backup Brown-Out Vdd Regulated (11). Backup mode reset together with a brown-out of the
      * backup domain on regulated VDD.
-     * @note Note COM-064 (certain): see Backup Mode Reset.
+     * @note COM-064 (certain): see Backup Mode Reset.
      */
     COMMON_RESET_CAUSE_BACKUP_MODE_AND_BACKUP_BROWN_OUT = 11,
     /**
      * BackupModeRST and Backup Brown-Out Vdd Regulated and Brown-Out Regulated (12). As 11, and a brown-out on
      * regulated power.
-     * @note Note COM-064 (certain): see Backup Mode Reset.
+     * @note COM-064 (certain): see Backup Mode Reset.
      */
     COMMON_RESET_CAUSE_BACKUP_MODE_AND_BOTH_BROWN_OUTS = 12,
     /**
      * Backup Mode RST and Watchdog Reset (13).
-     * @note Note COM-064 (certain): see Backup Mode Reset.
+     * @note COM-064 (certain): see Backup Mode Reset.
      */
     COMMON_RESET_CAUSE_BACKUP_MODE_AND_WATCHDOG_RESET = 13,
     /** Backup Brown-Out BuvIn and System Request Reset (14). The brown-out is that of the backup domain on BUVIN. */
@@ -275,7 +275,7 @@ enum {
     COMMON_BOOT_CAUSE_NOT_USED_1 = 1,
     /**
      * Communications Timeout (2). Nothing was received for too long.
-     * @note Note COM-067 (open): BootCause: a communications time-out that is described nowhere. A reset for lack of
+     * @note COM-067 (open): BootCause: a communications time-out that is described nowhere. A reset for lack of
      * communication needs a time-out. No setting, no figure and no program that watches is named.
      */
     COMMON_BOOT_CAUSE_COMMUNICATIONS_TIMEOUT = 2,
@@ -320,7 +320,7 @@ enum {
     COMMON_BOOT_PROGRAMS_LIST_INTERNAL_FLASH_PROGRAM = 1,
     /**
      * Bootloader (2).
-     * @note Note COM-068 (certain): BootProgramsList numbers the bootloader 2, ProgramsList 0. Three enumerations name
+     * @note COM-068 (certain): BootProgramsList numbers the bootloader 2, ProgramsList 0. Three enumerations name
      * program places, and two of them give different numbers to the bootloader. The value 2 of this one is EEPROM in
      * the other.
      */
@@ -343,9 +343,9 @@ static inline const char *common_boot_programs_list_name(common_boot_programs_li
 /**
  * BootStatus: an enumeration. Table 33. Kept in flash. The bootloader counts up before each attempt, the program sets
  * Boot Success once it runs.
- * @note Note COM-070 (open): Boot Status: whether the third attempt still takes place. After a first failure the
- * bootloader is to try twice more, three attempts in all. But the status is raised before each start, so it reads 4
- * before the third attempt begins, and at 4 the application is said not to be started any more.
+ * @note COM-070 (open): Boot Status: whether the third attempt still takes place. After a first failure the bootloader
+ * is to try twice more, three attempts in all. But the status is raised before each start, so it reads 4 before the
+ * third attempt begins, and at 4 the application is said not to be started any more.
  */
 typedef uint8_t common_boot_status_t;
 
@@ -356,19 +356,19 @@ enum {
     COMMON_BOOT_STATUS_BOOT_SUCCESS = 1,
     /**
      * 1 Failed boot attempt (2).
-     * @note Note COM-071 (certain): Boot Status values are named differently in the text. The text speaks of 3x failed
+     * @note COM-071 (certain): Boot Status values are named differently in the text. The text speaks of 3x failed
      * attempts and of a 1st failed boot attempt; the enumeration has 3 Failed boot attempts and 1 Failed boot attempt.
      * Same values, other words.
-     * @note Note COM-072 (likely): Boot Status 2 is also written before the very first start. While the application has
-     * not yet confirmed, a healthy start reads 1 Failed boot attempt. Whoever reads the status early takes a running
-     * start for a failed one.
+     * @note COM-072 (likely): Boot Status 2 is also written before the very first start. While the application has not
+     * yet confirmed, a healthy start reads 1 Failed boot attempt. Whoever reads the status early takes a running start
+     * for a failed one.
      */
     COMMON_BOOT_STATUS_FAILED_BOOT_ATTEMPT_1 = 2,
     /** 2 Failed boot attempts (3). */
     COMMON_BOOT_STATUS_FAILED_BOOT_ATTEMPTS_2 = 3,
     /**
      * 3 Failed boot attempts (4).
-     * @note Note COM-071 (certain): see 1 Failed boot attempt.
+     * @note COM-071 (certain): see 1 Failed boot attempt.
      */
     COMMON_BOOT_STATUS_FAILED_BOOT_ATTEMPTS_3 = 4
 };
@@ -406,11 +406,10 @@ enum {
     COMMON_TC_ERROR_REASON_INCORRECT_PARAMETER = 3,
     /**
      * CRC check failed (4).
-     * @note Note COM-095 (certain): Reasons for a TC error: three in the text, four in the table. The flag is said to
-     * be set for an invalid id, a wrong number of bytes or invalid data. The table adds a failed checksum.
-     * @note Note COM-096 (likely): CRC check failed is common, the checksum is not. The error code stands in an
-     * enumeration of both programs, but the checksum exists in the control program only. The bootloader cannot report
-     * it.
+     * @note COM-095 (certain): Reasons for a TC error: three in the text, four in the table. The flag is said to be set
+     * for an invalid id, a wrong number of bytes or invalid data. The table adds a failed checksum.
+     * @note COM-096 (likely): CRC check failed is common, the checksum is not. The error code stands in an enumeration
+     * of both programs, but the checksum exists in the control program only. The bootloader cannot report it.
      */
     COMMON_TC_ERROR_REASON_CRC_CHECK_FAILED = 4
 };

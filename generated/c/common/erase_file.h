@@ -8,8 +8,8 @@
  * Erase File: telecommand 108, 3 bytes. Table 15.
  * Deletes one file of the SD card or all of them. Erasing all takes some time: see SD card format/erase progress.
  * Dangerous: The file is lost; all files are with Erase All.
- * @note Note COM-034 (open): Erase File: what the other fields mean with Erase All. With the flag set all files go;
- * whether type and counter must still be valid, or limit the erasing to one type, is not said.
+ * @note COM-034 (open): Erase File: what the other fields mean with Erase All. With the flag set all files go; whether
+ * type and counter must still be valid, or limit the erasing to one type, is not said.
  */
 
 #include "../icdgen.h"
@@ -26,8 +26,8 @@ typedef struct {
     common_file_type_t file_type;
     /**
      * File Counter: bits 8 to 15, raw 0 to 255.
-     * @note Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with the next one is
-     * not said.
+     * @note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with the next one is not
+     * said.
      */
     uint8_t file_counter;
     /** Erase All: bit 16. All files instead of this one. */
@@ -68,6 +68,18 @@ static inline icd_status_t common_erase_file_encode(
     buffer[1] = message->file_counter;
     buffer[2] = ICDGEN_U8(message->erase_all);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_erase_file_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"File Type", "", 0u, 8u, 1u, NULL, 0u},
+        {"File Counter", "", 8u, 8u, 1u, NULL, 0u},
+        {"Erase All", "", 16u, 1u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* COMMON_ERASE_FILE_H */

@@ -7,11 +7,11 @@
  * @file
  * File Download Buffer with File Contents: telemetry 241, 22 bytes. Table 41.
  * One packet of a download burst. On the UART the packets come unasked, with the id of Initiate Download Burst.
- * @note Note COM-051 (certain): Messages of the download have other names in the text. Initiate File Download Burst and
+ * @note COM-051 (certain): Messages of the download have other names in the text. Initiate File Download Burst and
  * Download File Packet do not exist. Initiate Download Burst and File Download Buffer with File Contents are meant.
- * @note Note COM-052 (open): Download packets: id of the telecommand or of the frame. On UART the packets are said to
- * be headed by the id of the telecommand, 119. The frame with their format has the id 241. Which of the two the reads
- * on I2C are headed by is not said; 241 is assumed. With 119 a packet and an acknowledge differ by length only.
+ * @note COM-052 (open): Download packets: id of the telecommand or of the frame. On UART the packets are said to be
+ * headed by the id of the telecommand, 119. The frame with their format has the id 241. Which of the two the reads on
+ * I2C are headed by is not said; 241 is assumed. With 119 a packet and an acknowledge differ by length only.
  */
 
 #include "../icdgen.h"
@@ -25,18 +25,18 @@
 typedef struct {
     /**
      * Packet counter: bits 0 to 15, raw 0 to 65535. Position of the packet in the burst.
-     * @note Note COM-047 (likely): Packet numbers: from 0 or from 1. Neither the upload nor the download says where the
+     * @note COM-047 (likely): Packet numbers: from 0 or from 1. Neither the upload nor the download says where the
      * count begins. The code walks bits 0 to 1023 of the hole map, so 0 is likely.
      */
     uint16_t packet_counter;
     /**
      * File bytes: bytes 2 to 21.
-     * @note Note COM-029 (certain): One field, several spellings. The same things are written Magic number and Magic
-     * Number, BlockLength and Block Length, File bytes and File Bytes, File Counter, Counter and File Ctr, and Checksum
-     * with and without CRC16. Names are held as printed.
-     * @note Note COM-048 (open): Last packet of a block: fill is not defined. Packets have always 20 bytes of data.
-     * What follows the end of the file in the last one, in either direction, is not said, nor whether the checksum
-     * covers it.
+     * @note COM-029 (certain): One field, several spellings. The same things are written Magic number and Magic Number,
+     * BlockLength and Block Length, File bytes and File Bytes, File Counter, Counter and File Ctr, and Checksum with
+     * and without CRC16. Names are held as printed.
+     * @note COM-048 (open): Last packet of a block: fill is not defined. Packets have always 20 bytes of data. What
+     * follows the end of the file in the last one, in either direction, is not said, nor whether the checksum covers
+     * it.
      */
     uint8_t file_bytes[20];
 } common_file_download_buffer_with_file_contents_t;
@@ -74,6 +74,17 @@ static inline icd_status_t common_file_download_buffer_with_file_contents_encode
     icdgen_store_u16le(&buffer[0], message->packet_counter);
     (void)memcpy(&buffer[2], message->file_bytes, 20u);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_file_download_buffer_with_file_contents_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Packet counter", "", 0u, 16u, 1u, NULL, 0u},
+        {"File bytes", "", 16u, 160u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_H */

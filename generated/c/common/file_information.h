@@ -7,10 +7,10 @@
  * @file
  * File Information: telemetry 243, 12 bytes. Table 43.
  * The file at the list pointer. All zeros with Busy Updating clear: the end of the list.
- * @note Note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be polled, and when
- * to give up, is not said. For files a time is suggested for two of the operations only.
- * @note Note COM-102 (certain): File information and index entry order the same items differently. The frame has size,
- * date and checksum; the index has checksum, size and date, and whole bytes. One layout cannot read the other.
+ * @note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be polled, and when to
+ * give up, is not said. For files a time is suggested for two of the operations only.
+ * @note COM-102 (certain): File information and index entry order the same items differently. The frame has size, date
+ * and checksum; the index has checksum, size and date, and whole bytes. One layout cannot read the other.
  */
 
 #include "../icdgen.h"
@@ -27,17 +27,17 @@ typedef struct {
     common_file_type_t file_type;
     /**
      * Busy Updating: bit 4. The other fields are valid once this is clear.
-     * @note Note COM-101 (certain): Busy Updating has no description. What it means stands only in the text: the rest
-     * of the frame is valid once it is clear.
+     * @note COM-101 (certain): Busy Updating has no description. What it means stands only in the text: the rest of the
+     * frame is valid once it is clear.
      */
     bool busy_updating;
     /**
      * File Ctr: bits 8 to 15, raw 0 to 255. With the type it identifies the file.
-     * @note Note COM-029 (certain): One field, several spellings. The same things are written Magic number and Magic
-     * Number, BlockLength and Block Length, File bytes and File Bytes, File Counter, Counter and File Ctr, and Checksum
-     * with and without CRC16. Names are held as printed.
-     * @note Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with the next one is
-     * not said.
+     * @note COM-029 (certain): One field, several spellings. The same things are written Magic number and Magic Number,
+     * BlockLength and Block Length, File bytes and File Bytes, File Counter, Counter and File Ctr, and Checksum with
+     * and without CRC16. Names are held as printed.
+     * @note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with the next one is not
+     * said.
      */
     uint8_t file_ctr;
     /**
@@ -51,8 +51,8 @@ typedef struct {
      * @note Erratum COM-099 (certain): File Date and Time: a packed date in seconds. The unit is given as s, but the
      * value is a date and time packed into bit fields, so it counts nothing. Held with a unit of its own; the raw value
      * is not converted.
-     * @note Note COM-100 (open): Time zone of file times is not given. Whether UTC or something else fills the packed
-     * date is not said; its resolution is 2 s.
+     * @note COM-100 (open): Time zone of file times is not given. Whether UTC or something else fills the packed date
+     * is not said; its resolution is 2 s.
      */
     uint32_t file_date_and_time;
     /** File CRC16 Checksum: bits 80 to 95, raw 0 to 65535. */
@@ -115,6 +115,21 @@ static inline icd_status_t common_file_information_encode(
     icdgen_store_u32le(&buffer[6], message->file_date_and_time);
     icdgen_store_u16le(&buffer[10], message->file_crc16_checksum);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_file_information_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"File Type", "", 0u, 4u, 1u, NULL, 0u},
+        {"Busy Updating", "", 4u, 1u, 1u, NULL, 0u},
+        {"File Ctr", "", 8u, 8u, 1u, NULL, 0u},
+        {"File Size", "byte", 16u, 32u, 1u, NULL, 0u},
+        {"File Date and Time", "MS-DOS time", 48u, 32u, 1u, NULL, 0u},
+        {"File CRC16 Checksum", "", 80u, 16u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
 }
 
 #endif /* COMMON_FILE_INFORMATION_H */

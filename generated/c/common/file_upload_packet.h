@@ -8,14 +8,14 @@
  * File Upload Packet: telecommand 115, 22 bytes. Table 21.
  * One packet of a block. Packets may follow one another without a pause.
  * The node does not acknowledge it.
- * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
+ * @note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
  * upload are in the list common to both programs, the procedure belongs to the bootloader. Whether the ACP answers
  * them, refuses them, or uploads somewhere is not said.
- * @note Note COM-046 (likely): File Upload Packet is not acknowledged, against the rule. Every telecommand is answered
- * on UART and CAN, and a second one before the answer corrupts the buffer. This one is sent in a stream and never
+ * @note COM-046 (likely): File Upload Packet is not acknowledged, against the rule. Every telecommand is answered on
+ * UART and CAN, and a second one before the answer corrupts the buffer. This one is sent in a stream and never
  * answered.
- * @note Note COM-125 (certain): File Upload Packet: messages of 20 bytes, parameters of 22. The procedure sends
- * messages with a size of 20 bytes each. 20 are the bytes of the file; with the packet number the telecommand has 22.
+ * @note COM-125 (certain): File Upload Packet: messages of 20 bytes, parameters of 22. The procedure sends messages
+ * with a size of 20 bytes each. 20 are the bytes of the file; with the packet number the telecommand has 22.
  */
 
 #include "../icdgen.h"
@@ -29,15 +29,15 @@
 typedef struct {
     /**
      * Packet Number: bits 0 to 15, raw 0 to 65535.
-     * @note Note COM-047 (likely): Packet numbers: from 0 or from 1. Neither the upload nor the download says where the
+     * @note COM-047 (likely): Packet numbers: from 0 or from 1. Neither the upload nor the download says where the
      * count begins. The code walks bits 0 to 1023 of the hole map, so 0 is likely.
      */
     uint16_t packet_number;
     /**
      * File Bytes: bytes 2 to 21.
-     * @note Note COM-048 (open): Last packet of a block: fill is not defined. Packets have always 20 bytes of data.
-     * What follows the end of the file in the last one, in either direction, is not said, nor whether the checksum
-     * covers it.
+     * @note COM-048 (open): Last packet of a block: fill is not defined. Packets have always 20 bytes of data. What
+     * follows the end of the file in the last one, in either direction, is not said, nor whether the checksum covers
+     * it.
      */
     uint8_t file_bytes[20];
 } common_file_upload_packet_t;
@@ -74,6 +74,17 @@ static inline icd_status_t common_file_upload_packet_encode(
     icdgen_store_u16le(&buffer[0], message->packet_number);
     (void)memcpy(&buffer[2], message->file_bytes, 20u);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_file_upload_packet_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Packet Number", "", 0u, 16u, 1u, NULL, 0u},
+        {"File Bytes", "", 16u, 160u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* COMMON_FILE_UPLOAD_PACKET_H */

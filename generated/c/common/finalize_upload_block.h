@@ -7,12 +7,12 @@
  * @file
  * Finalize Upload Block: telecommand 116, 7 bytes. Table 22.
  * Commits the received block to its destination.
- * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
+ * @note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
  * upload are in the list common to both programs, the procedure belongs to the bootloader. Whether the ACP answers
  * them, refuses them, or uploads somewhere is not said.
- * @note Note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text ends with the checksum
- * test before the block is committed. The telecommand that commits it and the frame that reports it are never named;
- * both stood in a figure at best.
+ * @note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text ends with the checksum test
+ * before the block is committed. The telecommand that commits it and the frame that reports it are never named; both
+ * stood in a figure at best.
  */
 
 #include "../icdgen.h"
@@ -74,6 +74,18 @@ static inline icd_status_t common_finalize_upload_block_encode(
     icdgen_store_u32le(&buffer[1], message->offset);
     icdgen_store_u16le(&buffer[5], message->block_length);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_finalize_upload_block_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Destination", "", 0u, 8u, 1u, NULL, 0u},
+        {"Offset", "byte", 8u, 32u, 1u, NULL, 0u},
+        {"Block Length", "byte", 40u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* COMMON_FINALIZE_UPLOAD_BLOCK_H */

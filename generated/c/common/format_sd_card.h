@@ -58,4 +58,14 @@ static inline icd_status_t common_format_sd_card_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_format_sd_card_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Magic Number", "", 0u, 8u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
+}
+
 #endif /* COMMON_FORMAT_SD_CARD_H */

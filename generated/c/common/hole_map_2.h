@@ -7,15 +7,15 @@
  * @file
  * Hole Map 2: configuration, set by telecommand 121, got by telemetry 248, 16 bytes. Table 53.
  * Packets 128 to 255 of a file block.
- * @note Note COM-115 (certain): Hole maps are named for the upload and serve the download too. All eight messages are
+ * @note COM-115 (certain): Hole maps are named for the upload and serve the download too. All eight messages are
  * described as file upload hole map. For a download the OBC sets them, for an upload it reads them. Whether both use
  * one buffer is not said.
- * @note Note COM-116 (open): Hole map: who clears it before a download. Only Reset Upload Block is said to reset the
- * map. Before a download it may hold what the last transfer left; the first burst ignores it, the second does not.
- * @note Note COM-117 (likely): Hole map: bits beyond the last packet. The code treats every 0 among 1024 bits as a
- * packet missed, also those that a shorter block does not have.
- * @note Note COM-124 (certain): The hole map is read with eight frames, one table is referred to. Frames 247 to 254 are
- * said to be described by Table 52, which describes the first of them.
+ * @note COM-116 (open): Hole map: who clears it before a download. Only Reset Upload Block is said to reset the map.
+ * Before a download it may hold what the last transfer left; the first burst ignores it, the second does not.
+ * @note COM-117 (likely): Hole map: bits beyond the last packet. The code treats every 0 among 1024 bits as a packet
+ * missed, also those that a shorter block does not have.
+ * @note COM-124 (certain): The hole map is read with eight frames, one table is referred to. Frames 247 to 254 are said
+ * to be described by Table 52, which describes the first of them.
  */
 
 #include "../icdgen.h"
@@ -63,6 +63,16 @@ static inline icd_status_t common_hole_map_2_encode(
     }
     (void)memcpy(&buffer[0], message->hole_map, 16u);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_hole_map_2_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Hole Map", "", 0u, 128u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
 }
 
 #endif /* COMMON_HOLE_MAP_2_H */

@@ -7,9 +7,9 @@
  * @file
  * Identification: telemetry 128, 8 bytes. Table 27.
  * Tells which program is running. Requesting it from the bootloader keeps it from booting on.
- * @note Note COM-054 (likely): The identification request stops the boot that it is to check. A request that reaches
- * the bootloader keeps it from booting: asked within the first 5 s, or after a reset that nobody planned, it prevents
- * the start. Section 7.1 does not say how the boot is resumed; Run Selected Program would do it.
+ * @note COM-054 (likely): The identification request stops the boot that it is to check. A request that reaches the
+ * bootloader keeps it from booting: asked within the first 5 s, or after a reset that nobody planned, it prevents the
+ * start. Section 7.1 does not say how the boot is resumed; Run Selected Program would do it.
  */
 
 #include "../icdgen.h"
@@ -37,8 +37,8 @@ typedef struct {
      * Runtime (seconds): bits 32 to 47, raw 0 to 65535, in s. Since the processor started.
      * @note Erratum COM-057 (certain): Runtime has its unit in words only. Seconds stand in name and description, not
      * as a unit of measure.
-     * @note Note COM-056 (open): Runtime ends after 18 hours. Seconds since start-up have 16 bits and reach 65535 s, 18
-     * h 12 min. What follows is not said.
+     * @note COM-056 (open): Runtime ends after 18 hours. Seconds since start-up have 16 bits and reach 65535 s, 18 h 12
+     * min. What follows is not said.
      */
     uint16_t runtime_seconds;
     /**
@@ -89,6 +89,21 @@ static inline icd_status_t common_identification_encode(
     icdgen_store_u16le(&buffer[4], message->runtime_seconds);
     icdgen_store_u16le(&buffer[6], message->runtime_milliseconds);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_identification_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Node type", "", 0u, 8u, 1u, NULL, 0u},
+        {"Interface version", "", 8u, 8u, 1u, NULL, 0u},
+        {"Firmware version (Major)", "", 16u, 8u, 1u, NULL, 0u},
+        {"Firmware version (Minor)", "", 24u, 8u, 1u, NULL, 0u},
+        {"Runtime (seconds)", "s", 32u, 16u, 1u, NULL, 0u},
+        {"Runtime (milliseconds)", "ms", 48u, 16u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
 }
 
 #endif /* COMMON_IDENTIFICATION_H */

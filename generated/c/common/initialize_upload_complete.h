@@ -7,14 +7,14 @@
  * @file
  * Initialize Upload Complete: telemetry 244, 1 byte. Table 44.
  * Polled after Initiate File Upload.
- * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
+ * @note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
  * upload are in the list common to both programs, the procedure belongs to the bootloader. Whether the ACP answers
  * them, refuses them, or uploads somewhere is not said.
- * @note Note COM-104 (certain): Upload is initiated, initialized and finalized under changing names. Initiate File
- * Upload is followed by Initialize Upload Complete; Finalize Upload Block is described as finalizing the uploaded file
- * block, and its frame Upload Block Complete as finalizing complete.
- * @note Note COM-105 (open): Initialisation of an upload can fail silently. The frame has a busy flag only; a failed
- * erase of the flash shows nowhere until the checksum of a block is wrong.
+ * @note COM-104 (certain): Upload is initiated, initialized and finalized under changing names. Initiate File Upload is
+ * followed by Initialize Upload Complete; Finalize Upload Block is described as finalizing the uploaded file block, and
+ * its frame Upload Block Complete as finalizing complete.
+ * @note COM-105 (open): Initialisation of an upload can fail silently. The frame has a busy flag only; a failed erase
+ * of the flash shows nowhere until the checksum of a block is wrong.
  */
 
 #include "../icdgen.h"
@@ -28,8 +28,8 @@
 typedef struct {
     /**
      * Busy: bit 0. Still preparing, for instance erasing flash.
-     * @note Note COM-103 (certain): Frames named complete report busy. Initialize Upload Complete and Upload Block
-     * Complete hold a flag that is set while the operation is not complete.
+     * @note COM-103 (certain): Frames named complete report busy. Initialize Upload Complete and Upload Block Complete
+     * hold a flag that is set while the operation is not complete.
      */
     bool busy;
 } common_initialize_upload_complete_t;
@@ -64,6 +64,16 @@ static inline icd_status_t common_initialize_upload_complete_encode(
     }
     buffer[0] = ICDGEN_U8(message->busy);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_initialize_upload_complete_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Busy", "", 0u, 1u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
 }
 
 #endif /* COMMON_INITIALIZE_UPLOAD_COMPLETE_H */

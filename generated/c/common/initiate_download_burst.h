@@ -8,13 +8,13 @@
  * Initiate Download Burst: telecommand 119, 2 bytes. Table 25.
  * Starts the transfer of the loaded block. On the UART the packets come in rapid succession, on I2C the master reads
  * them one by one.
- * @note Note COM-051 (certain): Messages of the download have other names in the text. Initiate File Download Burst and
+ * @note COM-051 (certain): Messages of the download have other names in the text. Initiate File Download Burst and
  * Download File Packet do not exist. Initiate Download Burst and File Download Buffer with File Contents are meant.
- * @note Note COM-052 (open): Download packets: id of the telecommand or of the frame. On UART the packets are said to
- * be headed by the id of the telecommand, 119. The frame with their format has the id 241. Which of the two the reads
- * on I2C are headed by is not said; 241 is assumed. With 119 a packet and an acknowledge differ by length only.
- * @note Note COM-053 (open): Download over CAN is not described. Packets are pushed on UART and read on I2C. For CAN,
- * which both programs support, nothing is said; a packet of 22 bytes would need an extended transaction of four.
+ * @note COM-052 (open): Download packets: id of the telecommand or of the frame. On UART the packets are said to be
+ * headed by the id of the telecommand, 119. The frame with their format has the id 241. Which of the two the reads on
+ * I2C are headed by is not said; 241 is assumed. With 119 a packet and an acknowledge differ by length only.
+ * @note COM-053 (open): Download over CAN is not described. Packets are pushed on UART and read on I2C. For CAN, which
+ * both programs support, nothing is said; a packet of 22 bytes would need an extended transaction of four.
  */
 
 #include "../icdgen.h"
@@ -28,9 +28,9 @@
 typedef struct {
     /**
      * Message Length: bits 0 to 7, raw 0 to 255.
-     * @note Note COM-050 (open): Initiate Download Burst: Message Length is not explained. The length of a message is
-     * fixed at 22 bytes by the frame and the text. Which value has to be sent, and what others do, is not said; one
-     * error flag refers to it.
+     * @note COM-050 (open): Initiate Download Burst: Message Length is not explained. The length of a message is fixed
+     * at 22 bytes by the frame and the text. Which value has to be sent, and what others do, is not said; one error
+     * flag refers to it.
      */
     uint8_t message_length;
     /** Ignore Hole Map: bit 8. Set: all packets. Clear: only those whose bit in the hole map is 0. */
@@ -69,6 +69,17 @@ static inline icd_status_t common_initiate_download_burst_encode(
     buffer[0] = message->message_length;
     buffer[1] = ICDGEN_U8(message->ignore_hole_map);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_initiate_download_burst_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Message Length", "", 0u, 8u, 1u, NULL, 0u},
+        {"Ignore Hole Map", "", 8u, 1u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* COMMON_INITIATE_DOWNLOAD_BURST_H */

@@ -8,7 +8,7 @@
  * Initiate File Upload: telecommand 114, 2 bytes. Table 19.
  * Erases the destination. Initialize Upload Complete tells when that is done.
  * Dangerous: The program in the destination is lost.
- * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
+ * @note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
  * upload are in the list common to both programs, the procedure belongs to the bootloader. Whether the ACP answers
  * them, refuses them, or uploads somewhere is not said.
  */
@@ -27,8 +27,8 @@ typedef struct {
     common_file_upload_destination_t destination;
     /**
      * BlockSize: bits 8 to 15, raw 0 to 255. Ignored, may be 0.
-     * @note Note COM-042 (certain): BlockSize is a byte and ignored. The field cannot hold the size of a block, and the
-     * text says that it is ignored and may be 0.
+     * @note COM-042 (certain): BlockSize is a byte and ignored. The field cannot hold the size of a block, and the text
+     * says that it is ignored and may be 0.
      */
     uint8_t block_size;
 } common_initiate_file_upload_t;
@@ -65,6 +65,17 @@ static inline icd_status_t common_initiate_file_upload_encode(
     buffer[0] = message->destination;
     buffer[1] = message->block_size;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_initiate_file_upload_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Destination", "", 0u, 8u, 1u, NULL, 0u},
+        {"BlockSize", "", 8u, 8u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* COMMON_INITIATE_FILE_UPLOAD_H */

@@ -7,8 +7,8 @@
  * @file
  * Last Logged Event: telemetry 141, 6 bytes. Table 34.
  * The event at the log pointer, which Reset Log Pointer and Advance Log Pointer move.
- * @note Note COM-073 (certain): Last Logged Event: wrong telecommands, and a bracket left open. The pointer is said to
- * be adjusted with telecommands 3 and 4. Reset Log Pointer is 4 and Advance Log Pointer 5; 3 sets the cache.
+ * @note COM-073 (certain): Last Logged Event: wrong telecommands, and a bracket left open. The pointer is said to be
+ * adjusted with telecommands 3 and 4. Reset Log Pointer is 4 and Advance Log Pointer 5; 3 sets the cache.
  */
 
 #include "../icdgen.h"
@@ -22,18 +22,18 @@
 typedef struct {
     /**
      * Time of Event: bits 0 to 31, raw 0 to 4294967295.
-     * @note Note COM-074 (open): Time of Event has no description. Neither unit nor epoch is given; Unix time in
-     * seconds is a guess from the width.
+     * @note COM-074 (open): Time of Event has no description. Neither unit nor epoch is given; Unix time in seconds is
+     * a guess from the width.
      */
     uint32_t time_of_event;
     /**
      * Event ID: bits 32 to 39, raw 0 to 255.
-     * @note Note COM-075 (open): Events are not listed. Event ID and parameter are numbers without a key.
+     * @note COM-075 (open): Events are not listed. Event ID and parameter are numbers without a key.
      */
     uint8_t event_id;
     /**
      * Event Parameter: bits 40 to 47, raw 0 to 255.
-     * @note Note COM-075 (open): see Event ID.
+     * @note COM-075 (open): see Event ID.
      */
     uint8_t event_parameter;
 } common_last_logged_event_t;
@@ -72,6 +72,18 @@ static inline icd_status_t common_last_logged_event_encode(
     buffer[4] = message->event_id;
     buffer[5] = message->event_parameter;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_last_logged_event_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Time of Event", "", 0u, 32u, 1u, NULL, 0u},
+        {"Event ID", "", 32u, 8u, 1u, NULL, 0u},
+        {"Event Parameter", "", 40u, 8u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* COMMON_LAST_LOGGED_EVENT_H */

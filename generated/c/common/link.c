@@ -176,6 +176,7 @@ ICDGEN_API const icd_link_t *common_link(void)
     };
 #endif
     static const icd_crc_form_t crc16 = {
+        /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, table */
         16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, ICDGEN_TABLE(crc16_table),
     };
     static const icd_time_form_t packed_time = {
@@ -333,36 +334,36 @@ ICDGEN_API const icd_link_t *common_link(void)
      * at that value no start is said to follow.
      */
     static const icd_link_t link = {
-        nodes,
+        nodes, /* whose messages */
         1u, /* how many */
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        telecommands,
-        telemetry,
+        telecommands, /* what can be sent */
+        telemetry, /* what can be requested */
         26u, 27u, /* how many */
         23u, 23u, 23u, /* longest telecommand, reply, any */
         22u, /* longest without id and checksum */
         -1, /* node type */
         -1, /* interface version */
-        {1000u, 3u, 20u, 5000u},
-        errors,
+        {1000u, 3u, 20u, 5000u}, /* ms for a reply, retries, ms between polls, ms of polling */
+        errors, /* error codes */
         5u, 0u, /* how many; no error */
-        &framing,
-        &acknowledge,
+        &framing, /* framing of the UART */
+        &acknowledge, /* acknowledges on the UART */
         87, /* I2C address */
         5000, /* boot time in ms */
-        &polled,
-        &can,
-        NULL,
-        &crc16,
-        NULL,
-        NULL,
-        NULL,
-        &packed_time,
-        &index_entry,
-        &hole_map,
-        &files,
+        &polled, /* what is polled for an acknowledge */
+        &can, /* CAN */
+        NULL, /* checksums of messages */
+        &crc16, /* CRC of files */
+        NULL, /* mask of logs */
+        NULL, /* log files */
+        NULL, /* unsolicited logs */
+        &packed_time, /* packed times */
+        &index_entry, /* index of files */
+        &hole_map, /* hole map */
+        &files, /* file transfer */
         &list, /* list */
         &download, /* download */
         NULL, /* upload */

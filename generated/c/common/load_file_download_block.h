@@ -25,11 +25,11 @@ typedef struct {
     common_file_type_t file_type;
     /**
      * Counter: bits 8 to 15, raw 0 to 255. Of the file: with the type it identifies the file.
-     * @note Note COM-029 (certain): One field, several spellings. The same things are written Magic number and Magic
-     * Number, BlockLength and Block Length, File bytes and File Bytes, File Counter, Counter and File Ctr, and Checksum
-     * with and without CRC16. Names are held as printed.
-     * @note Note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with the next one is
-     * not said.
+     * @note COM-029 (certain): One field, several spellings. The same things are written Magic number and Magic Number,
+     * BlockLength and Block Length, File bytes and File Bytes, File Counter, Counter and File Ctr, and Checksum with
+     * and without CRC16. Names are held as printed.
+     * @note COM-035 (open): File counter of 8 bits. A type can have 256 files. What happens with the next one is not
+     * said.
      */
     uint8_t counter;
     /**
@@ -39,9 +39,10 @@ typedef struct {
      */
     uint32_t offset;
     /**
-     * BlockLength: bits 48 to 63, raw 0 to 65535, in byte. 20 kB at most. Must be at most 20480 byte.
+     * BlockLength: bits 48 to 63, raw 0 to 65535, in byte. 20 kB at most. Must be at most 20480 byte, which setters do
+     * not check.
      * @note Erratum COM-039 (likely): see Offset.
-     * @note Note COM-029 (certain): see Counter.
+     * @note COM-029 (certain): see Counter.
      */
     uint16_t block_length;
 } common_load_file_download_block_t;
@@ -82,6 +83,22 @@ static inline icd_status_t common_load_file_download_block_encode(
     icdgen_store_u32le(&buffer[2], message->offset);
     icdgen_store_u16le(&buffer[6], message->block_length);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_load_file_download_block_fields(size_t *count)
+{
+    static const icd_limit_t limits[] = {
+        {ICD_LIMIT_MAX, 20480.0},
+    };
+    static const icd_field_t fields[] = {
+        {"File Type", "", 0u, 8u, 1u, NULL, 0u},
+        {"Counter", "", 8u, 8u, 1u, NULL, 0u},
+        {"Offset", "byte", 16u, 32u, 1u, NULL, 0u},
+        {"BlockLength", "byte", 48u, 16u, 1u, &limits[0], 1u},
+    };
+    *count = 4u;
+    return fields;
 }
 
 #endif /* COMMON_LOAD_FILE_DOWNLOAD_BLOCK_H */

@@ -9,8 +9,8 @@
  * Restarts the CubeComputer.
  * Dangerous: The program that runs is stopped, and what it has not saved is lost. The node restarts instead of
  * acknowledging it.
- * @note Note COM-028 (open): The Reset telecommand: acknowledged or not. Every telecommand is acknowledged, but this
- * one restarts the program that would do it. Whether the reply comes first is not said.
+ * @note COM-028 (open): The Reset telecommand: acknowledged or not. Every telecommand is acknowledged, but this one
+ * restarts the program that would do it. Whether the reply comes first is not said.
  */
 
 #include "../icdgen.h"
@@ -26,9 +26,9 @@
 typedef struct {
     /**
      * Magic number: bits 0 to 7, raw 0 to 255. Guards against an accidental reset. Always 90 (0x5A).
-     * @note Note COM-029 (certain): One field, several spellings. The same things are written Magic number and Magic
-     * Number, BlockLength and Block Length, File bytes and File Bytes, File Counter, Counter and File Ctr, and Checksum
-     * with and without CRC16. Names are held as printed.
+     * @note COM-029 (certain): One field, several spellings. The same things are written Magic number and Magic Number,
+     * BlockLength and Block Length, File bytes and File Bytes, File Counter, Counter and File Ctr, and Checksum with
+     * and without CRC16. Names are held as printed.
      */
     uint8_t magic_number;
 } common_reset_t;
@@ -64,6 +64,16 @@ static inline icd_status_t common_reset_encode(
     }
     buffer[0] = message->magic_number;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_reset_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Magic number", "", 0u, 8u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
 }
 
 #endif /* COMMON_RESET_H */

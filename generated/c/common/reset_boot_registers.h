@@ -7,9 +7,9 @@
  * @file
  * Reset Boot Registers: telecommand 6, 0 bytes. Table 13.
  * Resets the boot counter, boot state and boot cause.
- * @note Note COM-032 (likely): Reset Boot Registers: a Boot State that no frame has, and no values to reset to. The
- * command is said to reset Boot Counter, Boot State and Boot Cause. There is no Boot State; Boot Status is probably
- * meant. To which value status and cause are reset is not said.
+ * @note COM-032 (likely): Reset Boot Registers: a Boot State that no frame has, and no values to reset to. The command
+ * is said to reset Boot Counter, Boot State and Boot Cause. There is no Boot State; Boot Status is probably meant. To
+ * which value status and cause are reset is not said.
  */
 
 #include "../icdgen.h"
@@ -55,6 +55,13 @@ static inline icd_status_t common_reset_boot_registers_encode(
     (void)message;
     (void)buffer;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_reset_boot_registers_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
 }
 
 #endif /* COMMON_RESET_BOOT_REGISTERS_H */

@@ -54,4 +54,11 @@ static inline icd_status_t common_reset_file_list_read_pointer_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_reset_file_list_read_pointer_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
+}
+
 #endif /* COMMON_RESET_FILE_LIST_READ_POINTER_H */

@@ -7,10 +7,10 @@
  * @file
  * Reset Log Pointer: telecommand 4, 0 bytes. Table 11.
  * Resets the pointer at which Last Logged Event reads the event buffer.
- * @note Note COM-030 (certain): Log pointer telecommands speak of a frame that is named otherwise. They move the
- * pointer of LastLogEvent; the frame is called Last Logged Event.
- * @note Note COM-031 (open): Log pointer: where it starts and which way it advances. After a reset the pointer may
- * stand at the oldest or at the newest event, and advancing may go either way. What is read past the end is not said.
+ * @note COM-030 (certain): Log pointer telecommands speak of a frame that is named otherwise. They move the pointer of
+ * LastLogEvent; the frame is called Last Logged Event.
+ * @note COM-031 (open): Log pointer: where it starts and which way it advances. After a reset the pointer may stand at
+ * the oldest or at the newest event, and advancing may go either way. What is read past the end is not said.
  */
 
 #include "../icdgen.h"
@@ -56,6 +56,13 @@ static inline icd_status_t common_reset_log_pointer_encode(
     (void)message;
     (void)buffer;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_reset_log_pointer_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
 }
 
 #endif /* COMMON_RESET_LOG_POINTER_H */

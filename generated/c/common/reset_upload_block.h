@@ -7,11 +7,11 @@
  * @file
  * Reset Upload Block: telecommand 117, 0 bytes. Table 23.
  * Announces a new block by clearing the hole map.
- * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
+ * @note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
  * upload are in the list common to both programs, the procedure belongs to the bootloader. Whether the ACP answers
  * them, refuses them, or uploads somewhere is not said.
- * @note Note COM-126 (certain): Reset Upload Block tells the node of a block, and does not say which. The telecommand
- * is said to notify the node of the block that is to be uploaded. It has no parameter; the place and the length of the
+ * @note COM-126 (certain): Reset Upload Block tells the node of a block, and does not say which. The telecommand is
+ * said to notify the node of the block that is to be uploaded. It has no parameter; the place and the length of the
  * block are first sent when it is committed.
  */
 
@@ -58,6 +58,13 @@ static inline icd_status_t common_reset_upload_block_encode(
     (void)message;
     (void)buffer;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_reset_upload_block_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
 }
 
 #endif /* COMMON_RESET_UPLOAD_BLOCK_H */

@@ -7,8 +7,8 @@
  * @file
  * SD card format/erase progress: telemetry 234, 1 byte. Table 38.
  * Whether the SD card is still being formatted or erased.
- * @note Note COM-085 (open): Erase File: progress and failure. Only Erase All can be followed. A single file, or an
- * erase or format that fails, leaves no trace in any frame.
+ * @note COM-085 (open): Erase File: progress and failure. Only Erase All can be followed. A single file, or an erase or
+ * format that fails, leaves no trace in any frame.
  */
 
 #include "../icdgen.h"
@@ -24,8 +24,8 @@ typedef struct {
     bool format_busy;
     /**
      * Erase All Busy: bit 1. All files are being erased.
-     * @note Note COM-086 (certain): Erase All Busy: two verbs for one. The description reads formatting erasing, left
-     * over from the row above. Erasing is meant.
+     * @note COM-086 (certain): Erase All Busy: two verbs for one. The description reads formatting erasing, left over
+     * from the row above. Erasing is meant.
      */
     bool erase_all_busy;
 } common_sd_card_format_erase_progress_t;
@@ -61,6 +61,17 @@ static inline icd_status_t common_sd_card_format_erase_progress_encode(
     }
     buffer[0] = ICDGEN_U8(message->format_busy | (message->erase_all_busy << 1));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_sd_card_format_erase_progress_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Format Busy", "", 0u, 1u, 1u, NULL, 0u},
+        {"Erase All Busy", "", 1u, 1u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_H */

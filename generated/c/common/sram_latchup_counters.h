@@ -61,4 +61,15 @@ static inline icd_status_t common_sram_latchup_counters_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_sram_latchup_counters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"SRAM1 latchups", "", 0u, 16u, 1u, NULL, 0u},
+        {"SRAM2 latchups", "", 16u, 16u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* COMMON_SRAM_LATCHUP_COUNTERS_H */

@@ -21,8 +21,8 @@
 typedef struct {
     /**
      * Scrub Size: bits 0 to 15, raw 0 to 65535.
-     * @note Note COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit. The message has one field,
-     * described as a size. Bytes, words or blocks per cycle are all possible, and the cycle is not given.
+     * @note COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit. The message has one field, described as
+     * a size. Bytes, words or blocks per cycle are all possible, and the cycle is not given.
      */
     uint16_t scrub_size;
 } common_sram_scrub_parameters_t;
@@ -57,6 +57,16 @@ static inline icd_status_t common_sram_scrub_parameters_encode(
     }
     icdgen_store_u16le(&buffer[0], message->scrub_size);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_sram_scrub_parameters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Scrub Size", "", 0u, 16u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
 }
 
 #endif /* COMMON_SRAM_SCRUB_PARAMETERS_H */

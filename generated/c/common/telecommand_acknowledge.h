@@ -7,10 +7,10 @@
  * @file
  * Telecommand Acknowledge: telemetry 240, 4 bytes. Table 39.
  * What became of the last telecommand. Meant for I2C, where the node cannot answer of its own accord.
- * @note Note COM-092 (certain): The procedure polls a thing called Telemetry Format. The steps tell to poll the
- * Telecommand Acknowledge Telemetry Format, the caption of a table, instead of the frame.
- * @note Note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be polled, and when
- * to give up, is not said. For files a time is suggested for two of the operations only.
+ * @note COM-092 (certain): The procedure polls a thing called Telemetry Format. The steps tell to poll the Telecommand
+ * Acknowledge Telemetry Format, the caption of a table, instead of the frame.
+ * @note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be polled, and when to
+ * give up, is not said. For files a time is suggested for two of the operations only.
  */
 
 #include "../icdgen.h"
@@ -25,32 +25,32 @@
 typedef struct {
     /**
      * Last TC ID: bits 0 to 7, raw 0 to 255.
-     * @note Note COM-090 (open): Last TC ID is of the last received, the error of the last processed. Id and Processed
-     * flag belong to the last telecommand received, the error status to the last one processed. While the flag is 0 the
+     * @note COM-090 (open): Last TC ID is of the last received, the error of the last processed. Id and Processed flag
+     * belong to the last telecommand received, the error status to the last one processed. While the flag is 0 the
      * error is that of an earlier telecommand than the id names, and nothing in the table says so.
      */
     uint8_t last_tc_id;
     /**
      * Processed flag: bit 8. The next telecommand may be sent. Says nothing about the outcome of the last one.
-     * @note Note COM-088 (certain): Processed flag has three names. Telecommand Processed flag, Processed flag and
-     * Processed stand for one bit.
-     * @note Note COM-089 (open): Processed flag: processed or merely taken over. It is described as showing that the
-     * last telecommand has been processed, and elsewhere as no indication of its execution, only of readiness for
-     * another one. When the error status of the same frame becomes valid is then open.
+     * @note COM-088 (certain): Processed flag has three names. Telecommand Processed flag, Processed flag and Processed
+     * stand for one bit.
+     * @note COM-089 (open): Processed flag: processed or merely taken over. It is described as showing that the last
+     * telecommand has been processed, and elsewhere as no indication of its execution, only of readiness for another
+     * one. When the error status of the same frame becomes valid is then open.
      */
     bool processed_flag;
     /**
      * TC error status: bits 16 to 23.
-     * @note Note COM-087 (certain): TC Error is called a flag and is a code. The text speaks of a TC Error flag, of the
-     * TC Error Flag with a value of 4, and of Tc Error Status. The field is an enumeration of 8 bits named TC error
+     * @note COM-087 (certain): TC Error is called a flag and is a code. The text speaks of a TC Error flag, of the TC
+     * Error Flag with a value of 4, and of Tc Error Status. The field is an enumeration of 8 bits named TC error
      * status.
-     * @note Note COM-090 (open): see Last TC ID.
+     * @note COM-090 (open): see Last TC ID.
      */
     common_tc_error_reason_t tc_error_status;
     /**
      * TC parameter error index: bits 24 to 31, raw 0 to 255. Which parameter was wrong.
-     * @note Note COM-091 (open): TC parameter error index: index of what. It may count parameters, bytes or bits, from
-     * 0 or from 1. What it holds without an error is not said, and neither UART nor CAN replies carry it.
+     * @note COM-091 (open): TC parameter error index: index of what. It may count parameters, bytes or bits, from 0 or
+     * from 1. What it holds without an error is not said, and neither UART nor CAN replies carry it.
      */
     uint8_t tc_parameter_error_index;
 } common_telecommand_acknowledge_t;
@@ -91,6 +91,19 @@ static inline icd_status_t common_telecommand_acknowledge_encode(
     buffer[2] = message->tc_error_status;
     buffer[3] = message->tc_parameter_error_index;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_telecommand_acknowledge_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Last TC ID", "", 0u, 8u, 1u, NULL, 0u},
+        {"Processed flag", "", 8u, 1u, 1u, NULL, 0u},
+        {"TC error status", "", 16u, 8u, 1u, NULL, 0u},
+        {"TC parameter error index", "", 24u, 8u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
 }
 
 #endif /* COMMON_TELECOMMAND_ACKNOWLEDGE_H */

@@ -7,8 +7,8 @@
  * @file
  * Unix Time Save to Flash: configuration, set by telecommand 9, got by telemetry 145, 2 bytes. Table 51.
  * When the Unix time is kept in flash, so that it survives a power cycle.
- * @note Note COM-112 (certain): Unix Time Save to Flash is described in two spellings. The list has Unix time, the
- * table unixtime.
+ * @note COM-112 (certain): Unix Time Save to Flash is described in two spellings. The list has Unix time, the table
+ * unixtime.
  */
 
 #include "../icdgen.h"
@@ -24,8 +24,8 @@
 typedef struct {
     /**
      * Save Now: bit 0. Saves once.
-     * @note Note COM-113 (open): Save Now is an action among settings. The message is a setting that can be read back.
-     * What the action bit reads as, and whether a set with it changes the other bits, is not said.
+     * @note COM-113 (open): Save Now is an action among settings. The message is a setting that can be read back. What
+     * the action bit reads as, and whether a set with it changes the other bits, is not said.
      */
     bool save_now;
     /** Save On Update: bit 1. Saves whenever the time is set. */
@@ -34,8 +34,8 @@ typedef struct {
     bool save_periodic;
     /**
      * Period: bits 8 to 15, raw 0 to 255, in s.
-     * @note Note COM-114 (open): Saving period: meaning of 0. The period has 8 bits of seconds, 255 s at most. What 0
-     * does is not said.
+     * @note COM-114 (open): Saving period: meaning of 0. The period has 8 bits of seconds, 255 s at most. What 0 does
+     * is not said.
      */
     uint8_t period;
 } common_unix_time_save_to_flash_t;
@@ -74,6 +74,19 @@ static inline icd_status_t common_unix_time_save_to_flash_encode(
     buffer[0] = ICDGEN_U8(message->save_now | (message->save_on_update << 1) | (message->save_periodic << 2));
     buffer[1] = message->period;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_unix_time_save_to_flash_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Save Now", "", 0u, 1u, 1u, NULL, 0u},
+        {"Save On Update", "", 1u, 1u, 1u, NULL, 0u},
+        {"Save Periodic", "", 2u, 1u, 1u, NULL, 0u},
+        {"Period", "s", 8u, 8u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
 }
 
 #endif /* COMMON_UNIX_TIME_SAVE_TO_FLASH_H */

@@ -7,17 +7,17 @@
  * @file
  * Upload Block Complete: telemetry 245, 1 byte. Table 45.
  * Polled after Finalize Upload Block.
- * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
+ * @note COM-041 (open): File upload is listed as common but described for the bootloader only. The messages of the
  * upload are in the list common to both programs, the procedure belongs to the bootloader. Whether the ACP answers
  * them, refuses them, or uploads somewhere is not said.
- * @note Note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text ends with the checksum
- * test before the block is committed. The telecommand that commits it and the frame that reports it are never named;
- * both stood in a figure at best.
- * @note Note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be polled, and when
- * to give up, is not said. For files a time is suggested for two of the operations only.
- * @note Note COM-104 (certain): Upload is initiated, initialized and finalized under changing names. Initiate File
- * Upload is followed by Initialize Upload Complete; Finalize Upload Block is described as finalizing the uploaded file
- * block, and its frame Upload Block Complete as finalizing complete.
+ * @note COM-049 (likely): Finalize Upload Block is missing from the procedure. The text ends with the checksum test
+ * before the block is committed. The telecommand that commits it and the frame that reports it are never named; both
+ * stood in a figure at best.
+ * @note COM-093 (open): Polling has no interval and no time-out. How often the acknowledge may be polled, and when to
+ * give up, is not said. For files a time is suggested for two of the operations only.
+ * @note COM-104 (certain): Upload is initiated, initialized and finalized under changing names. Initiate File Upload is
+ * followed by Initialize Upload Complete; Finalize Upload Block is described as finalizing the uploaded file block, and
+ * its frame Upload Block Complete as finalizing complete.
  */
 
 #include "../icdgen.h"
@@ -31,8 +31,8 @@
 typedef struct {
     /**
      * Busy: bit 0. Still finalizing the block.
-     * @note Note COM-103 (certain): Frames named complete report busy. Initialize Upload Complete and Upload Block
-     * Complete hold a flag that is set while the operation is not complete.
+     * @note COM-103 (certain): Frames named complete report busy. Initialize Upload Complete and Upload Block Complete
+     * hold a flag that is set while the operation is not complete.
      */
     bool busy;
     /** Error: bit 1. Finalizing the block failed. */
@@ -70,6 +70,17 @@ static inline icd_status_t common_upload_block_complete_encode(
     }
     buffer[0] = ICDGEN_U8(message->busy | (message->error << 1));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *common_upload_block_complete_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Busy", "", 0u, 1u, 1u, NULL, 0u},
+        {"Error", "", 1u, 1u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* COMMON_UPLOAD_BLOCK_COMPLETE_H */

@@ -59,4 +59,15 @@ static inline icd_status_t cubeacp_acp_execution_state_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_acp_execution_state_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Time Since Iteration Start", "ms", 0u, 16u, 1u, NULL, 0u},
+        {"Current Execution Point", "", 16u, 8u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
+}
+
 #endif /* CUBEACP_ACP_EXECUTION_STATE_H */

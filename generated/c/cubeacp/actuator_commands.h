@@ -22,39 +22,39 @@
 typedef struct {
     /**
      * X Magnetorquer Command: bits 0 to 15, raw -32768 to 32767, in 10ms units. On-time.
-     * @note Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time. The
-     * telecommand takes thousandths of a duty cycle, the frames give an on-time in units of 10 ms. The conversion
-     * depends on the loop period and on a resolution that is a setting.
-     * @note Note ACP-071 (likely): 10ms units is a factor, not a unit. The unit holds the scale that a formula should.
-     * It is kept as a unit of counts; nothing is converted.
+     * @note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time. The telecommand
+     * takes thousandths of a duty cycle, the frames give an on-time in units of 10 ms. The conversion depends on the
+     * loop period and on a resolution that is a setting.
+     * @note ACP-071 (likely): 10ms units is a factor, not a unit. The unit holds the scale that a formula should. It is
+     * kept as a unit of counts; nothing is converted.
      */
     int16_t x_magnetorquer_command;
     /**
      * Y Magnetorquer Command: bits 16 to 31, raw -32768 to 32767, in 10ms units. On-time.
-     * @note Note ACP-070 (open): see X Magnetorquer Command.
-     * @note Note ACP-071 (likely): see X Magnetorquer Command.
+     * @note ACP-070 (open): see X Magnetorquer Command.
+     * @note ACP-071 (likely): see X Magnetorquer Command.
      */
     int16_t y_magnetorquer_command;
     /**
      * Z Magnetorquer Command: bits 32 to 47, raw -32768 to 32767, in 10ms units. On-time.
-     * @note Note ACP-070 (open): see X Magnetorquer Command.
-     * @note Note ACP-071 (likely): see X Magnetorquer Command.
+     * @note ACP-070 (open): see X Magnetorquer Command.
+     * @note ACP-071 (likely): see X Magnetorquer Command.
      */
     int16_t z_magnetorquer_command;
     /**
      * Commanded X Wheel Speed: bits 48 to 63, raw -32768 to 32767, in rpm.
-     * @note Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds. The descriptions are those of
-     * the measured speeds; the names tell the difference. The telecommand names them again in another way.
+     * @note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds. The descriptions are those of the
+     * measured speeds; the names tell the difference. The telecommand names them again in another way.
      */
     int16_t commanded_x_wheel_speed;
     /**
      * Commanded Y Wheel Speed: bits 64 to 79, raw -32768 to 32767, in rpm.
-     * @note Note ACP-072 (certain): see Commanded X Wheel Speed.
+     * @note ACP-072 (certain): see Commanded X Wheel Speed.
      */
     int16_t commanded_y_wheel_speed;
     /**
      * Commanded Z Wheel Speed: bits 80 to 95, raw -32768 to 32767, in rpm.
-     * @note Note ACP-072 (certain): see Commanded X Wheel Speed.
+     * @note ACP-072 (certain): see Commanded X Wheel Speed.
      */
     int16_t commanded_z_wheel_speed;
 } cubeacp_actuator_commands_t;
@@ -99,6 +99,21 @@ static inline icd_status_t cubeacp_actuator_commands_encode(
     icdgen_store_u16le(&buffer[8], ICDGEN_U16(message->commanded_y_wheel_speed));
     icdgen_store_u16le(&buffer[10], ICDGEN_U16(message->commanded_z_wheel_speed));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_actuator_commands_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"X Magnetorquer Command", "10ms units", 0u, 16u, 1u, NULL, 0u},
+        {"Y Magnetorquer Command", "10ms units", 16u, 16u, 1u, NULL, 0u},
+        {"Z Magnetorquer Command", "10ms units", 32u, 16u, 1u, NULL, 0u},
+        {"Commanded X Wheel Speed", "rpm", 48u, 16u, 1u, NULL, 0u},
+        {"Commanded Y Wheel Speed", "rpm", 64u, 16u, 1u, NULL, 0u},
+        {"Commanded Z Wheel Speed", "rpm", 80u, 16u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
 }
 
 /** Magnetorquer Command, as it is repeated from byte 0. */

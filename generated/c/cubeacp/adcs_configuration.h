@@ -15,9 +15,9 @@
  * Tracking Controller Gain Parameters from byte 310. Repeats Moment of Inertia Matrix from byte 323. Repeats Estimation
  * Parameters from byte 347. Repeats Augmented-SGP4 Parameters from byte 378. Repeats User-coded Controller and
  * Estimator Parameters from byte 408.
- * @note Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0
- * and ignored.
- * @note Note ACP-159 (open): The current configuration is not all of it. The message is described as the current
+ * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
+ * ignored.
+ * @note ACP-159 (open): The current configuration is not all of it. The message is described as the current
  * configuration. It joins 16 of the 25 others; orbit, target, attitude command, power, logs, inertial vector and system
  * configuration are not in it. Save Configuration uses the same words.
  */
@@ -48,9 +48,9 @@
 /** Bytes of a frame, without the id. */
 #define CUBEACP_ADCS_CONFIGURATION_LENGTH 504u
 /** Reference spin rate in deg/s: must be below this. */
-#define CUBEACP_ADCS_CONFIGURATION_REFERENCE_SPIN_RATE_DEG_PER_S_BELOW 0
+#define CUBEACP_ADCS_CONFIGURATION_REFERENCE_SPIN_RATE_DEG_PER_S_BELOW 0.0
 /** Reference Wheel Momentum in Nms: must be below this. */
-#define CUBEACP_ADCS_CONFIGURATION_REFERENCE_WHEEL_MOMENTUM_BELOW 0
+#define CUBEACP_ADCS_CONFIGURATION_REFERENCE_WHEEL_MOMENTUM_BELOW 0.0
 
 /** Raw values. */
 typedef struct {
@@ -82,8 +82,8 @@ typedef struct {
     int16_t z_rate_sensor_offset;
     /**
      * RateSensorMult: bits 128 to 135, raw 0 to 255. Factor on the rate sensor measurements.
-     * @note Note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8 bits; whether it is a
-     * whole factor, and of which quantity, is not said.
+     * @note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8 bits; whether it is a whole
+     * factor, and of which quantity, is not said.
      */
     uint8_t rate_sensor_mult;
     /** CSS1 Configuration: bits 136 to 143. */
@@ -128,8 +128,8 @@ typedef struct {
     uint8_t css10_relative_scale;
     /**
      * CSS Threshold: bits 296 to 303, raw 0 to 255.
-     * @note Note ACP-133 (open): CSS threshold has no description. The name is repeated; neither unit nor what lies
-     * below it is said. The message is described as directions and scale factors.
+     * @note ACP-133 (open): CSS threshold has no description. The name is repeated; neither unit nor what lies below it
+     * is said. The message is described as directions and scale factors.
      */
     uint8_t css_threshold;
     /**
@@ -460,35 +460,35 @@ typedef struct {
     int16_t star_tracker_mounting_gamma;
     /**
      * StarTracker exposure time: bits 1728 to 1743, raw 0 to 65535. Register value.
-     * @note Note ACP-145 (open): Exposure and gain are register values. Neither the register nor its scale is given, so
+     * @note ACP-145 (open): Exposure and gain are register values. Neither the register nor its scale is given, so
      * times and gains cannot be told from them.
      */
     uint16_t star_tracker_exposure_time;
     /**
      * StarTracker analog gain: bits 1744 to 1759, raw 0 to 65535. Register value.
-     * @note Note ACP-145 (open): see StarTracker exposure time.
+     * @note ACP-145 (open): see StarTracker exposure time.
      */
     uint16_t star_tracker_analog_gain;
     /**
      * StarTracker detection threshold: bits 1760 to 1767, raw 0 to 255.
-     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description. Names are repeated or a
-     * noun is missing, as in maximum of stars.
+     * @note ACP-146 (open): Thresholds and counts of the star tracker have no description. Names are repeated or a noun
+     * is missing, as in maximum of stars.
      */
     uint8_t star_tracker_detection_threshold;
     /**
      * StarTracker star threshold: bits 1768 to 1775, raw 0 to 255.
-     * @note Note ACP-146 (open): see StarTracker detection threshold.
+     * @note ACP-146 (open): see StarTracker detection threshold.
      */
     uint8_t star_tracker_star_threshold;
     /**
      * Maximum Star Matched: bits 1776 to 1783, raw 0 to 255. Most stars that are matched.
-     * @note Note ACP-146 (open): see StarTracker detection threshold.
+     * @note ACP-146 (open): see StarTracker detection threshold.
      */
     uint8_t maximum_star_matched;
     /**
      * Detection Timeout duration: bits 1784 to 1799, raw 0 to 65535.
-     * @note Note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in milliseconds; registers
-     * and pixels stand in between.
+     * @note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in milliseconds; registers and
+     * pixels stand in between.
      */
     uint16_t detection_timeout_duration;
     /** Maximum Star Pixel: bits 1800 to 1807, raw 0 to 255. Most pixels of a star. */
@@ -498,9 +498,9 @@ typedef struct {
     /**
      * Star Tracker Error Margin: bits 1816 to 1823, raw 0 to 255; physical `raw*0.01`, 0 to 2.55 %. Of the star
      * identification.
-     * @note Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit % and a factor of 0.01
-     * give steps of 0.01 % in 8 bits. If the factor already makes a fraction, as in the margins that follow without a
-     * unit, the range is 255 %.
+     * @note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit % and a factor of 0.01 give
+     * steps of 0.01 % in 8 bits. If the factor already makes a fraction, as in the margins that follow without a unit,
+     * the range is 255 %.
      */
     uint8_t star_tracker_error_margin;
     /**
@@ -523,39 +523,39 @@ typedef struct {
     float star_tracker_focal_length;
     /**
      * K1 radial distortion coefficient: bits 1936 to 1967, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain. It is kept as a plain
+     * @note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain. It is kept as a plain
      * factor; which lens model and which normalisation they belong to is not said.
      */
     float k1_radial_distortion_coefficient;
     /**
      * K2 radial distortion coefficient: bits 1968 to 1999, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): see K1 radial distortion coefficient.
+     * @note ACP-144 (certain): see K1 radial distortion coefficient.
      */
     float k2_radial_distortion_coefficient;
     /**
      * P1 tangential distortion coefficient: bits 2000 to 2031, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): see K1 radial distortion coefficient.
+     * @note ACP-144 (certain): see K1 radial distortion coefficient.
      */
     float p1_tangential_distortion_coefficient;
     /**
      * P2 tangential distortion coefficient: bits 2032 to 2063, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): see K1 radial distortion coefficient.
+     * @note ACP-144 (certain): see K1 radial distortion coefficient.
      */
     float p2_tangential_distortion_coefficient;
     /**
      * Star tracking window width: bits 2064 to 2071, raw 0 to 255.
-     * @note Note ACP-146 (open): see StarTracker detection threshold.
+     * @note ACP-146 (open): see StarTracker detection threshold.
      */
     uint8_t star_tracking_window_width;
     /**
      * Star Tracking Margin: bits 2072 to 2079, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
-     * @note Note ACP-143 (open): Margins and search width have no unit. Factors are given, units are not; pixels,
-     * fractions and degrees are all possible.
+     * @note ACP-143 (open): Margins and search width have no unit. Factors are given, units are not; pixels, fractions
+     * and degrees are all possible.
      */
     uint8_t star_tracking_margin;
     /**
      * Star Validation Margin: bits 2080 to 2087, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
-     * @note Note ACP-143 (open): see Star Tracking Margin.
+     * @note ACP-143 (open): see Star Tracking Margin.
      */
     uint8_t star_validation_margin;
     /** Star Tracking Module Enable: bit 2088. */
@@ -564,7 +564,7 @@ typedef struct {
     bool star_tracking_location_prediction_enable;
     /**
      * Star Tracking Search Width: bits 2096 to 2103, raw 0 to 255; physical `raw/5.0`, 0 to 51.
-     * @note Note ACP-143 (open): see Star Tracking Margin.
+     * @note ACP-143 (open): see Star Tracking Margin.
      */
     uint8_t star_tracking_search_width;
     /** Detumbling Spin Gain: bits 2104 to 2135, 32-bit float. Ks. */
@@ -573,9 +573,9 @@ typedef struct {
     float detumbling_damping_gain;
     /**
      * Reference spin rate: bits 2168 to 2183, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * wy-ref. Must be below 0 deg/s.
-     * @note Note ACP-162 (certain): Limits of a sign in words only. Two references must always be smaller than 0; the
-     * types allow the opposite, and what the program does with it is not said.
+     * wy-ref. Must be below 0 deg/s, which setters do not check.
+     * @note ACP-162 (certain): Limits of a sign in words only. Two references must always be smaller than 0; the types
+     * allow the opposite, and what the program does with it is not said.
      */
     int16_t reference_spin_rate;
     /** Fast BDot Detumbling Gain: bits 2184 to 2215, 32-bit float. Kdf. */
@@ -589,8 +589,9 @@ typedef struct {
     /** Y-momentum Derivative Gain: bits 2312 to 2343, 32-bit float. Kd1. */
     float y_momentum_derivative_gain;
     /**
-     * Reference Wheel Momentum: bits 2344 to 2375, 32-bit float, in Nms. H-ref. Must be below 0 Nms.
-     * @note Note ACP-162 (certain): see Reference spin rate.
+     * Reference Wheel Momentum: bits 2344 to 2375, 32-bit float, in Nms. H-ref. Must be below 0 Nms, which setters do
+     * not check.
+     * @note ACP-162 (certain): see Reference spin rate.
      */
     float reference_wheel_momentum;
     /** RWheel Proportional Gain: bits 2376 to 2407, 32-bit float. Kp2. */
@@ -632,21 +633,21 @@ typedef struct {
     /**
      * Product Of Inertia - Ixy: bits 2680 to 2711, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
-     * @note Note ACP-201 (open): Products of inertia: the sign is not given. The products are elements of a matrix by
-     * the message and products of inertia by their names, which differ in sign by the usual definitions. Neither is
+     * @note ACP-201 (open): Products of inertia: the sign is not given. The products are elements of a matrix by the
+     * message and products of inertia by their names, which differ in sign by the usual definitions. Neither is
      * defined.
      */
     float product_of_inertia_ixy;
     /**
      * Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
-     * @note Note ACP-201 (open): see Product Of Inertia - Ixy.
+     * @note ACP-201 (open): see Product Of Inertia - Ixy.
      */
     float product_of_inertia_ixz;
     /**
      * Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
-     * @note Note ACP-201 (open): see Product Of Inertia - Ixy.
+     * @note ACP-201 (open): see Product Of Inertia - Ixy.
      */
     float product_of_inertia_iyz;
     /** Magnetometer Rate Filter System Noise: bits 2776 to 2807, 32-bit float. */
@@ -677,9 +678,9 @@ typedef struct {
     bool automatic_magnetometer_recovery;
     /**
      * Magnetometer Mode: bits 3006 to 3007. The magnetometer that estimation and control use.
-     * @note Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a configuration message
-     * set the same mode. Which wins after a restart, and whether the telecommand changes what the configuration
-     * returns, is not said.
+     * @note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a configuration message set
+     * the same mode. Which wins after a restart, and whether the telecommand changes what the configuration returns, is
+     * not said.
      */
     cubeacp_mag_mode_val_t magnetometer_mode;
     /**
@@ -781,13 +782,13 @@ typedef struct {
     uint16_t min_samples;
     /**
      * User Coded Controller Settings: bytes 408 to 455.
-     * @note Note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes without types; what they
-     * hold depends on code that the user supplies.
+     * @note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes without types; what they hold
+     * depends on code that the user supplies.
      */
     uint8_t user_coded_controller_settings[48];
     /**
      * User Coded Estimator Settings: bytes 456 to 503.
-     * @note Note ACP-178 (open): see User Coded Controller Settings.
+     * @note ACP-178 (open): see User Coded Controller Settings.
      */
     uint8_t user_coded_estimator_settings[48];
 } cubeacp_adcs_configuration_t;
@@ -1086,6 +1087,231 @@ static inline icd_status_t cubeacp_adcs_configuration_encode(
     (void)memcpy(&buffer[408], message->user_coded_controller_settings, 48u);
     (void)memcpy(&buffer[456], message->user_coded_estimator_settings, 48u);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_adcs_configuration_fields(size_t *count)
+{
+    static const icd_limit_t limits[] = {
+        {ICD_LIMIT_BELOW, 0.0},
+        {ICD_LIMIT_BELOW, 0.0},
+    };
+    static const icd_field_t fields[] = {
+        {"Magnetorquer 1 Configuration", "", 0u, 8u, 1u, NULL, 0u},
+        {"Magnetorquer 2 Configuration", "", 8u, 8u, 1u, NULL, 0u},
+        {"Magnetorquer 3 Configuration", "", 16u, 8u, 1u, NULL, 0u},
+        {"RW1 Configuration", "", 24u, 8u, 1u, NULL, 0u},
+        {"RW2 Configuration", "", 32u, 8u, 1u, NULL, 0u},
+        {"RW3 Configuration", "", 40u, 8u, 1u, NULL, 0u},
+        {"RW4 Configuration", "", 48u, 8u, 1u, NULL, 0u},
+        {"Gyro1 Configuration", "", 56u, 8u, 1u, NULL, 0u},
+        {"Gyro2 Configuration", "", 64u, 8u, 1u, NULL, 0u},
+        {"Gyro3 Configuration", "", 72u, 8u, 1u, NULL, 0u},
+        {"X-Rate Sensor Offset", "deg/s", 80u, 16u, 1u, NULL, 0u},
+        {"Y-Rate Sensor Offset", "deg/s", 96u, 16u, 1u, NULL, 0u},
+        {"Z-Rate Sensor Offset", "deg/s", 112u, 16u, 1u, NULL, 0u},
+        {"RateSensorMult", "", 128u, 8u, 1u, NULL, 0u},
+        {"CSS1 Configuration", "", 136u, 8u, 1u, NULL, 0u},
+        {"CSS2 Configuration", "", 144u, 8u, 1u, NULL, 0u},
+        {"CSS3 Configuration", "", 152u, 8u, 1u, NULL, 0u},
+        {"CSS4 Configuration", "", 160u, 8u, 1u, NULL, 0u},
+        {"CSS5 Configuration", "", 168u, 8u, 1u, NULL, 0u},
+        {"CSS6 Configuration", "", 176u, 8u, 1u, NULL, 0u},
+        {"CSS7 Configuration", "", 184u, 8u, 1u, NULL, 0u},
+        {"CSS8 Configuration", "", 192u, 8u, 1u, NULL, 0u},
+        {"CSS9 Configuration", "", 200u, 8u, 1u, NULL, 0u},
+        {"CSS10 Configuration", "", 208u, 8u, 1u, NULL, 0u},
+        {"CSS1 Relative Scale", "", 216u, 8u, 1u, NULL, 0u},
+        {"CSS2 Relative Scale", "", 224u, 8u, 1u, NULL, 0u},
+        {"CSS3 Relative Scale", "", 232u, 8u, 1u, NULL, 0u},
+        {"CSS4 Relative Scale", "", 240u, 8u, 1u, NULL, 0u},
+        {"CSS5 Relative Scale", "", 248u, 8u, 1u, NULL, 0u},
+        {"CSS6 Relative Scale", "", 256u, 8u, 1u, NULL, 0u},
+        {"CSS7 Relative Scale", "", 264u, 8u, 1u, NULL, 0u},
+        {"CSS8 Relative Scale", "", 272u, 8u, 1u, NULL, 0u},
+        {"CSS9 Relative Scale", "", 280u, 8u, 1u, NULL, 0u},
+        {"CSS10 Relative Scale", "", 288u, 8u, 1u, NULL, 0u},
+        {"CSS Threshold", "", 296u, 8u, 1u, NULL, 0u},
+        {"Cam1 Sensor Mounting Transform Alpha Angle", "deg", 304u, 16u, 1u, NULL, 0u},
+        {"Cam1 Sensor Mounting Transform Beta Angle", "deg", 320u, 16u, 1u, NULL, 0u},
+        {"Cam1 Sensor Mounting Transform Gamma Angle", "deg", 336u, 16u, 1u, NULL, 0u},
+        {"Cam1 detection threshold", "", 352u, 8u, 1u, NULL, 0u},
+        {"Cam1 sensor auto adjust mode", "", 360u, 1u, 1u, NULL, 0u},
+        {"Cam1 sensor exposure time", "", 368u, 16u, 1u, NULL, 0u},
+        {"Cam1 Boresight X", "pixels", 384u, 16u, 1u, NULL, 0u},
+        {"Cam1 Boresight Y", "pixels", 400u, 16u, 1u, NULL, 0u},
+        {"Cam2 Sensor Mounting Transform Alpha Angle", "deg", 416u, 16u, 1u, NULL, 0u},
+        {"Cam2 Sensor Mounting Transform Beta Angle", "deg", 432u, 16u, 1u, NULL, 0u},
+        {"Cam2 Sensor Mounting Transform Gamma Angle", "deg", 448u, 16u, 1u, NULL, 0u},
+        {"Cam2 detection threshold", "", 464u, 8u, 1u, NULL, 0u},
+        {"Cam2 sensor auto adjust mode", "", 472u, 1u, 1u, NULL, 0u},
+        {"Cam2 sensor exposure time", "", 480u, 16u, 1u, NULL, 0u},
+        {"Cam2 Boresight X", "pixels", 496u, 16u, 1u, NULL, 0u},
+        {"Cam2 Boresight Y", "pixels", 512u, 16u, 1u, NULL, 0u},
+        {"Nadir Max Deviation Percentage", "%", 528u, 8u, 1u, NULL, 0u},
+        {"Nadir Max Bad Edges", "", 536u, 8u, 1u, NULL, 0u},
+        {"Nadir Max Radius", "deg", 544u, 8u, 1u, NULL, 0u},
+        {"Nadir Min Radius", "deg", 552u, 8u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 1", "", 560u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 1", "", 576u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 1", "", 592u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 1", "", 608u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 2", "", 624u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 2", "", 640u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 2", "", 656u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 2", "", 672u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 3", "", 688u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 3", "", 704u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 3", "", 720u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 3", "", 736u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 4", "", 752u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 4", "", 768u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 4", "", 784u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 4", "", 800u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 5", "", 816u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 5", "", 832u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 5", "", 848u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 5", "", 864u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 1", "", 880u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 1", "", 896u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 1", "", 912u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 1", "", 928u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 2", "", 944u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 2", "", 960u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 2", "", 976u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 2", "", 992u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 3", "", 1008u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 3", "", 1024u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 3", "", 1040u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 3", "", 1056u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 4", "", 1072u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 4", "", 1088u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 4", "", 1104u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 4", "", 1120u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 5", "", 1136u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 5", "", 1152u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 5", "", 1168u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 5", "", 1184u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Mounting Transform Alpha Angle", "deg", 1200u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Mounting Transform Beta Angle", "deg", 1216u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Mounting Transform Gamma Angle", "deg", 1232u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Channel 1 Offset", "", 1248u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Channel 2 Offset", "", 1264u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Channel 3 Offset", "", 1280u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Sensitivity Matrix S11", "", 1296u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Sensitivity Matrix S22", "", 1312u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Sensitivity Matrix S33", "", 1328u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Sensitivity Matrix S12", "", 1344u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Sensitivity Matrix S13", "", 1360u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Sensitivity Matrix S21", "", 1376u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Sensitivity Matrix S23", "", 1392u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Sensitivity Matrix S31", "", 1408u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Sensitivity Matrix S32", "", 1424u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Mounting Transform Alpha Angle", "deg", 1440u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Mounting Transform Beta Angle", "deg", 1456u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Mounting Transform Gamma Angle", "deg", 1472u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Channel 1 Offset", "", 1488u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Channel 2 Offset", "", 1504u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Channel 3 Offset", "", 1520u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S11", "", 1536u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S22", "", 1552u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S33", "", 1568u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S12", "", 1584u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S13", "", 1600u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S21", "", 1616u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S23", "", 1632u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S31", "", 1648u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S32", "", 1664u, 16u, 1u, NULL, 0u},
+        {"StarTracker Mounting Transform Alpha Angle", "deg", 1680u, 16u, 1u, NULL, 0u},
+        {"StarTracker Mounting Transform Beta Angle", "deg", 1696u, 16u, 1u, NULL, 0u},
+        {"StarTracker Mounting Transform Gamma Angle", "deg", 1712u, 16u, 1u, NULL, 0u},
+        {"StarTracker exposure time", "", 1728u, 16u, 1u, NULL, 0u},
+        {"StarTracker analog gain", "", 1744u, 16u, 1u, NULL, 0u},
+        {"StarTracker detection threshold", "", 1760u, 8u, 1u, NULL, 0u},
+        {"StarTracker star threshold", "", 1768u, 8u, 1u, NULL, 0u},
+        {"Maximum Star Matched", "", 1776u, 8u, 1u, NULL, 0u},
+        {"Detection Timeout duration", "", 1784u, 16u, 1u, NULL, 0u},
+        {"Maximum Star Pixel", "", 1800u, 8u, 1u, NULL, 0u},
+        {"Minimum Star Pixel", "", 1808u, 8u, 1u, NULL, 0u},
+        {"Star Tracker Error Margin", "%", 1816u, 8u, 1u, NULL, 0u},
+        {"Star Tracker Delay Time", "ms", 1824u, 16u, 1u, NULL, 0u},
+        {"Star Tracker Centroid X", "pixels", 1840u, 32u, 1u, NULL, 0u},
+        {"Star Tracker Centroid Y", "pixels", 1872u, 32u, 1u, NULL, 0u},
+        {"Star Tracker Focal Length", "mm", 1904u, 32u, 1u, NULL, 0u},
+        {"K1 radial distortion coefficient", "gain", 1936u, 32u, 1u, NULL, 0u},
+        {"K2 radial distortion coefficient", "gain", 1968u, 32u, 1u, NULL, 0u},
+        {"P1 tangential distortion coefficient", "gain", 2000u, 32u, 1u, NULL, 0u},
+        {"P2 tangential distortion coefficient", "gain", 2032u, 32u, 1u, NULL, 0u},
+        {"Star tracking window width", "", 2064u, 8u, 1u, NULL, 0u},
+        {"Star Tracking Margin", "", 2072u, 8u, 1u, NULL, 0u},
+        {"Star Validation Margin", "", 2080u, 8u, 1u, NULL, 0u},
+        {"Star Tracking Module Enable", "", 2088u, 1u, 1u, NULL, 0u},
+        {"Star Tracking Location Prediction Enable", "", 2089u, 1u, 1u, NULL, 0u},
+        {"Star Tracking Search Width", "", 2096u, 8u, 1u, NULL, 0u},
+        {"Detumbling Spin Gain", "", 2104u, 32u, 1u, NULL, 0u},
+        {"Detumbling Damping Gain", "", 2136u, 32u, 1u, NULL, 0u},
+        {"Reference spin rate", "deg/s", 2168u, 16u, 1u, &limits[0], 1u},
+        {"Fast BDot Detumbling Gain", "", 2184u, 32u, 1u, NULL, 0u},
+        {"Y-Momentum Control Gain", "", 2216u, 32u, 1u, NULL, 0u},
+        {"Y-momentum Nutation Damping Gain", "", 2248u, 32u, 1u, NULL, 0u},
+        {"Y-momentum Proportional Gain", "", 2280u, 32u, 1u, NULL, 0u},
+        {"Y-momentum Derivative Gain", "", 2312u, 32u, 1u, NULL, 0u},
+        {"Reference Wheel Momentum", "Nms", 2344u, 32u, 1u, &limits[1], 1u},
+        {"RWheel Proportional Gain", "", 2376u, 32u, 1u, NULL, 0u},
+        {"RWheel Derivative Gain", "", 2408u, 32u, 1u, NULL, 0u},
+        {"Y-Wheel Bias Momentum", "Nms", 2440u, 32u, 1u, NULL, 0u},
+        {"Sun-pointing Facet", "", 2472u, 7u, 1u, NULL, 0u},
+        {"Automatic Control Transition due to Wheel Errors", "", 2479u, 1u, 1u, NULL, 0u},
+        {"Tracking Proportional Gain", "", 2480u, 32u, 1u, NULL, 0u},
+        {"Tracking Derivative Gain", "", 2512u, 32u, 1u, NULL, 0u},
+        {"Tracking Integral Gain", "", 2544u, 32u, 1u, NULL, 0u},
+        {"Target-tracking Facet", "", 2576u, 8u, 1u, NULL, 0u},
+        {"Moment Of Inertia - Ixx", "kg.m^2", 2584u, 32u, 1u, NULL, 0u},
+        {"Moment Of Inertia - Iyy", "kg.m^2", 2616u, 32u, 1u, NULL, 0u},
+        {"Moment Of Inertia - Izz", "kg.m^2", 2648u, 32u, 1u, NULL, 0u},
+        {"Product Of Inertia - Ixy", "kg.m^2", 2680u, 32u, 1u, NULL, 0u},
+        {"Product Of Inertia - Ixz", "kg.m^2", 2712u, 32u, 1u, NULL, 0u},
+        {"Product Of Inertia - Iyz", "kg.m^2", 2744u, 32u, 1u, NULL, 0u},
+        {"Magnetometer Rate Filter System Noise", "", 2776u, 32u, 1u, NULL, 0u},
+        {"EKF System Noise", "", 2808u, 32u, 1u, NULL, 0u},
+        {"CSS Measurement Noise", "", 2840u, 32u, 1u, NULL, 0u},
+        {"Sun Sensor Measurement Noise", "", 2872u, 32u, 1u, NULL, 0u},
+        {"Nadir Sensor Measurement Noise", "", 2904u, 32u, 1u, NULL, 0u},
+        {"Magnetometer Measurement Noise", "", 2936u, 32u, 1u, NULL, 0u},
+        {"Star Tracker Measurement Noise", "", 2968u, 32u, 1u, NULL, 0u},
+        {"Use Sun Sensor", "", 3000u, 1u, 1u, NULL, 0u},
+        {"Use Nadir Sensor", "", 3001u, 1u, 1u, NULL, 0u},
+        {"Use CSS", "", 3002u, 1u, 1u, NULL, 0u},
+        {"Use Star Tracker", "", 3003u, 1u, 1u, NULL, 0u},
+        {"Nadir sensor terminator test", "", 3004u, 1u, 1u, NULL, 0u},
+        {"Automatic Magnetometer Recovery", "", 3005u, 1u, 1u, NULL, 0u},
+        {"Magnetometer Mode", "", 3006u, 2u, 1u, NULL, 0u},
+        {"Magnetometer Selection for RAW MTM TLM", "", 3008u, 2u, 1u, NULL, 0u},
+        {"Automatic Estimation Transition due to Rate Sensor Errors", "", 3010u, 1u, 1u, NULL, 0u},
+        {"Cam1 period", "s", 3016u, 4u, 1u, NULL, 0u},
+        {"Cam2 period", "s", 3020u, 4u, 1u, NULL, 0u},
+        {"Incl. coefficient", "", 3024u, 16u, 1u, NULL, 0u},
+        {"Raan coefficient", "", 3040u, 16u, 1u, NULL, 0u},
+        {"Ecc coefficient", "", 3056u, 16u, 1u, NULL, 0u},
+        {"Aop coefficient", "", 3072u, 16u, 1u, NULL, 0u},
+        {"Time coefficient", "", 3088u, 16u, 1u, NULL, 0u},
+        {"Pos coefficient", "", 3104u, 16u, 1u, NULL, 0u},
+        {"Maximum position error", "", 3120u, 8u, 1u, NULL, 0u},
+        {"ASGP4 filter", "", 3128u, 8u, 1u, NULL, 0u},
+        {"xp coefficient", "", 3136u, 32u, 1u, NULL, 0u},
+        {"yp coefficient", "", 3168u, 32u, 1u, NULL, 0u},
+        {"GPS roll over", "", 3200u, 8u, 1u, NULL, 0u},
+        {"Position sd", "", 3208u, 8u, 1u, NULL, 0u},
+        {"Velocity sd", "", 3216u, 8u, 1u, NULL, 0u},
+        {"Min. satellites", "", 3224u, 8u, 1u, NULL, 0u},
+        {"Time gain", "", 3232u, 8u, 1u, NULL, 0u},
+        {"Max. lag", "", 3240u, 8u, 1u, NULL, 0u},
+        {"Min. samples", "", 3248u, 16u, 1u, NULL, 0u},
+        {"User Coded Controller Settings", "", 3264u, 384u, 1u, NULL, 0u},
+        {"User Coded Estimator Settings", "", 3648u, 384u, 1u, NULL, 0u},
+    };
+    *count = 212u;
+    return fields;
 }
 
 /** Set Magnetorquer Configuration, as it is repeated from byte 0. */
@@ -3846,7 +4072,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_search_w
     return icdgen_set_u8(&message->star_tracking_search_width, value, 1, 0, 5, UINT8_MAX);
 }
 
-/** Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s. */
+/** Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s, which setters do not check. */
 static inline double cubeacp_adcs_configuration_reference_spin_rate_deg_per_s(
     const cubeacp_adcs_configuration_t *message)
 {

@@ -7,8 +7,8 @@
  * @file
  * Adcs Execution Times: telemetry 196, 8 bytes. Table 155.
  * How long the parts of the control program take.
- * @note Note ACP-107 (certain): ADCS is Adcs in one message, a model a computation. Adcs Execution Times stands alone
- * in its spelling, and its last field names a model where the description has a computation.
+ * @note ACP-107 (certain): ADCS is Adcs in one message, a model a computation. Adcs Execution Times stands alone in its
+ * spelling, and its last field names a model where the description has a computation.
  */
 
 #include "../icdgen.h"
@@ -66,6 +66,19 @@ static inline icd_status_t cubeacp_adcs_execution_times_encode(
     icdgen_store_u16le(&buffer[4], message->time_to_execute_sgp4_propagator);
     icdgen_store_u16le(&buffer[6], message->time_to_execute_igrf_model);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_adcs_execution_times_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Time to Perform ADCS Update", "ms", 0u, 16u, 1u, NULL, 0u},
+        {"Time to Perform Sensor/Actuator Communications", "ms", 16u, 16u, 1u, NULL, 0u},
+        {"Time to Execute SGP4 Propagator", "ms", 32u, 16u, 1u, NULL, 0u},
+        {"Time to Execute IGRF Model", "ms", 48u, 16u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
 }
 
 #endif /* CUBEACP_ADCS_EXECUTION_TIMES_H */

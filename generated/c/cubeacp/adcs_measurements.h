@@ -195,6 +195,51 @@ static inline icd_status_t cubeacp_adcs_measurements_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_adcs_measurements_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Magnetic Field X", "uT", 0u, 16u, 1u, NULL, 0u},
+        {"Magnetic Field Y", "uT", 16u, 16u, 1u, NULL, 0u},
+        {"Magnetic Field Z", "uT", 32u, 16u, 1u, NULL, 0u},
+        {"Coarse Sun X", "", 48u, 16u, 1u, NULL, 0u},
+        {"Coarse Sun Y", "", 64u, 16u, 1u, NULL, 0u},
+        {"Coarse Sun Z", "", 80u, 16u, 1u, NULL, 0u},
+        {"Sun X", "", 96u, 16u, 1u, NULL, 0u},
+        {"Sun Y", "", 112u, 16u, 1u, NULL, 0u},
+        {"Sun Z", "", 128u, 16u, 1u, NULL, 0u},
+        {"Nadir X", "", 144u, 16u, 1u, NULL, 0u},
+        {"Nadir Y", "", 160u, 16u, 1u, NULL, 0u},
+        {"Nadir Z", "", 176u, 16u, 1u, NULL, 0u},
+        {"X Angular Rate", "deg/s", 192u, 16u, 1u, NULL, 0u},
+        {"Y Angular Rate", "deg/s", 208u, 16u, 1u, NULL, 0u},
+        {"Z Angular Rate", "deg/s", 224u, 16u, 1u, NULL, 0u},
+        {"X Wheel Speed", "rpm", 240u, 16u, 1u, NULL, 0u},
+        {"Y Wheel Speed", "rpm", 256u, 16u, 1u, NULL, 0u},
+        {"Z Wheel Speed", "rpm", 272u, 16u, 1u, NULL, 0u},
+        {"Star1BX", "", 288u, 16u, 1u, NULL, 0u},
+        {"Star1BY", "", 304u, 16u, 1u, NULL, 0u},
+        {"Star1BZ", "", 320u, 16u, 1u, NULL, 0u},
+        {"Star1OX", "", 336u, 16u, 1u, NULL, 0u},
+        {"Star1OY", "", 352u, 16u, 1u, NULL, 0u},
+        {"Star1OZ", "", 368u, 16u, 1u, NULL, 0u},
+        {"Star2BX", "", 384u, 16u, 1u, NULL, 0u},
+        {"Star2BY", "", 400u, 16u, 1u, NULL, 0u},
+        {"Star2BZ", "", 416u, 16u, 1u, NULL, 0u},
+        {"Star2OX", "", 432u, 16u, 1u, NULL, 0u},
+        {"Star2OY", "", 448u, 16u, 1u, NULL, 0u},
+        {"Star2OZ", "", 464u, 16u, 1u, NULL, 0u},
+        {"Star3BX", "", 480u, 16u, 1u, NULL, 0u},
+        {"Star3BY", "", 496u, 16u, 1u, NULL, 0u},
+        {"Star3BZ", "", 512u, 16u, 1u, NULL, 0u},
+        {"Star3OX", "", 528u, 16u, 1u, NULL, 0u},
+        {"Star3OY", "", 544u, 16u, 1u, NULL, 0u},
+        {"Star3OZ", "", 560u, 16u, 1u, NULL, 0u},
+    };
+    *count = 36u;
+    return fields;
+}
+
 /** Magnetic Field Vector, as it is repeated from byte 0. */
 static inline void cubeacp_adcs_measurements_part_magnetic_field_vector(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,

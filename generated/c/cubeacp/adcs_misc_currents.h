@@ -21,19 +21,19 @@
 typedef struct {
     /**
      * CubeStarCurrent: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of 0.01 mA sixteen bits
-     * reach 655.35 mA, which a wheel motor may well exceed. All other currents have steps of 0.1 mA and more. The
-     * factor is held as printed.
+     * @note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of 0.01 mA sixteen bits reach
+     * 655.35 mA, which a wheel motor may well exceed. All other currents have steps of 0.1 mA and more. The factor is
+     * held as printed.
      */
     uint16_t cubestar_current;
     /** Magnetorquer Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA. */
     uint16_t magnetorquer_current;
     /**
      * CubeStar MCU temperature: bits 32 to 47, raw -32768 to 32767; physical `raw/100.0`, -327.68 to 327.67 C.
-     * @note Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a degree sign. Degrees
-     * Celsius are meant.
-     * @note Note ACP-108 (certain): ADCS Misc Current Measurements holds a temperature. The name speaks of currents,
-     * the description of CubeStar and torquer currents and temperatures; one temperature is there, of CubeStar.
+     * @note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a degree sign. Degrees Celsius
+     * are meant.
+     * @note ACP-108 (certain): ADCS Misc Current Measurements holds a temperature. The name speaks of currents, the
+     * description of CubeStar and torquer currents and temperatures; one temperature is there, of CubeStar.
      */
     int16_t cubestar_mcu_temperature;
 } cubeacp_adcs_misc_currents_t;
@@ -72,6 +72,18 @@ static inline icd_status_t cubeacp_adcs_misc_currents_encode(
     icdgen_store_u16le(&buffer[2], message->magnetorquer_current);
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->cubestar_mcu_temperature));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_adcs_misc_currents_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CubeStarCurrent", "mA", 0u, 16u, 1u, NULL, 0u},
+        {"Magnetorquer Current", "mA", 16u, 16u, 1u, NULL, 0u},
+        {"CubeStar MCU temperature", "C", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** CubeStarCurrent in uA, exact: 0 to 655350. */

@@ -7,8 +7,8 @@
  * @file
  * ADCS Power Control: configuration, set by telecommand 11, got by telemetry 197, 3 bytes. Table 184.
  * Switches components on and off.
- * @note Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0
- * and ignored.
+ * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
+ * ignored.
  */
 
 #include "../icdgen.h"
@@ -25,13 +25,13 @@
 typedef struct {
     /**
      * CubeControl Signal Power Selection: bits 0 to 1. Electronics of the signal PIC.
-     * @note Note ACP-136 (certain): Power control calls the controllers PIC. Elsewhere the same two are MCUs or
+     * @note ACP-136 (certain): Power control calls the controllers PIC. Elsewhere the same two are MCUs or
      * microcontrollers.
      */
     cubeacp_power_select_t cubecontrol_signal_power_selection;
     /**
      * CubeControl Motor Power Selection: bits 2 to 3. Electronics of the motor PIC.
-     * @note Note ACP-136 (certain): see CubeControl Signal Power Selection.
+     * @note ACP-136 (certain): see CubeControl Signal Power Selection.
      */
     cubeacp_power_select_t cubecontrol_motor_power_selection;
     /** CubeSense1 Power Selection: bits 4 to 5. */
@@ -40,38 +40,38 @@ typedef struct {
     cubeacp_power_select_t cubesense2_power_selection;
     /**
      * CubeStarPower Power Selection: bits 8 to 9.
-     * @note Note ACP-134 (certain): Power is doubled in four names. CubeStarPower Power Selection and three like it say
+     * @note ACP-134 (certain): Power is doubled in four names. CubeStarPower Power Selection and three like it say
      * power twice; the other units have it once. Identifiers are built without the first.
      */
     cubeacp_power_select_t cubestar_power_selection;
     /**
      * CubeWheel1Power Power Selection: bits 10 to 11.
-     * @note Note ACP-134 (certain): see CubeStarPower Power Selection.
+     * @note ACP-134 (certain): see CubeStarPower Power Selection.
      */
     cubeacp_power_select_t cubewheel1_power_selection;
     /**
      * CubeWheel2Power Power Selection: bits 12 to 13.
-     * @note Note ACP-134 (certain): see CubeStarPower Power Selection.
+     * @note ACP-134 (certain): see CubeStarPower Power Selection.
      */
     cubeacp_power_select_t cubewheel2_power_selection;
     /**
      * CubeWheel3Power Power Selection: bits 14 to 15.
-     * @note Note ACP-134 (certain): see CubeStarPower Power Selection.
+     * @note ACP-134 (certain): see CubeStarPower Power Selection.
      */
     cubeacp_power_select_t cubewheel3_power_selection;
     /**
      * Motor Power: bits 16 to 17. Motor electronics.
-     * @note Note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is reported as Motor Driver
+     * @note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is reported as Motor Driver
      * Enabled, GPS Power switches the antenna amplifier and is reported as GPS LNA Power Enabled. GPS Receiver Enabled
      * has no switch.
-     * @note Note ACP-135 (certain): Motor Power and GPS Power are not called selections. Two of ten fields with the
-     * same enumeration lack the word.
+     * @note ACP-135 (certain): Motor Power and GPS Power are not called selections. Two of ten fields with the same
+     * enumeration lack the word.
      */
     cubeacp_power_select_t motor_power;
     /**
      * GPS Power: bits 18 to 19. LNA of the GPS.
-     * @note Note ACP-062 (open): see Motor Power.
-     * @note Note ACP-135 (certain): see Motor Power.
+     * @note ACP-062 (open): see Motor Power.
+     * @note ACP-135 (certain): see Motor Power.
      */
     cubeacp_power_select_t gps_power;
 } cubeacp_adcs_power_control_t;
@@ -178,6 +178,25 @@ static inline icd_status_t cubeacp_adcs_power_control_encode(
         (message->cubewheel3_power_selection << 6));
     buffer[2] = ICDGEN_U8(message->motor_power | (message->gps_power << 2));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_adcs_power_control_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CubeControl Signal Power Selection", "", 0u, 2u, 1u, NULL, 0u},
+        {"CubeControl Motor Power Selection", "", 2u, 2u, 1u, NULL, 0u},
+        {"CubeSense1 Power Selection", "", 4u, 2u, 1u, NULL, 0u},
+        {"CubeSense2 Power Selection", "", 6u, 2u, 1u, NULL, 0u},
+        {"CubeStarPower Power Selection", "", 8u, 2u, 1u, NULL, 0u},
+        {"CubeWheel1Power Power Selection", "", 10u, 2u, 1u, NULL, 0u},
+        {"CubeWheel2Power Power Selection", "", 12u, 2u, 1u, NULL, 0u},
+        {"CubeWheel3Power Power Selection", "", 14u, 2u, 1u, NULL, 0u},
+        {"Motor Power", "", 16u, 2u, 1u, NULL, 0u},
+        {"GPS Power", "", 18u, 2u, 1u, NULL, 0u},
+    };
+    *count = 10u;
+    return fields;
 }
 
 #endif /* CUBEACP_ADCS_POWER_CONTROL_H */

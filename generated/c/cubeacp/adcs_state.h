@@ -11,10 +11,10 @@
  * from byte 12. Repeats Estimated Quaternion from byte 18. Repeats Estimated Angular Rates from byte 24. Repeats
  * Satellite Position (ECI) from byte 30. Repeats Satellite Velocity (ECI) from byte 36. Repeats Satellite Position
  * (LLH) from byte 42. Repeats ECEF Position from byte 48.
- * @note Note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called Current ADCS State, and frame
- * 190, which holds it and much more, ADCS State with the description current ADCS state.
- * @note Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles. Bits 66 to 95 are not described.
- * They are the unused end of frame 224, which the frame repeats.
+ * @note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called Current ADCS State, and frame 190,
+ * which holds it and much more, ADCS State with the description current ADCS state.
+ * @note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles. Bits 66 to 95 are not described. They
+ * are the unused end of frame 224, which the frame repeats.
  */
 
 #include "../icdgen.h"
@@ -44,8 +44,8 @@ typedef struct {
     cubeacp_adcs_run_mode_t adcs_run_mode;
     /**
      * ASGP4 Mode: bits 10 to 11.
-     * @note Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode with four
-     * values; the description has an enabled state.
+     * @note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode with four values;
+     * the description has an enabled state.
      */
     cubeacp_asgp4_mode_select_t asgp4_mode;
     /** CubeControl Signal Enabled: bit 12. */
@@ -90,8 +90,8 @@ typedef struct {
     bool cubestar_communications_error;
     /**
      * Magnetometer Range Error: bit 32. About a measured field of 65 uT. Whether above or below is not printed.
-     * @note Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is set when the field has
-     * a size 65 uT. Above is likely, since the field of the earth hardly reaches it.
+     * @note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is set when the field has a
+     * size 65 uT. Above is likely, since the field of the earth hardly reaches it.
      */
     bool magnetometer_range_error;
     /** Cam1 SRAM Overcurrent Detected: bit 33. */
@@ -104,9 +104,9 @@ typedef struct {
     bool cam1_sensor_detection_error;
     /**
      * Sun Sensor Range Error: bit 37. A detected sun angle was beyond +/-90 deg.
-     * @note Note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag each is for the sun and
-     * the nadir sensor; the cameras are numbered, and which of them is which is a setting. With two sun sensors one
-     * flag serves both.
+     * @note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag each is for the sun and the
+     * nadir sensor; the cameras are numbered, and which of them is which is a setting. With two sun sensors one flag
+     * serves both.
      */
     bool sun_sensor_range_error;
     /** Cam2 SRAM Overcurrent Detected: bit 38. */
@@ -119,7 +119,7 @@ typedef struct {
     bool cam2_sensor_detection_error;
     /**
      * Nadir Sensor Range Error: bit 42. A detected nadir angle was beyond +/-60 deg.
-     * @note Note ACP-061 (open): see Sun Sensor Range Error.
+     * @note ACP-061 (open): see Sun Sensor Range Error.
      */
     bool nadir_sensor_range_error;
     /** Rate Sensor Range Error: bit 43. A measured body rate was beyond +/-20 deg/s. */
@@ -135,16 +135,16 @@ typedef struct {
     /**
      * Orbit Parameters are Invalid: bit 48. A parameter is out of bounds, or the SGP4 propagator could not start from
      * them.
-     * @note Note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds, or a propagator that
-     * failed to start, are told as two sentences for one bit.
+     * @note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds, or a propagator that failed
+     * to start, are told as two sentences for one bit.
      */
     bool orbit_parameters_are_invalid;
     /**
      * Configuration is Invalid: bit 49. Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at
      * least one CSS.
-     * @note Note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames differ by a letter in
-     * the description, and principle stands for principal twice in each.
-     * @note Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output. Each axis is said to need a
+     * @note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames differ by a letter in the
+     * description, and principle stands for principal twice in each.
+     * @note ACP-103 (open): Configuration flag: outputs per axis, or axes per output. Each axis is said to need a
      * torquer output 1, 2 or 3. The configuration works the other way round and gives an axis to each torquer, or Not
      * Used.
      */
@@ -192,19 +192,19 @@ typedef struct {
     int16_t estimated_yaw_angle;
     /**
      * Estimated q1: bits 144 to 159, raw -32768 to 32767.
-     * @note Note ACP-100 (open): Estimated quaternion has no formula. Components of a unit quaternion in 16 bits need a
+     * @note ACP-100 (open): Estimated quaternion has no formula. Components of a unit quaternion in 16 bits need a
      * factor; all other quaternions have one of 1/10000. It is likely here too, but not printed, so the raw value is
      * all that is offered.
      */
     int16_t estimated_q1;
     /**
      * Estimated q2: bits 160 to 175, raw -32768 to 32767.
-     * @note Note ACP-100 (open): see Estimated q1.
+     * @note ACP-100 (open): see Estimated q1.
      */
     int16_t estimated_q2;
     /**
      * Estimated q3: bits 176 to 191, raw -32768 to 32767.
-     * @note Note ACP-100 (open): see Estimated q1.
+     * @note ACP-100 (open): see Estimated q1.
      */
     int16_t estimated_q3;
     /** Estimated X Angular Rate: bits 192 to 207, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg/s. */
@@ -229,14 +229,14 @@ typedef struct {
     int16_t latitude;
     /**
      * Longitude: bits 352 to 367, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-     * @note Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The datum is missing in one
-     * of three rows; the frame is called LLH by name and WGS-84 frame by description.
+     * @note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The datum is missing in one of
+     * three rows; the frame is called LLH by name and WGS-84 frame by description.
      */
     int16_t longitude;
     /**
      * Altitude: bits 368 to 383, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
-     * @note Note ACP-067 (open): Position and altitude do not reach equally far. The inertial position fits orbits up
-     * to 1800 km, the altitude of 16 bits ends at 655.35 km. Above that it wraps or sticks; which is not said.
+     * @note ACP-067 (open): Position and altitude do not reach equally far. The inertial position fits orbits up to
+     * 1800 km, the altitude of 16 bits ends at 655.35 km. Above that it wraps or sticks; which is not said.
      */
     uint16_t altitude;
     /**
@@ -244,20 +244,20 @@ typedef struct {
      * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres. In metres the field reaches 32.767 km, a
      * position some 7000 km. A factor is missing; 0.25 km as in the inertial position is one possibility, km another.
      * No unit is held, so nothing is converted.
-     * @note Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16 bits in the state
+     * @note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16 bits in the state
      * frames and 32 bits in the GPS frames and the simulated data, with the same name, description and unit.
      */
     int16_t ecef_position_x;
     /**
      * ECEF Position Y: bits 400 to 415, raw -32768 to 32767.
      * @note Erratum ACP-098 (likely): see ECEF Position X.
-     * @note Note ACP-099 (certain): see ECEF Position X.
+     * @note ACP-099 (certain): see ECEF Position X.
      */
     int16_t ecef_position_y;
     /**
      * ECEF Position Z: bits 416 to 431, raw -32768 to 32767.
      * @note Erratum ACP-098 (likely): see ECEF Position X.
-     * @note Note ACP-099 (certain): see ECEF Position X.
+     * @note ACP-099 (certain): see ECEF Position X.
      */
     int16_t ecef_position_z;
 } cubeacp_adcs_state_t;
@@ -488,6 +488,93 @@ static inline icd_status_t cubeacp_adcs_state_encode(
     (void)memset(&buffer[9], 0, 3u);
     ICDGEN_WRITE_ROW_LE(cubeacp_adcs_state_t, message, &buffer[12], 21u, estimated_roll_angle, ecef_position_z);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_adcs_state_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Attitude Estimation Mode", "", 0u, 4u, 1u, NULL, 0u},
+        {"Control Mode", "", 4u, 4u, 1u, NULL, 0u},
+        {"ADCS Run Mode", "", 8u, 2u, 1u, NULL, 0u},
+        {"ASGP4 Mode", "", 10u, 2u, 1u, NULL, 0u},
+        {"CubeControl Signal Enabled", "", 12u, 1u, 1u, NULL, 0u},
+        {"CubeControl Motor Enabled", "", 13u, 1u, 1u, NULL, 0u},
+        {"CubeSense1 Enabled", "", 14u, 1u, 1u, NULL, 0u},
+        {"CubeSense2 Enabled", "", 15u, 1u, 1u, NULL, 0u},
+        {"CubeWheel1 Enabled", "", 16u, 1u, 1u, NULL, 0u},
+        {"CubeWheel2 Enabled", "", 17u, 1u, 1u, NULL, 0u},
+        {"CubeWheel3 Enabled", "", 18u, 1u, 1u, NULL, 0u},
+        {"CubeStar Enabled", "", 19u, 1u, 1u, NULL, 0u},
+        {"GPS Receiver Enabled", "", 20u, 1u, 1u, NULL, 0u},
+        {"GPS LNA Power Enabled", "", 21u, 1u, 1u, NULL, 0u},
+        {"Motor Driver Enabled", "", 22u, 1u, 1u, NULL, 0u},
+        {"Sun is Above Local Horizon", "", 23u, 1u, 1u, NULL, 0u},
+        {"CubeSense1 Communications Error", "", 24u, 1u, 1u, NULL, 0u},
+        {"CubeSense2 Communications Error", "", 25u, 1u, 1u, NULL, 0u},
+        {"CubeControl Signal Communications Error", "", 26u, 1u, 1u, NULL, 0u},
+        {"CubeControl Motor Communications Error", "", 27u, 1u, 1u, NULL, 0u},
+        {"CubeWheel1 Communications Error", "", 28u, 1u, 1u, NULL, 0u},
+        {"CubeWheel2 Communications Error", "", 29u, 1u, 1u, NULL, 0u},
+        {"CubeWheel3 Communications Error", "", 30u, 1u, 1u, NULL, 0u},
+        {"CubeStar Communications Error", "", 31u, 1u, 1u, NULL, 0u},
+        {"Magnetometer Range Error", "", 32u, 1u, 1u, NULL, 0u},
+        {"Cam1 SRAM Overcurrent Detected", "", 33u, 1u, 1u, NULL, 0u},
+        {"Cam1 3V3 Overcurrent Detected", "", 34u, 1u, 1u, NULL, 0u},
+        {"Cam1 Sensor Busy Error", "", 35u, 1u, 1u, NULL, 0u},
+        {"Cam1 Sensor Detection Error", "", 36u, 1u, 1u, NULL, 0u},
+        {"Sun Sensor Range Error", "", 37u, 1u, 1u, NULL, 0u},
+        {"Cam2 SRAM Overcurrent Detected", "", 38u, 1u, 1u, NULL, 0u},
+        {"Cam2 3V3 Overcurrent Detected", "", 39u, 1u, 1u, NULL, 0u},
+        {"Cam2 Sensor Busy Error", "", 40u, 1u, 1u, NULL, 0u},
+        {"Cam2 Sensor Detection Error", "", 41u, 1u, 1u, NULL, 0u},
+        {"Nadir Sensor Range Error", "", 42u, 1u, 1u, NULL, 0u},
+        {"Rate Sensor Range Error", "", 43u, 1u, 1u, NULL, 0u},
+        {"Wheel Speed Range Error", "", 44u, 1u, 1u, NULL, 0u},
+        {"Coarse Sun Sensor Error", "", 45u, 1u, 1u, NULL, 0u},
+        {"StarTracker Match Error", "", 46u, 1u, 1u, NULL, 0u},
+        {"Star Tracker Overcurrent Detected", "", 47u, 1u, 1u, NULL, 0u},
+        {"Orbit Parameters are Invalid", "", 48u, 1u, 1u, NULL, 0u},
+        {"Configuration is Invalid", "", 49u, 1u, 1u, NULL, 0u},
+        {"Control Mode Change is not allowed", "", 50u, 1u, 1u, NULL, 0u},
+        {"Estimator Change is not allowed", "", 51u, 1u, 1u, NULL, 0u},
+        {"Current Magnetometer Sampling Mode", "", 52u, 2u, 1u, NULL, 0u},
+        {"Modelled and measured magnetic field differs in size", "", 54u, 1u, 1u, NULL, 0u},
+        {"Node Recovery Error", "", 55u, 1u, 1u, NULL, 0u},
+        {"CubeSense1 Runtime Error", "", 56u, 1u, 1u, NULL, 0u},
+        {"CubeSense2 Runtime Error", "", 57u, 1u, 1u, NULL, 0u},
+        {"CubeControl Signal Runtime Error", "", 58u, 1u, 1u, NULL, 0u},
+        {"CubeControl Motor Runtime Error", "", 59u, 1u, 1u, NULL, 0u},
+        {"CubeWheel1 Runtime Error", "", 60u, 1u, 1u, NULL, 0u},
+        {"CubeWheel2 Runtime Error", "", 61u, 1u, 1u, NULL, 0u},
+        {"CubeWheel3 Runtime Error", "", 62u, 1u, 1u, NULL, 0u},
+        {"CubeStar Runtime Error", "", 63u, 1u, 1u, NULL, 0u},
+        {"Magnetometer Error", "", 64u, 1u, 1u, NULL, 0u},
+        {"Rate Sensor Failure", "", 65u, 1u, 1u, NULL, 0u},
+        {"Estimated Roll Angle", "deg", 96u, 16u, 1u, NULL, 0u},
+        {"Estimated Pitch Angle", "deg", 112u, 16u, 1u, NULL, 0u},
+        {"Estimated Yaw Angle", "deg", 128u, 16u, 1u, NULL, 0u},
+        {"Estimated q1", "", 144u, 16u, 1u, NULL, 0u},
+        {"Estimated q2", "", 160u, 16u, 1u, NULL, 0u},
+        {"Estimated q3", "", 176u, 16u, 1u, NULL, 0u},
+        {"Estimated X Angular Rate", "deg/s", 192u, 16u, 1u, NULL, 0u},
+        {"Estimated Y Angular Rate", "deg/s", 208u, 16u, 1u, NULL, 0u},
+        {"Estimated Z Angular Rate", "deg/s", 224u, 16u, 1u, NULL, 0u},
+        {"X position", "km", 240u, 16u, 1u, NULL, 0u},
+        {"Y position", "km", 256u, 16u, 1u, NULL, 0u},
+        {"Z position", "km", 272u, 16u, 1u, NULL, 0u},
+        {"X Velocity", "m/s", 288u, 16u, 1u, NULL, 0u},
+        {"Y Velocity", "m/s", 304u, 16u, 1u, NULL, 0u},
+        {"Z Velocity", "m/s", 320u, 16u, 1u, NULL, 0u},
+        {"Latitude", "deg", 336u, 16u, 1u, NULL, 0u},
+        {"Longitude", "deg", 352u, 16u, 1u, NULL, 0u},
+        {"Altitude", "km", 368u, 16u, 1u, NULL, 0u},
+        {"ECEF Position X", "", 384u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Y", "", 400u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Z", "", 416u, 16u, 1u, NULL, 0u},
+    };
+    *count = 78u;
+    return fields;
 }
 
 /** Current ADCS State, as it is repeated from byte 0. */

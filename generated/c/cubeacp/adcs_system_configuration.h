@@ -7,11 +7,10 @@
  * @file
  * ADCS System Configuration: configuration, set by telecommand 30, got by telemetry 225, 173 bytes. Table 201.
  * What is hard-coded: versions, ratings, calibration and pins.
- * @note Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0
- * and ignored.
- * @note Note ACP-170 (open): System configuration is hard-coded and can be set. The description says hard-coded, the
- * message has a set id, and a load error exists for it. Whether a set is refused, or lost with the next start, is not
- * said.
+ * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
+ * ignored.
+ * @note ACP-170 (open): System configuration is hard-coded and can be set. The description says hard-coded, the message
+ * has a set id, and a load error exists for it. Whether a set is refused, or lost with the next start, is not said.
  */
 
 #include "../icdgen.h"
@@ -32,23 +31,23 @@ typedef struct {
     cubeacp_special_con_select_t special_control_selection;
     /**
      * CubeControl Signal Version: bits 8 to 15, raw 0 to 255.
-     * @note Note ACP-171 (open): Versions of the units: format of the number. Versions of hardware or firmware, as
-     * whole numbers or packed digits, are all possible in a byte.
+     * @note ACP-171 (open): Versions of the units: format of the number. Versions of hardware or firmware, as whole
+     * numbers or packed digits, are all possible in a byte.
      */
     uint8_t cubecontrol_signal_version;
     /**
      * CubeControl Motor Version: bits 16 to 23, raw 0 to 255.
-     * @note Note ACP-171 (open): see CubeControl Signal Version.
+     * @note ACP-171 (open): see CubeControl Signal Version.
      */
     uint8_t cubecontrol_motor_version;
     /**
      * CubeSense1 Version: bits 24 to 31, raw 0 to 255.
-     * @note Note ACP-171 (open): see CubeControl Signal Version.
+     * @note ACP-171 (open): see CubeControl Signal Version.
      */
     uint8_t cubesense1_version;
     /**
      * CubeSense2 Version: bits 32 to 39, raw 0 to 255.
-     * @note Note ACP-171 (open): see CubeControl Signal Version.
+     * @note ACP-171 (open): see CubeControl Signal Version.
      */
     uint8_t cubesense2_version;
     /** CubeSense1 Camera Type: bits 40 to 43. */
@@ -57,7 +56,7 @@ typedef struct {
     cubeacp_cs_cam_type_t cubesense2_camera_type;
     /**
      * CubeStar Version: bits 48 to 55, raw 0 to 255.
-     * @note Note ACP-171 (open): see CubeControl Signal Version.
+     * @note ACP-171 (open): see CubeControl Signal Version.
      */
     uint8_t cubestar_version;
     /** GPS Type: bits 56 to 59. */
@@ -86,188 +85,188 @@ typedef struct {
     float magnetorquer_maximum_on_time;
     /**
      * RW-X Maximum Torque: bits 224 to 255, 32-bit float, in N.m.
-     * @note Note ACP-173 (certain): N.m and Nms. Torque is written with a dot, angular momentum without. Both are held
-     * as printed.
+     * @note ACP-173 (certain): N.m and Nms. Torque is written with a dot, angular momentum without. Both are held as
+     * printed.
      */
     float rw_x_maximum_torque;
     /**
      * RW-Y Maximum Torque: bits 256 to 287, 32-bit float, in N.m.
-     * @note Note ACP-173 (certain): see RW-X Maximum Torque.
+     * @note ACP-173 (certain): see RW-X Maximum Torque.
      */
     float rw_y_maximum_torque;
     /**
      * RW-Z Maximum Torque: bits 288 to 319, 32-bit float, in N.m.
-     * @note Note ACP-173 (certain): see RW-X Maximum Torque.
+     * @note ACP-173 (certain): see RW-X Maximum Torque.
      */
     float rw_z_maximum_torque;
     /**
      * RW-X Maximum Momentum: bits 320 to 351, 32-bit float, in Nms.
-     * @note Note ACP-173 (certain): see RW-X Maximum Torque.
+     * @note ACP-173 (certain): see RW-X Maximum Torque.
      */
     float rw_x_maximum_momentum;
     /**
      * RW-Y Maximum Momentum: bits 352 to 383, 32-bit float, in Nms.
-     * @note Note ACP-173 (certain): see RW-X Maximum Torque.
+     * @note ACP-173 (certain): see RW-X Maximum Torque.
      */
     float rw_y_maximum_momentum;
     /**
      * RW-Z Maximum Momentum: bits 384 to 415, 32-bit float, in Nms.
-     * @note Note ACP-173 (certain): see RW-X Maximum Torque.
+     * @note ACP-173 (certain): see RW-X Maximum Torque.
      */
     float rw_z_maximum_momentum;
     /**
      * RW-X Inertia: bits 416 to 447, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2. The same fields have the unit in two
      * spellings. Held as kg.m^2.
-     * @note Note ACP-129 (open): Reaction wheels are RW1 and RW-X. Numbers in one message, axes in the other. The two
-     * agree only after the wheel configuration has been applied.
+     * @note ACP-129 (open): Reaction wheels are RW1 and RW-X. Numbers in one message, axes in the other. The two agree
+     * only after the wheel configuration has been applied.
      */
     float rw_x_inertia;
     /**
      * RW-Y Inertia: bits 448 to 479, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): see RW-X Inertia.
-     * @note Note ACP-129 (open): see RW-X Inertia.
+     * @note ACP-129 (open): see RW-X Inertia.
      */
     float rw_y_inertia;
     /**
      * RW-Z Inertia: bits 480 to 511, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): see RW-X Inertia.
-     * @note Note ACP-129 (open): see RW-X Inertia.
+     * @note ACP-129 (open): see RW-X Inertia.
      */
     float rw_z_inertia;
     /** RW Torque Increment: bits 512 to 543, 32-bit float, in N.m. */
     float rw_torque_increment;
     /**
      * Primary MTM X-Bias d1: bits 544 to 575, 32-bit float.
-     * @note Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2. Twenty-four coefficients have neither
+     * @note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2. Twenty-four coefficients have neither
      * description nor unit. How they work together with the offsets and the sensitivity matrix of the configuration is
      * not said.
      */
     float primary_mtm_x_bias_d1;
     /**
      * Primary MTM Y-Bias d1: bits 576 to 607, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float primary_mtm_y_bias_d1;
     /**
      * Primary MTM Z-Bias d1: bits 608 to 639, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float primary_mtm_z_bias_d1;
     /**
      * Primary MTM X-Bias d2: bits 640 to 671, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float primary_mtm_x_bias_d2;
     /**
      * Primary MTM Y-Bias d2: bits 672 to 703, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float primary_mtm_y_bias_d2;
     /**
      * Primary MTM Z-Bias d2: bits 704 to 735, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float primary_mtm_z_bias_d2;
     /**
      * Primary MTM X-Sens s1: bits 736 to 767, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float primary_mtm_x_sens_s1;
     /**
      * Primary MTM Y-Sens s1: bits 768 to 799, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float primary_mtm_y_sens_s1;
     /**
      * Primary MTM Z-Sens s1: bits 800 to 831, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float primary_mtm_z_sens_s1;
     /**
      * Primary MTM X-Sens s2: bits 832 to 863, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float primary_mtm_x_sens_s2;
     /**
      * Primary MTM Y-Sens s2: bits 864 to 895, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float primary_mtm_y_sens_s2;
     /**
      * Primary MTM Z-Sens s2: bits 896 to 927, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float primary_mtm_z_sens_s2;
     /**
      * Redundant MTM X-Bias d1: bits 928 to 959, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float redundant_mtm_x_bias_d1;
     /**
      * Redundant MTM Y-Bias d1: bits 960 to 991, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float redundant_mtm_y_bias_d1;
     /**
      * Redundant MTM Z-Bias d1: bits 992 to 1023, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float redundant_mtm_z_bias_d1;
     /**
      * Redundant MTM X-Bias d2: bits 1024 to 1055, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float redundant_mtm_x_bias_d2;
     /**
      * Redundant MTM Y-Bias d2: bits 1056 to 1087, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float redundant_mtm_y_bias_d2;
     /**
      * Redundant MTM Z-Bias d2: bits 1088 to 1119, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float redundant_mtm_z_bias_d2;
     /**
      * Redundant MTM X-Sens s1: bits 1120 to 1151, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float redundant_mtm_x_sens_s1;
     /**
      * Redundant MTM Y-Sens s1: bits 1152 to 1183, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float redundant_mtm_y_sens_s1;
     /**
      * Redundant MTM Z-Sens s1: bits 1184 to 1215, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float redundant_mtm_z_sens_s1;
     /**
      * Redundant MTM X-Sens s2: bits 1216 to 1247, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float redundant_mtm_x_sens_s2;
     /**
      * Redundant MTM Y-Sens s2: bits 1248 to 1279, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float redundant_mtm_y_sens_s2;
     /**
      * Redundant MTM Z-Sens s2: bits 1280 to 1311, 32-bit float.
-     * @note Note ACP-174 (open): see Primary MTM X-Bias d1.
+     * @note ACP-174 (open): see Primary MTM X-Bias d1.
      */
     float redundant_mtm_z_sens_s2;
     /**
      * CC Signal Enable Port: bits 1312 to 1315.
-     * @note Note ACP-175 (likely): CC is not explained. It stands for CubeControl by the order of the fields. A third,
+     * @note ACP-175 (likely): CC is not explained. It stands for CubeControl by the order of the fields. A third,
      * common enable line appears nowhere else.
      */
     cubeacp_gpio_port_t cc_signal_enable_port;
     /**
      * CC Signal Enable Pin: bits 1316 to 1319.
-     * @note Note ACP-175 (likely): see CC Signal Enable Port.
+     * @note ACP-175 (likely): see CC Signal Enable Port.
      */
     cubeacp_gpio_port_pin_t cc_signal_enable_pin;
     /** CC Motor Enable Port: bits 1320 to 1323. */
@@ -276,12 +275,12 @@ typedef struct {
     cubeacp_gpio_port_pin_t cc_motor_enable_pin;
     /**
      * CC Common Enable Port: bits 1328 to 1331.
-     * @note Note ACP-175 (likely): see CC Signal Enable Port.
+     * @note ACP-175 (likely): see CC Signal Enable Port.
      */
     cubeacp_gpio_port_t cc_common_enable_port;
     /**
      * CC Common Enable Pin: bits 1332 to 1335.
-     * @note Note ACP-175 (likely): see CC Signal Enable Port.
+     * @note ACP-175 (likely): see CC Signal Enable Port.
      */
     cubeacp_gpio_port_pin_t cc_common_enable_pin;
     /** CubeSense1 Enable Port: bits 1336 to 1339. */
@@ -503,6 +502,83 @@ static inline icd_status_t cubeacp_adcs_system_configuration_encode(
     buffer[171] = ICDGEN_U8(message->cubewheel2_enable_port | (message->cubewheel2_enable_pin << 4));
     buffer[172] = ICDGEN_U8(message->cubewheel3_enable_port | (message->cubewheel3_enable_pin << 4));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_adcs_system_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"ACP Type", "", 0u, 4u, 1u, NULL, 0u},
+        {"Special Control Selection", "", 4u, 4u, 1u, NULL, 0u},
+        {"CubeControl Signal Version", "", 8u, 8u, 1u, NULL, 0u},
+        {"CubeControl Motor Version", "", 16u, 8u, 1u, NULL, 0u},
+        {"CubeSense1 Version", "", 24u, 8u, 1u, NULL, 0u},
+        {"CubeSense2 Version", "", 32u, 8u, 1u, NULL, 0u},
+        {"CubeSense1 Camera Type", "", 40u, 4u, 1u, NULL, 0u},
+        {"CubeSense2 Camera Type", "", 44u, 4u, 1u, NULL, 0u},
+        {"CubeStar Version", "", 48u, 8u, 1u, NULL, 0u},
+        {"GPS Type", "", 56u, 4u, 1u, NULL, 0u},
+        {"Redundant MTM Included", "", 60u, 1u, 1u, NULL, 0u},
+        {"Magnetorquer-X Max Dipole", "A.m^2", 64u, 32u, 1u, NULL, 0u},
+        {"Magnetorquer-Y Max Dipole", "A.m^2", 96u, 32u, 1u, NULL, 0u},
+        {"Magnetorquer-Z Max Dipole", "A.m^2", 128u, 32u, 1u, NULL, 0u},
+        {"Magnetorquer On-time Resolution", "s", 160u, 32u, 1u, NULL, 0u},
+        {"Magnetorquer Maximum On-time", "s", 192u, 32u, 1u, NULL, 0u},
+        {"RW-X Maximum Torque", "N.m", 224u, 32u, 1u, NULL, 0u},
+        {"RW-Y Maximum Torque", "N.m", 256u, 32u, 1u, NULL, 0u},
+        {"RW-Z Maximum Torque", "N.m", 288u, 32u, 1u, NULL, 0u},
+        {"RW-X Maximum Momentum", "Nms", 320u, 32u, 1u, NULL, 0u},
+        {"RW-Y Maximum Momentum", "Nms", 352u, 32u, 1u, NULL, 0u},
+        {"RW-Z Maximum Momentum", "Nms", 384u, 32u, 1u, NULL, 0u},
+        {"RW-X Inertia", "kg.m^2", 416u, 32u, 1u, NULL, 0u},
+        {"RW-Y Inertia", "kg.m^2", 448u, 32u, 1u, NULL, 0u},
+        {"RW-Z Inertia", "kg.m^2", 480u, 32u, 1u, NULL, 0u},
+        {"RW Torque Increment", "N.m", 512u, 32u, 1u, NULL, 0u},
+        {"Primary MTM X-Bias d1", "", 544u, 32u, 1u, NULL, 0u},
+        {"Primary MTM Y-Bias d1", "", 576u, 32u, 1u, NULL, 0u},
+        {"Primary MTM Z-Bias d1", "", 608u, 32u, 1u, NULL, 0u},
+        {"Primary MTM X-Bias d2", "", 640u, 32u, 1u, NULL, 0u},
+        {"Primary MTM Y-Bias d2", "", 672u, 32u, 1u, NULL, 0u},
+        {"Primary MTM Z-Bias d2", "", 704u, 32u, 1u, NULL, 0u},
+        {"Primary MTM X-Sens s1", "", 736u, 32u, 1u, NULL, 0u},
+        {"Primary MTM Y-Sens s1", "", 768u, 32u, 1u, NULL, 0u},
+        {"Primary MTM Z-Sens s1", "", 800u, 32u, 1u, NULL, 0u},
+        {"Primary MTM X-Sens s2", "", 832u, 32u, 1u, NULL, 0u},
+        {"Primary MTM Y-Sens s2", "", 864u, 32u, 1u, NULL, 0u},
+        {"Primary MTM Z-Sens s2", "", 896u, 32u, 1u, NULL, 0u},
+        {"Redundant MTM X-Bias d1", "", 928u, 32u, 1u, NULL, 0u},
+        {"Redundant MTM Y-Bias d1", "", 960u, 32u, 1u, NULL, 0u},
+        {"Redundant MTM Z-Bias d1", "", 992u, 32u, 1u, NULL, 0u},
+        {"Redundant MTM X-Bias d2", "", 1024u, 32u, 1u, NULL, 0u},
+        {"Redundant MTM Y-Bias d2", "", 1056u, 32u, 1u, NULL, 0u},
+        {"Redundant MTM Z-Bias d2", "", 1088u, 32u, 1u, NULL, 0u},
+        {"Redundant MTM X-Sens s1", "", 1120u, 32u, 1u, NULL, 0u},
+        {"Redundant MTM Y-Sens s1", "", 1152u, 32u, 1u, NULL, 0u},
+        {"Redundant MTM Z-Sens s1", "", 1184u, 32u, 1u, NULL, 0u},
+        {"Redundant MTM X-Sens s2", "", 1216u, 32u, 1u, NULL, 0u},
+        {"Redundant MTM Y-Sens s2", "", 1248u, 32u, 1u, NULL, 0u},
+        {"Redundant MTM Z-Sens s2", "", 1280u, 32u, 1u, NULL, 0u},
+        {"CC Signal Enable Port", "", 1312u, 4u, 1u, NULL, 0u},
+        {"CC Signal Enable Pin", "", 1316u, 4u, 1u, NULL, 0u},
+        {"CC Motor Enable Port", "", 1320u, 4u, 1u, NULL, 0u},
+        {"CC Motor Enable Pin", "", 1324u, 4u, 1u, NULL, 0u},
+        {"CC Common Enable Port", "", 1328u, 4u, 1u, NULL, 0u},
+        {"CC Common Enable Pin", "", 1332u, 4u, 1u, NULL, 0u},
+        {"CubeSense1 Enable Port", "", 1336u, 4u, 1u, NULL, 0u},
+        {"CubeSense1 Enable Pin", "", 1340u, 4u, 1u, NULL, 0u},
+        {"CubeSense2 Enable Port", "", 1344u, 4u, 1u, NULL, 0u},
+        {"CubeSense2 Enable Pin", "", 1348u, 4u, 1u, NULL, 0u},
+        {"CubeStar Enable Port", "", 1352u, 4u, 1u, NULL, 0u},
+        {"CubeStar Enable Pin", "", 1356u, 4u, 1u, NULL, 0u},
+        {"CubeWheel1 Enable Port", "", 1360u, 4u, 1u, NULL, 0u},
+        {"CubeWheel1 Enable Pin", "", 1364u, 4u, 1u, NULL, 0u},
+        {"CubeWheel2 Enable Port", "", 1368u, 4u, 1u, NULL, 0u},
+        {"CubeWheel2 Enable Pin", "", 1372u, 4u, 1u, NULL, 0u},
+        {"CubeWheel3 Enable Port", "", 1376u, 4u, 1u, NULL, 0u},
+        {"CubeWheel3 Enable Pin", "", 1380u, 4u, 1u, NULL, 0u},
+    };
+    *count = 68u;
+    return fields;
 }
 
 #endif /* CUBEACP_ADCS_SYSTEM_CONFIGURATION_H */

@@ -21,22 +21,21 @@
 typedef struct {
     /**
      * MCU Temperature: bits 0 to 15, raw -32768 to 32767, in C.
-     * @note Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a degree sign. Degrees
-     * Celsius are meant.
-     * @note Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and hundredths stand side by
-     * side, in one frame even. That the controllers and rate sensors report whole degrees in 16 bits may be a lost
-     * factor.
+     * @note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a degree sign. Degrees Celsius
+     * are meant.
+     * @note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and hundredths stand side by side, in
+     * one frame even. That the controllers and rate sensors report whole degrees in 16 bits may be a lost factor.
      */
     int16_t mcu_temperature;
     /**
      * Magnetometer Temperature: bits 16 to 31, raw -32768 to 32767; physical `raw/10.0`, -3276.8 to 3276.7 C.
-     * @note Note ACP-005 (likely): see MCU Temperature.
+     * @note ACP-005 (likely): see MCU Temperature.
      */
     int16_t magnetometer_temperature;
     /**
      * Redundant Magnetometer Temperature: bits 32 to 47, raw -32768 to 32767; physical `raw/10.0`, -3276.8 to 3276.7 C.
-     * @note Note ACP-005 (likely): see MCU Temperature.
-     * @note Note ACP-086 (certain): ADCS Temperatures: the redundant magnetometer is left out of the description.
+     * @note ACP-005 (likely): see MCU Temperature.
+     * @note ACP-086 (certain): ADCS Temperatures: the redundant magnetometer is left out of the description.
      * Magnetometer and MCU are named, the third field is not.
      */
     int16_t redundant_mag_temperature;
@@ -76,6 +75,18 @@ static inline icd_status_t cubeacp_adcs_temperatures_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->magnetometer_temperature));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->redundant_mag_temperature));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_adcs_temperatures_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"MCU Temperature", "C", 0u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Temperature", "C", 16u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Temperature", "C", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Magnetometer Temperature in thousandths of C, exact: -3276800 to 3276700. */

@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * X Angular Rate Covariance: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for the square of a rate, and
-     * the type is signed.
+     * @note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for the square of a rate, and the
+     * type is signed.
      */
     int16_t x_angular_rate_covariance;
     /**
      * Y Angular Rate Covariance: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-077 (open): see X Angular Rate Covariance.
+     * @note ACP-077 (open): see X Angular Rate Covariance.
      */
     int16_t y_angular_rate_covariance;
     /**
      * Z Angular Rate Covariance: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-077 (open): see X Angular Rate Covariance.
+     * @note ACP-077 (open): see X Angular Rate Covariance.
      */
     int16_t z_angular_rate_covariance;
 } cubeacp_angular_rate_covariance_t;
@@ -70,6 +70,18 @@ static inline icd_status_t cubeacp_angular_rate_covariance_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->y_angular_rate_covariance));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->z_angular_rate_covariance));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_angular_rate_covariance_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"X Angular Rate Covariance", "", 0u, 16u, 1u, NULL, 0u},
+        {"Y Angular Rate Covariance", "", 16u, 16u, 1u, NULL, 0u},
+        {"Z Angular Rate Covariance", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** X Angular Rate Covariance in thousandths, exact: -32768 to 32767. */

@@ -6,7 +6,7 @@
 /**
  * @file
  * ASGP4 Run Mode: telecommand 31, 1 byte. Table 86.
- * @note Note ACP-046 (certain): Telecommand 31 has the id of the escape byte. On UART its id is doubled like data. That
+ * @note ACP-046 (certain): Telecommand 31 has the id of the escape byte. On UART its id is doubled like data. That
  * follows from the decoding table; the text does not mention the case.
  */
 
@@ -22,8 +22,8 @@
 typedef struct {
     /**
      * ASGP4 Mode: bits 0 to 7.
-     * @note Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode with four
-     * values; the description has an enabled state.
+     * @note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode with four values;
+     * the description has an enabled state.
      */
     cubeacp_asgp4_mode_select_t asgp4_mode;
 } cubeacp_asgp4_run_mode_t;
@@ -58,6 +58,16 @@ static inline icd_status_t cubeacp_asgp4_run_mode_encode(
     }
     buffer[0] = message->asgp4_mode;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_asgp4_run_mode_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"ASGP4 Mode", "", 0u, 8u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
 }
 
 #endif /* CUBEACP_ASGP4_RUN_MODE_H */

@@ -25,53 +25,53 @@ typedef struct {
     cubeacp_asgp_error_t asgp4_error;
     /**
      * ASGP4 Epoch: bits 8 to 39, 32-bit float.
-     * @note Note ACP-121 (open): ASGP4 elements have no units. The same elements have units as a setting. AOP, MA and
-     * MM are abbreviations that the manual does not explain.
-     * @note Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order. Elements are returned as
-     * floats and set as doubles. An epoch of year and day in a float has a step of minutes. Order differs too: epoch
-     * first against last, mean anomaly before mean motion.
+     * @note ACP-121 (open): ASGP4 elements have no units. The same elements have units as a setting. AOP, MA and MM are
+     * abbreviations that the manual does not explain.
+     * @note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order. Elements are returned as floats
+     * and set as doubles. An epoch of year and day in a float has a step of minutes. Order differs too: epoch first
+     * against last, mean anomaly before mean motion.
      */
     float asgp4_epoch;
     /**
      * ASGP4 inclination: bits 40 to 71, 32-bit float.
-     * @note Note ACP-121 (open): see ASGP4 Epoch.
-     * @note Note ACP-122 (certain): see ASGP4 Epoch.
+     * @note ACP-121 (open): see ASGP4 Epoch.
+     * @note ACP-122 (certain): see ASGP4 Epoch.
      */
     float asgp4_inclination;
     /**
      * ASGP4 RAAN: bits 72 to 103, 32-bit float. Right ascension of the ascending node.
-     * @note Note ACP-121 (open): see ASGP4 Epoch.
-     * @note Note ACP-122 (certain): see ASGP4 Epoch.
+     * @note ACP-121 (open): see ASGP4 Epoch.
+     * @note ACP-122 (certain): see ASGP4 Epoch.
      */
     float asgp4_raan;
     /**
      * ASGP4 ECC: bits 104 to 135, 32-bit float. Eccentricity.
-     * @note Note ACP-121 (open): see ASGP4 Epoch.
-     * @note Note ACP-122 (certain): see ASGP4 Epoch.
+     * @note ACP-121 (open): see ASGP4 Epoch.
+     * @note ACP-122 (certain): see ASGP4 Epoch.
      */
     float asgp4_ecc;
     /**
      * ASGP4 AOP: bits 136 to 167, 32-bit float. Argument of perigee.
-     * @note Note ACP-121 (open): see ASGP4 Epoch.
-     * @note Note ACP-122 (certain): see ASGP4 Epoch.
+     * @note ACP-121 (open): see ASGP4 Epoch.
+     * @note ACP-122 (certain): see ASGP4 Epoch.
      */
     float asgp4_aop;
     /**
      * ASGP4 MA: bits 168 to 199, 32-bit float. Mean anomaly.
-     * @note Note ACP-121 (open): see ASGP4 Epoch.
-     * @note Note ACP-122 (certain): see ASGP4 Epoch.
+     * @note ACP-121 (open): see ASGP4 Epoch.
+     * @note ACP-122 (certain): see ASGP4 Epoch.
      */
     float asgp4_ma;
     /**
      * ASGP4 MM: bits 200 to 231, 32-bit float. Mean motion.
-     * @note Note ACP-121 (open): see ASGP4 Epoch.
-     * @note Note ACP-122 (certain): see ASGP4 Epoch.
+     * @note ACP-121 (open): see ASGP4 Epoch.
+     * @note ACP-122 (certain): see ASGP4 Epoch.
      */
     float asgp4_mm;
     /**
      * ASGP4 Bstar: bits 232 to 263, 32-bit float. Drag term.
-     * @note Note ACP-121 (open): see ASGP4 Epoch.
-     * @note Note ACP-122 (certain): see ASGP4 Epoch.
+     * @note ACP-121 (open): see ASGP4 Epoch.
+     * @note ACP-122 (certain): see ASGP4 Epoch.
      */
     float asgp4_bstar;
 } cubeacp_asgp4_tles_t;
@@ -126,6 +126,25 @@ static inline icd_status_t cubeacp_asgp4_tles_encode(
     buffer[0] = ICDGEN_U8(message->asgp4_complete | (message->asgp4_error << 1));
     ICDGEN_WRITE_ROW_LE(cubeacp_asgp4_tles_t, message, &buffer[1], 8u, asgp4_epoch, asgp4_bstar);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_asgp4_tles_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"ASGP4 complete", "", 0u, 1u, 1u, NULL, 0u},
+        {"ASGP4 error", "", 1u, 7u, 1u, NULL, 0u},
+        {"ASGP4 Epoch", "", 8u, 32u, 1u, NULL, 0u},
+        {"ASGP4 inclination", "", 40u, 32u, 1u, NULL, 0u},
+        {"ASGP4 RAAN", "", 72u, 32u, 1u, NULL, 0u},
+        {"ASGP4 ECC", "", 104u, 32u, 1u, NULL, 0u},
+        {"ASGP4 AOP", "", 136u, 32u, 1u, NULL, 0u},
+        {"ASGP4 MA", "", 168u, 32u, 1u, NULL, 0u},
+        {"ASGP4 MM", "", 200u, 32u, 1u, NULL, 0u},
+        {"ASGP4 Bstar", "", 232u, 32u, 1u, NULL, 0u},
+    };
+    *count = 10u;
+    return fields;
 }
 
 #endif /* CUBEACP_ASGP4_TLES_H */

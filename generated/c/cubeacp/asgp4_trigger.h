@@ -54,4 +54,11 @@ static inline icd_status_t cubeacp_asgp4_trigger_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_asgp4_trigger_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
+}
+
 #endif /* CUBEACP_ASGP4_TRIGGER_H */

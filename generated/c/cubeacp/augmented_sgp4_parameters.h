@@ -24,47 +24,47 @@ typedef struct {
     /**
      * Incl. coefficient: bits 0 to 15, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535. Of the filter of the
      * inclination.
-     * @note Note ACP-181 (certain): Augmented SGP4: names are cut short. Incl., Ecc, Aop, Pos, sd, Min. and Max. stand
-     * in names that are written out in the descriptions.
-     * @note Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients. Factors without range; whether
+     * @note ACP-181 (certain): Augmented SGP4: names are cut short. Incl., Ecc, Aop, Pos, sd, Min. and Max. stand in
+     * names that are written out in the descriptions.
+     * @note ACP-182 (open): Augmented SGP4: time gain and filter coefficients. Factors without range; whether
      * coefficients are weights from 0 to 1 is not said.
      */
     uint16_t incl_coefficient;
     /**
      * Raan coefficient: bits 16 to 31, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535. Of the filter of the RAAN.
-     * @note Note ACP-182 (open): see Incl. coefficient.
+     * @note ACP-182 (open): see Incl. coefficient.
      */
     uint16_t raan_coefficient;
     /**
      * Ecc coefficient: bits 32 to 47, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535. Of the filter of the
      * eccentricity.
-     * @note Note ACP-181 (certain): see Incl. coefficient.
-     * @note Note ACP-182 (open): see Incl. coefficient.
+     * @note ACP-181 (certain): see Incl. coefficient.
+     * @note ACP-182 (open): see Incl. coefficient.
      */
     uint16_t ecc_coefficient;
     /**
      * Aop coefficient: bits 48 to 63, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535. Of the filter of the argument
      * of perigee.
-     * @note Note ACP-181 (certain): see Incl. coefficient.
-     * @note Note ACP-182 (open): see Incl. coefficient.
+     * @note ACP-181 (certain): see Incl. coefficient.
+     * @note ACP-182 (open): see Incl. coefficient.
      */
     uint16_t aop_coefficient;
     /**
      * Time coefficient: bits 64 to 79, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535. Of the filter of the time.
-     * @note Note ACP-182 (open): see Incl. coefficient.
+     * @note ACP-182 (open): see Incl. coefficient.
      */
     uint16_t time_coefficient;
     /**
      * Pos coefficient: bits 80 to 95, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535. Of the filter of the position.
-     * @note Note ACP-181 (certain): see Incl. coefficient.
-     * @note Note ACP-182 (open): see Incl. coefficient.
+     * @note ACP-181 (certain): see Incl. coefficient.
+     * @note ACP-182 (open): see Incl. coefficient.
      */
     uint16_t pos_coefficient;
     /**
      * Maximum position error: bits 96 to 103, raw 0 to 255; physical `raw*0.1`, 0 to 25.5. ASGP4 stops working beyond
      * it.
-     * @note Note ACP-179 (open): Augmented SGP4: limits have no units. Position, velocity and time limits have factors
-     * and no units. Maximum position error with 0.1 reaches 25.5 of something; km and m are both possible.
+     * @note ACP-179 (open): Augmented SGP4: limits have no units. Position, velocity and time limits have factors and
+     * no units. Maximum position error with 0.1 reaches 25.5 of something; km and m are both possible.
      */
     uint8_t maximum_position_error;
     /** ASGP4 filter: bits 104 to 111. */
@@ -72,14 +72,14 @@ typedef struct {
     /**
      * xp coefficient: bits 112 to 143, raw -2147483648 to 2147483647; physical `raw*0.0000001`, -214.7483648 to
      * 214.7483647. Polar coefficient.
-     * @note Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit. Polar motion is published in seconds
-     * of arc, the factor is 0.0000001. Radians fit the range as well.
+     * @note ACP-180 (open): Augmented SGP4: polar coefficients have no unit. Polar motion is published in seconds of
+     * arc, the factor is 0.0000001. Radians fit the range as well.
      */
     int32_t xp_coefficient;
     /**
      * yp coefficient: bits 144 to 175, raw -2147483648 to 2147483647; physical `raw*0.0000001`, -214.7483648 to
      * 214.7483647. Polar coefficient.
-     * @note Note ACP-180 (open): see xp coefficient.
+     * @note ACP-180 (open): see xp coefficient.
      */
     int32_t yp_coefficient;
     /** GPS roll over: bits 176 to 183, raw 0 to 255. */
@@ -87,31 +87,31 @@ typedef struct {
     /**
      * Position sd: bits 184 to 191, raw 0 to 255; physical `raw*0.1`, 0 to 25.5. Largest standard deviation with which
      * ASGP4 works.
-     * @note Note ACP-179 (open): see Maximum position error.
-     * @note Note ACP-181 (certain): see Incl. coefficient.
+     * @note ACP-179 (open): see Maximum position error.
+     * @note ACP-181 (certain): see Incl. coefficient.
      */
     uint8_t position_sd;
     /**
      * Velocity sd: bits 192 to 199, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. Largest standard deviation with which
      * ASGP4 works.
-     * @note Note ACP-179 (open): see Maximum position error.
+     * @note ACP-179 (open): see Maximum position error.
      */
     uint8_t velocity_sd;
     /**
      * Min. satellites: bits 200 to 207, raw 0 to 255. Fewest satellites with which ASGP4 works.
-     * @note Note ACP-181 (certain): see Incl. coefficient.
+     * @note ACP-181 (certain): see Incl. coefficient.
      */
     uint8_t min_satellites;
     /**
      * Time gain: bits 208 to 215, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. Of the compensation of the time offset.
-     * @note Note ACP-182 (open): see Incl. coefficient.
+     * @note ACP-182 (open): see Incl. coefficient.
      */
     uint8_t time_gain;
     /**
      * Max. lag: bits 216 to 223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. Largest lag of the time stamps that are
      * still used.
-     * @note Note ACP-179 (open): see Maximum position error.
-     * @note Note ACP-181 (certain): see Incl. coefficient.
+     * @note ACP-179 (open): see Maximum position error.
+     * @note ACP-181 (certain): see Incl. coefficient.
      */
     uint8_t max_lag;
     /** Min. samples: bits 224 to 239, raw 0 to 65535. Fewest samples for an ASGP4 run. */
@@ -180,6 +180,32 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_encode(
     buffer[27] = message->max_lag;
     icdgen_store_u16le(&buffer[28], message->min_samples);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_augmented_sgp4_parameters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Incl. coefficient", "", 0u, 16u, 1u, NULL, 0u},
+        {"Raan coefficient", "", 16u, 16u, 1u, NULL, 0u},
+        {"Ecc coefficient", "", 32u, 16u, 1u, NULL, 0u},
+        {"Aop coefficient", "", 48u, 16u, 1u, NULL, 0u},
+        {"Time coefficient", "", 64u, 16u, 1u, NULL, 0u},
+        {"Pos coefficient", "", 80u, 16u, 1u, NULL, 0u},
+        {"Maximum position error", "", 96u, 8u, 1u, NULL, 0u},
+        {"ASGP4 filter", "", 104u, 8u, 1u, NULL, 0u},
+        {"xp coefficient", "", 112u, 32u, 1u, NULL, 0u},
+        {"yp coefficient", "", 144u, 32u, 1u, NULL, 0u},
+        {"GPS roll over", "", 176u, 8u, 1u, NULL, 0u},
+        {"Position sd", "", 184u, 8u, 1u, NULL, 0u},
+        {"Velocity sd", "", 192u, 8u, 1u, NULL, 0u},
+        {"Min. satellites", "", 200u, 8u, 1u, NULL, 0u},
+        {"Time gain", "", 208u, 8u, 1u, NULL, 0u},
+        {"Max. lag", "", 216u, 8u, 1u, NULL, 0u},
+        {"Min. samples", "", 224u, 16u, 1u, NULL, 0u},
+    };
+    *count = 17u;
+    return fields;
 }
 
 /** Incl. coefficient in thousandths, exact: 0 to 65535. */

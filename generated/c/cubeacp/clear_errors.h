@@ -7,8 +7,8 @@
  * @file
  * Clear Errors: telecommand 12, 1 byte. Table 76.
  * Clears the latched error flags that are selected.
- * @note Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0
- * and ignored.
+ * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
+ * ignored.
  */
 
 #include "../icdgen.h"
@@ -22,14 +22,14 @@
 typedef struct {
     /**
      * ADCS Error Flags: bit 0.
-     * @note Note ACP-021 (open): Clear Errors: which flags. The two bits clear ADCS and HK errors. HK is not explained,
-     * and no frame says to which of the two its flags belong; those of frame 144 are cleared by this telecommand by the
+     * @note ACP-021 (open): Clear Errors: which flags. The two bits clear ADCS and HK errors. HK is not explained, and
+     * no frame says to which of the two its flags belong; those of frame 144 are cleared by this telecommand by the
      * text, by neither bit by the table.
      */
     bool adcs_error_flags;
     /**
      * HK Error Flags: bit 1. Housekeeping errors.
-     * @note Note ACP-021 (open): see ADCS Error Flags.
+     * @note ACP-021 (open): see ADCS Error Flags.
      */
     bool hk_error_flags;
 } cubeacp_clear_errors_t;
@@ -65,6 +65,17 @@ static inline icd_status_t cubeacp_clear_errors_encode(
     }
     buffer[0] = ICDGEN_U8(message->adcs_error_flags | (message->hk_error_flags << 1));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_clear_errors_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"ADCS Error Flags", "", 0u, 1u, 1u, NULL, 0u},
+        {"HK Error Flags", "", 1u, 1u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* CUBEACP_CLEAR_ERRORS_H */

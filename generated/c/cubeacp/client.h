@@ -1731,7 +1731,7 @@ static inline icd_status_t cubeacp_send_inertial_pointing_reference_vector(
         context);
 }
 
-/** Requests Identification. */
+/** Requests Identification, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_identification(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_IDENTIFICATION_ID);
@@ -1746,7 +1746,7 @@ static inline icd_status_t cubeacp_receive_identification(common_identification_
     return common_identification_decode(message, event->data, event->length);
 }
 
-/** Requests Boot And Running Program Status. */
+/** Requests Boot And Running Program Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_boot_and_running_program_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID);
@@ -1763,7 +1763,7 @@ static inline icd_status_t cubeacp_receive_boot_and_running_program_status(
     return common_boot_and_running_program_status_decode(message, event->data, event->length);
 }
 
-/** Requests Boot Index and Status. */
+/** Requests Boot Index and Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_boot_index_and_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BOOT_INDEX_AND_STATUS_ID);
@@ -1780,7 +1780,7 @@ static inline icd_status_t cubeacp_receive_boot_index_and_status(
     return common_boot_index_and_status_decode(message, event->data, event->length);
 }
 
-/** Requests Last Logged Event. */
+/** Requests Last Logged Event, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_last_logged_event(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_LAST_LOGGED_EVENT_ID);
@@ -1797,7 +1797,7 @@ static inline icd_status_t cubeacp_receive_last_logged_event(
     return common_last_logged_event_decode(message, event->data, event->length);
 }
 
-/** Requests SRAM Latchup counters. */
+/** Requests SRAM Latchup counters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sram_latchup_counters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_LATCHUP_COUNTERS_ID);
@@ -1814,7 +1814,7 @@ static inline icd_status_t cubeacp_receive_sram_latchup_counters(
     return common_sram_latchup_counters_decode(message, event->data, event->length);
 }
 
-/** Requests EDAC Error Counters. */
+/** Requests EDAC Error Counters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_edac_error_counters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_EDAC_ERROR_COUNTERS_ID);
@@ -1831,7 +1831,7 @@ static inline icd_status_t cubeacp_receive_edac_error_counters(
     return common_edac_error_counters_decode(message, event->data, event->length);
 }
 
-/** Requests Communication Status. */
+/** Requests Communication Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_communication_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_COMMUNICATION_STATUS_ID);
@@ -1848,7 +1848,7 @@ static inline icd_status_t cubeacp_receive_communication_status(
     return common_communication_status_decode(message, event->data, event->length);
 }
 
-/** Requests SD card format/erase progress. */
+/** Requests SD card format/erase progress, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_card_format_erase_progress(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID);
@@ -1865,7 +1865,7 @@ static inline icd_status_t cubeacp_receive_sd_card_format_erase_progress(
     return common_sd_card_format_erase_progress_decode(message, event->data, event->length);
 }
 
-/** Requests Telecommand Acknowledge. */
+/** Requests Telecommand Acknowledge, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_telecommand_acknowledge(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_TELECOMMAND_ACKNOWLEDGE_ID);
@@ -1882,7 +1882,7 @@ static inline icd_status_t cubeacp_receive_telecommand_acknowledge(
     return common_telecommand_acknowledge_decode(message, event->data, event->length);
 }
 
-/** Requests File Download Buffer with File Contents. */
+/** Requests File Download Buffer with File Contents, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_file_download_buffer_with_file_contents(
     cubeacp_client_t *client,
     uint32_t now)
@@ -1904,7 +1904,7 @@ static inline icd_status_t cubeacp_receive_file_download_buffer_with_file_conten
     return common_file_download_buffer_with_file_contents_decode(message, event->data, event->length);
 }
 
-/** Requests Download Block Ready. */
+/** Requests Download Block Ready, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_download_block_ready(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_DOWNLOAD_BLOCK_READY_ID);
@@ -1921,7 +1921,7 @@ static inline icd_status_t cubeacp_receive_download_block_ready(
     return common_download_block_ready_decode(message, event->data, event->length);
 }
 
-/** Requests File Information. */
+/** Requests File Information, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_file_information(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_FILE_INFORMATION_ID);
@@ -1938,7 +1938,7 @@ static inline icd_status_t cubeacp_receive_file_information(
     return common_file_information_decode(message, event->data, event->length);
 }
 
-/** Requests Initialize Upload Complete. */
+/** Requests Initialize Upload Complete, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_initialize_upload_complete(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_INITIALIZE_UPLOAD_COMPLETE_ID);
@@ -1955,7 +1955,7 @@ static inline icd_status_t cubeacp_receive_initialize_upload_complete(
     return common_initialize_upload_complete_decode(message, event->data, event->length);
 }
 
-/** Requests Upload Block Complete. */
+/** Requests Upload Block Complete, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_upload_block_complete(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UPLOAD_BLOCK_COMPLETE_ID);
@@ -1972,7 +1972,7 @@ static inline icd_status_t cubeacp_receive_upload_block_complete(
     return common_upload_block_complete_decode(message, event->data, event->length);
 }
 
-/** Requests Block Checksum. */
+/** Requests Block Checksum, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_block_checksum(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_BLOCK_CHECKSUM_ID);
@@ -1987,7 +1987,7 @@ static inline icd_status_t cubeacp_receive_block_checksum(common_block_checksum_
     return common_block_checksum_decode(message, event->data, event->length);
 }
 
-/** Requests Cache enabled state. */
+/** Requests Cache enabled state, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cache_enabled_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CACHE_ENABLED_STATE_GET_ID);
@@ -2004,7 +2004,7 @@ static inline icd_status_t cubeacp_receive_cache_enabled_state(
     return common_cache_enabled_state_decode(message, event->data, event->length);
 }
 
-/** Requests SRAM Scrub Parameters. */
+/** Requests SRAM Scrub Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sram_scrub_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_SRAM_SCRUB_PARAMETERS_GET_ID);
@@ -2021,7 +2021,7 @@ static inline icd_status_t cubeacp_receive_sram_scrub_parameters(
     return common_sram_scrub_parameters_decode(message, event->data, event->length);
 }
 
-/** Requests Current Unix Time. */
+/** Requests Current Unix Time, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_unix_time(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_CURRENT_UNIX_TIME_GET_ID);
@@ -2038,7 +2038,7 @@ static inline icd_status_t cubeacp_receive_current_unix_time(
     return common_current_unix_time_decode(message, event->data, event->length);
 }
 
-/** Requests Unix Time Save to Flash. */
+/** Requests Unix Time Save to Flash, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_unix_time_save_to_flash(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID);
@@ -2055,7 +2055,7 @@ static inline icd_status_t cubeacp_receive_unix_time_save_to_flash(
     return common_unix_time_save_to_flash_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 1. */
+/** Requests Hole Map 1, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_1(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_1_GET_ID);
@@ -2070,7 +2070,7 @@ static inline icd_status_t cubeacp_receive_hole_map_1(common_hole_map_1_t *messa
     return common_hole_map_1_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 2. */
+/** Requests Hole Map 2, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_2(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_2_GET_ID);
@@ -2085,7 +2085,7 @@ static inline icd_status_t cubeacp_receive_hole_map_2(common_hole_map_2_t *messa
     return common_hole_map_2_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 3. */
+/** Requests Hole Map 3, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_3(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_3_GET_ID);
@@ -2100,7 +2100,7 @@ static inline icd_status_t cubeacp_receive_hole_map_3(common_hole_map_3_t *messa
     return common_hole_map_3_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 4. */
+/** Requests Hole Map 4, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_4(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_4_GET_ID);
@@ -2115,7 +2115,7 @@ static inline icd_status_t cubeacp_receive_hole_map_4(common_hole_map_4_t *messa
     return common_hole_map_4_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 5. */
+/** Requests Hole Map 5, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_5(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_5_GET_ID);
@@ -2130,7 +2130,7 @@ static inline icd_status_t cubeacp_receive_hole_map_5(common_hole_map_5_t *messa
     return common_hole_map_5_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 6. */
+/** Requests Hole Map 6, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_6(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_6_GET_ID);
@@ -2145,7 +2145,7 @@ static inline icd_status_t cubeacp_receive_hole_map_6(common_hole_map_6_t *messa
     return common_hole_map_6_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 7. */
+/** Requests Hole Map 7, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_7(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_7_GET_ID);
@@ -2160,7 +2160,7 @@ static inline icd_status_t cubeacp_receive_hole_map_7(common_hole_map_7_t *messa
     return common_hole_map_7_decode(message, event->data, event->length);
 }
 
-/** Requests Hole Map 8. */
+/** Requests Hole Map 8, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_8(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, COMMON_HOLE_MAP_8_GET_ID);
@@ -2175,7 +2175,7 @@ static inline icd_status_t cubeacp_receive_hole_map_8(common_hole_map_8_t *messa
     return common_hole_map_8_decode(message, event->data, event->length);
 }
 
-/** Requests Current ADCS State. */
+/** Requests Current ADCS State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_adcs_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CURRENT_ADCS_STATE_ID);
@@ -2192,7 +2192,7 @@ static inline icd_status_t cubeacp_receive_current_adcs_state(
     return cubeacp_current_adcs_state_decode(message, event->data, event->length);
 }
 
-/** Requests JPG Conversion Progress. */
+/** Requests JPG Conversion Progress, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_jpg_conversion_progress(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_JPG_CONVERSION_PROGRESS_ID);
@@ -2209,7 +2209,7 @@ static inline icd_status_t cubeacp_receive_jpg_conversion_progress(
     return cubeacp_jpg_conversion_progress_decode(message, event->data, event->length);
 }
 
-/** Requests CubeACP State. */
+/** Requests CubeACP State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STATE_ID);
@@ -2224,7 +2224,7 @@ static inline icd_status_t cubeacp_receive_state(cubeacp_state_t *message, const
     return cubeacp_state_decode(message, event->data, event->length);
 }
 
-/** Requests Estimated Attitude Angles. */
+/** Requests Estimated Attitude Angles, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_attitude_angles(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID);
@@ -2241,7 +2241,7 @@ static inline icd_status_t cubeacp_receive_estimated_attitude_angles(
     return cubeacp_estimated_attitude_angles_decode(message, event->data, event->length);
 }
 
-/** Requests Estimated Angular Rates. */
+/** Requests Estimated Angular Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_angular_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_ANGULAR_RATES_ID);
@@ -2258,7 +2258,7 @@ static inline icd_status_t cubeacp_receive_estimated_angular_rates(
     return cubeacp_estimated_angular_rates_decode(message, event->data, event->length);
 }
 
-/** Requests Satellite Position (ECI). */
+/** Requests Satellite Position (ECI), as icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_position_eci(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_POSITION_ECI_ID);
@@ -2275,7 +2275,7 @@ static inline icd_status_t cubeacp_receive_satellite_position_eci(
     return cubeacp_satellite_position_eci_decode(message, event->data, event->length);
 }
 
-/** Requests Satellite Velocity (ECI). */
+/** Requests Satellite Velocity (ECI), as icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_velocity_eci(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_VELOCITY_ECI_ID);
@@ -2292,7 +2292,7 @@ static inline icd_status_t cubeacp_receive_satellite_velocity_eci(
     return cubeacp_satellite_velocity_eci_decode(message, event->data, event->length);
 }
 
-/** Requests Satellite Position (LLH). */
+/** Requests Satellite Position (LLH), as icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_position_llh(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SATELLITE_POSITION_LLH_ID);
@@ -2309,7 +2309,7 @@ static inline icd_status_t cubeacp_receive_satellite_position_llh(
     return cubeacp_satellite_position_llh_decode(message, event->data, event->length);
 }
 
-/** Requests Magnetic Field Vector. */
+/** Requests Magnetic Field Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetic_field_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MAGNETIC_FIELD_VECTOR_ID);
@@ -2326,7 +2326,7 @@ static inline icd_status_t cubeacp_receive_magnetic_field_vector(
     return cubeacp_magnetic_field_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Coarse Sun Vector. */
+/** Requests Coarse Sun Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_coarse_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_COARSE_SUN_VECTOR_ID);
@@ -2343,7 +2343,7 @@ static inline icd_status_t cubeacp_receive_coarse_sun_vector(
     return cubeacp_coarse_sun_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Fine Sun Vector. */
+/** Requests Fine Sun Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_fine_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_FINE_SUN_VECTOR_ID);
@@ -2358,7 +2358,7 @@ static inline icd_status_t cubeacp_receive_fine_sun_vector(cubeacp_fine_sun_vect
     return cubeacp_fine_sun_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Nadir Vector. */
+/** Requests Nadir Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_nadir_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_NADIR_VECTOR_ID);
@@ -2373,7 +2373,7 @@ static inline icd_status_t cubeacp_receive_nadir_vector(cubeacp_nadir_vector_t *
     return cubeacp_nadir_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Rate Sensor Rates. */
+/** Requests Rate Sensor Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_rate_sensor_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RATE_SENSOR_RATES_ID);
@@ -2390,7 +2390,7 @@ static inline icd_status_t cubeacp_receive_rate_sensor_rates(
     return cubeacp_rate_sensor_rates_decode(message, event->data, event->length);
 }
 
-/** Requests Wheel Speed. */
+/** Requests Wheel Speed, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_speed(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_SPEED_ID);
@@ -2405,7 +2405,7 @@ static inline icd_status_t cubeacp_receive_wheel_speed(cubeacp_wheel_speed_t *me
     return cubeacp_wheel_speed_decode(message, event->data, event->length);
 }
 
-/** Requests Magnetorquer Command. */
+/** Requests Magnetorquer Command, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetorquer_command(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MAGNETORQUER_COMMAND_ID);
@@ -2422,7 +2422,7 @@ static inline icd_status_t cubeacp_receive_magnetorquer_command(
     return cubeacp_magnetorquer_command_decode(message, event->data, event->length);
 }
 
-/** Requests Wheel Speed Commands. */
+/** Requests Wheel Speed Commands, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_speed_commands(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_SPEED_COMMANDS_ID);
@@ -2439,7 +2439,7 @@ static inline icd_status_t cubeacp_receive_wheel_speed_commands(
     return cubeacp_wheel_speed_commands_decode(message, event->data, event->length);
 }
 
-/** Requests IGRF Modelled Magnetic Field Vector. */
+/** Requests IGRF Modelled Magnetic Field Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_igrf_modelled_magnetic_field_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_ID);
@@ -2458,7 +2458,7 @@ static inline icd_status_t cubeacp_receive_igrf_modelled_magnetic_field_vector(
     return cubeacp_igrf_modelled_magnetic_field_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Modelled Sun Vector. */
+/** Requests Modelled Sun Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_modelled_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MODELLED_SUN_VECTOR_ID);
@@ -2475,7 +2475,7 @@ static inline icd_status_t cubeacp_receive_modelled_sun_vector(
     return cubeacp_modelled_sun_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Estimated Gyro Bias. */
+/** Requests Estimated Gyro Bias, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_gyro_bias(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_GYRO_BIAS_ID);
@@ -2492,7 +2492,7 @@ static inline icd_status_t cubeacp_receive_estimated_gyro_bias(
     return cubeacp_estimated_gyro_bias_decode(message, event->data, event->length);
 }
 
-/** Requests Estimation Innovation Vector. */
+/** Requests Estimation Innovation Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_innovation_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_INNOVATION_VECTOR_ID);
@@ -2509,7 +2509,7 @@ static inline icd_status_t cubeacp_receive_estimation_innovation_vector(
     return cubeacp_estimation_innovation_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Quaternion Error Vector. */
+/** Requests Quaternion Error Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_quaternion_error_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_QUATERNION_ERROR_VECTOR_ID);
@@ -2526,7 +2526,7 @@ static inline icd_status_t cubeacp_receive_quaternion_error_vector(
     return cubeacp_quaternion_error_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Quaternion Covariance. */
+/** Requests Quaternion Covariance, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_quaternion_covariance(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_QUATERNION_COVARIANCE_ID);
@@ -2543,7 +2543,7 @@ static inline icd_status_t cubeacp_receive_quaternion_covariance(
     return cubeacp_quaternion_covariance_decode(message, event->data, event->length);
 }
 
-/** Requests Angular Rate Covariance. */
+/** Requests Angular Rate Covariance, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_angular_rate_covariance(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ANGULAR_RATE_COVARIANCE_ID);
@@ -2560,7 +2560,7 @@ static inline icd_status_t cubeacp_receive_angular_rate_covariance(
     return cubeacp_angular_rate_covariance_decode(message, event->data, event->length);
 }
 
-/** Requests Raw Cam2 Sensor. */
+/** Requests Raw Cam2 Sensor, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_cam2_sensor(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CAM2_SENSOR_ID);
@@ -2575,7 +2575,7 @@ static inline icd_status_t cubeacp_receive_raw_cam2_sensor(cubeacp_raw_cam2_sens
     return cubeacp_raw_cam2_sensor_decode(message, event->data, event->length);
 }
 
-/** Requests Raw Cam1 Sensor. */
+/** Requests Raw Cam1 Sensor, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_cam1_sensor(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CAM1_SENSOR_ID);
@@ -2590,7 +2590,7 @@ static inline icd_status_t cubeacp_receive_raw_cam1_sensor(cubeacp_raw_cam1_sens
     return cubeacp_raw_cam1_sensor_decode(message, event->data, event->length);
 }
 
-/** Requests Raw CSS 1 to 6. */
+/** Requests Raw CSS 1 to 6, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_css_1_to_6(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CSS_1_TO_6_ID);
@@ -2605,7 +2605,7 @@ static inline icd_status_t cubeacp_receive_raw_css_1_to_6(cubeacp_raw_css_1_to_6
     return cubeacp_raw_css_1_to_6_decode(message, event->data, event->length);
 }
 
-/** Requests Raw CSS 7 to 10. */
+/** Requests Raw CSS 7 to 10, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_css_7_to_10(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_CSS_7_TO_10_ID);
@@ -2620,7 +2620,7 @@ static inline icd_status_t cubeacp_receive_raw_css_7_to_10(cubeacp_raw_css_7_to_
     return cubeacp_raw_css_7_to_10_decode(message, event->data, event->length);
 }
 
-/** Requests Raw Magnetometer. */
+/** Requests Raw Magnetometer, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_magnetometer(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_MAGNETOMETER_ID);
@@ -2637,7 +2637,7 @@ static inline icd_status_t cubeacp_receive_raw_magnetometer(
     return cubeacp_raw_magnetometer_decode(message, event->data, event->length);
 }
 
-/** Requests CubeSense1 Current Measurements. */
+/** Requests CubeSense1 Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense1_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE1_CURRENTS_ID);
@@ -2654,7 +2654,7 @@ static inline icd_status_t cubeacp_receive_cubesense1_currents(
     return cubeacp_cubesense1_currents_decode(message, event->data, event->length);
 }
 
-/** Requests CubeControl Current Measurements. */
+/** Requests CubeControl Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubecontrol_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBECONTROL_CURRENTS_ID);
@@ -2673,7 +2673,7 @@ static inline icd_status_t cubeacp_receive_cubecontrol_currents(
     return cubeacp_cubecontrol_currents_decode(message, event->data, event->length);
 }
 
-/** Requests Wheel Currents. */
+/** Requests Wheel Currents, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_WHEEL_CURRENTS_ID);
@@ -2688,7 +2688,7 @@ static inline icd_status_t cubeacp_receive_wheel_currents(cubeacp_wheel_currents
     return cubeacp_wheel_currents_decode(message, event->data, event->length);
 }
 
-/** Requests ADCS Temperatures. */
+/** Requests ADCS Temperatures, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_temperatures(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_TEMPERATURES_ID);
@@ -2705,7 +2705,7 @@ static inline icd_status_t cubeacp_receive_adcs_temperatures(
     return cubeacp_adcs_temperatures_decode(message, event->data, event->length);
 }
 
-/** Requests Rate sensor temperatures. */
+/** Requests Rate sensor temperatures, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_rate_sensor_temperatures(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RATE_SENSOR_TEMPERATURES_ID);
@@ -2722,7 +2722,7 @@ static inline icd_status_t cubeacp_receive_rate_sensor_temperatures(
     return cubeacp_rate_sensor_temperatures_decode(message, event->data, event->length);
 }
 
-/** Requests Raw GPS Status. */
+/** Requests Raw GPS Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_status(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_STATUS_ID);
@@ -2737,7 +2737,7 @@ static inline icd_status_t cubeacp_receive_raw_gps_status(cubeacp_raw_gps_status
     return cubeacp_raw_gps_status_decode(message, event->data, event->length);
 }
 
-/** Requests Raw GPS Time. */
+/** Requests Raw GPS Time, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_time(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_TIME_ID);
@@ -2752,7 +2752,7 @@ static inline icd_status_t cubeacp_receive_raw_gps_time(cubeacp_raw_gps_time_t *
     return cubeacp_raw_gps_time_decode(message, event->data, event->length);
 }
 
-/** Requests Raw GPS X. */
+/** Requests Raw GPS X, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_x(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_X_ID);
@@ -2767,7 +2767,7 @@ static inline icd_status_t cubeacp_receive_raw_gps_x(cubeacp_raw_gps_x_t *messag
     return cubeacp_raw_gps_x_decode(message, event->data, event->length);
 }
 
-/** Requests Raw GPS Y. */
+/** Requests Raw GPS Y, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_y(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_Y_ID);
@@ -2782,7 +2782,7 @@ static inline icd_status_t cubeacp_receive_raw_gps_y(cubeacp_raw_gps_y_t *messag
     return cubeacp_raw_gps_y_decode(message, event->data, event->length);
 }
 
-/** Requests Raw GPS Z. */
+/** Requests Raw GPS Z, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_z(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_Z_ID);
@@ -2797,7 +2797,7 @@ static inline icd_status_t cubeacp_receive_raw_gps_z(cubeacp_raw_gps_z_t *messag
     return cubeacp_raw_gps_z_decode(message, event->data, event->length);
 }
 
-/** Requests Star 1 Body Vector. */
+/** Requests Star 1 Body Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_body_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_BODY_VECTOR_ID);
@@ -2814,7 +2814,7 @@ static inline icd_status_t cubeacp_receive_star_1_body_vector(
     return cubeacp_star_1_body_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Star 2 Body Vector. */
+/** Requests Star 2 Body Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_body_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_BODY_VECTOR_ID);
@@ -2831,7 +2831,7 @@ static inline icd_status_t cubeacp_receive_star_2_body_vector(
     return cubeacp_star_2_body_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Star 3 Body Vector. */
+/** Requests Star 3 Body Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_body_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_BODY_VECTOR_ID);
@@ -2848,7 +2848,7 @@ static inline icd_status_t cubeacp_receive_star_3_body_vector(
     return cubeacp_star_3_body_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Star 1 Orbit Vector. */
+/** Requests Star 1 Orbit Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_ORBIT_VECTOR_ID);
@@ -2865,7 +2865,7 @@ static inline icd_status_t cubeacp_receive_star_1_orbit_vector(
     return cubeacp_star_1_orbit_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Star 2 Orbit Vector. */
+/** Requests Star 2 Orbit Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_ORBIT_VECTOR_ID);
@@ -2882,7 +2882,7 @@ static inline icd_status_t cubeacp_receive_star_2_orbit_vector(
     return cubeacp_star_2_orbit_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Star 3 Orbit Vector. */
+/** Requests Star 3 Orbit Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_ORBIT_VECTOR_ID);
@@ -2899,7 +2899,7 @@ static inline icd_status_t cubeacp_receive_star_3_orbit_vector(
     return cubeacp_star_3_orbit_vector_decode(message, event->data, event->length);
 }
 
-/** Requests Star Magnitude. */
+/** Requests Star Magnitude, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_magnitude(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_MAGNITUDE_ID);
@@ -2914,7 +2914,7 @@ static inline icd_status_t cubeacp_receive_star_magnitude(cubeacp_star_magnitude
     return cubeacp_star_magnitude_decode(message, event->data, event->length);
 }
 
-/** Requests Star Performance1. */
+/** Requests Star Performance1, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_performance1(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_PERFORMANCE1_ID);
@@ -2931,7 +2931,7 @@ static inline icd_status_t cubeacp_receive_star_performance1(
     return cubeacp_star_performance1_decode(message, event->data, event->length);
 }
 
-/** Requests Star Timing. */
+/** Requests Star Timing, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_timing(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_TIMING_ID);
@@ -2946,7 +2946,7 @@ static inline icd_status_t cubeacp_receive_star_timing(cubeacp_star_timing_t *me
     return cubeacp_star_timing_decode(message, event->data, event->length);
 }
 
-/** Requests ADCS State. */
+/** Requests ADCS State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_STATE_ID);
@@ -2961,7 +2961,7 @@ static inline icd_status_t cubeacp_receive_adcs_state(cubeacp_adcs_state_t *mess
     return cubeacp_adcs_state_decode(message, event->data, event->length);
 }
 
-/** Requests ADCS Measurements. */
+/** Requests ADCS Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_measurements(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_MEASUREMENTS_ID);
@@ -2978,7 +2978,7 @@ static inline icd_status_t cubeacp_receive_adcs_measurements(
     return cubeacp_adcs_measurements_decode(message, event->data, event->length);
 }
 
-/** Requests Actuator Commands. */
+/** Requests Actuator Commands, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_actuator_commands(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ACTUATOR_COMMANDS_ID);
@@ -2995,7 +2995,7 @@ static inline icd_status_t cubeacp_receive_actuator_commands(
     return cubeacp_actuator_commands_decode(message, event->data, event->length);
 }
 
-/** Requests Estimation Data. */
+/** Requests Estimation Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_DATA_ID);
@@ -3010,7 +3010,7 @@ static inline icd_status_t cubeacp_receive_estimation_data(cubeacp_estimation_da
     return cubeacp_estimation_data_decode(message, event->data, event->length);
 }
 
-/** Requests Raw Sensor Measurements. */
+/** Requests Raw Sensor Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_sensor_measurements(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_SENSOR_MEASUREMENTS_ID);
@@ -3027,7 +3027,7 @@ static inline icd_status_t cubeacp_receive_raw_sensor_measurements(
     return cubeacp_raw_sensor_measurements_decode(message, event->data, event->length);
 }
 
-/** Requests Power and Temperature Measurements. */
+/** Requests Power and Temperature Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_power_and_temperature(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_POWER_AND_TEMPERATURE_ID);
@@ -3046,7 +3046,7 @@ static inline icd_status_t cubeacp_receive_power_and_temperature(
     return cubeacp_power_and_temperature_decode(message, event->data, event->length);
 }
 
-/** Requests Adcs Execution Times. */
+/** Requests Adcs Execution Times, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_execution_times(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_EXECUTION_TIMES_ID);
@@ -3063,7 +3063,7 @@ static inline icd_status_t cubeacp_receive_adcs_execution_times(
     return cubeacp_adcs_execution_times_decode(message, event->data, event->length);
 }
 
-/** Requests ADCS Misc Current Measurements. */
+/** Requests ADCS Misc Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_misc_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_MISC_CURRENTS_ID);
@@ -3080,7 +3080,7 @@ static inline icd_status_t cubeacp_receive_adcs_misc_currents(
     return cubeacp_adcs_misc_currents_decode(message, event->data, event->length);
 }
 
-/** Requests Fine Estimated Angular Rates. */
+/** Requests Fine Estimated Angular Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_fine_angular_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_FINE_ANGULAR_RATES_ID);
@@ -3097,7 +3097,7 @@ static inline icd_status_t cubeacp_receive_fine_angular_rates(
     return cubeacp_fine_angular_rates_decode(message, event->data, event->length);
 }
 
-/** Requests Raw GPS Measurements. */
+/** Requests Raw GPS Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_measurements(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_GPS_MEASUREMENTS_ID);
@@ -3114,7 +3114,7 @@ static inline icd_status_t cubeacp_receive_raw_gps_measurements(
     return cubeacp_raw_gps_measurements_decode(message, event->data, event->length);
 }
 
-/** Requests Raw Star Tracker. */
+/** Requests Raw Star Tracker, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_star_tracker(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_STAR_TRACKER_ID);
@@ -3131,7 +3131,7 @@ static inline icd_status_t cubeacp_receive_raw_star_tracker(
     return cubeacp_raw_star_tracker_decode(message, event->data, event->length);
 }
 
-/** Requests Star 1 Raw Data. */
+/** Requests Star 1 Raw Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_raw_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_1_RAW_DATA_ID);
@@ -3146,7 +3146,7 @@ static inline icd_status_t cubeacp_receive_star_1_raw_data(cubeacp_star_1_raw_da
     return cubeacp_star_1_raw_data_decode(message, event->data, event->length);
 }
 
-/** Requests Star 2 Raw Data. */
+/** Requests Star 2 Raw Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_raw_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_2_RAW_DATA_ID);
@@ -3161,7 +3161,7 @@ static inline icd_status_t cubeacp_receive_star_2_raw_data(cubeacp_star_2_raw_da
     return cubeacp_star_2_raw_data_decode(message, event->data, event->length);
 }
 
-/** Requests Star 3 Raw Data. */
+/** Requests Star 3 Raw Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_raw_data(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_3_RAW_DATA_ID);
@@ -3176,7 +3176,7 @@ static inline icd_status_t cubeacp_receive_star_3_raw_data(cubeacp_star_3_raw_da
     return cubeacp_star_3_raw_data_decode(message, event->data, event->length);
 }
 
-/** Requests Secondary Magnetometer Raw Measurements. */
+/** Requests Secondary Magnetometer Raw Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_secondary_magnetometer_raw_measurements(
     cubeacp_client_t *client,
     uint32_t now)
@@ -3198,7 +3198,7 @@ static inline icd_status_t cubeacp_receive_secondary_magnetometer_raw_measuremen
     return cubeacp_secondary_magnetometer_raw_measurements_decode(message, event->data, event->length);
 }
 
-/** Requests Raw Rate Sensor. */
+/** Requests Raw Rate Sensor, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_rate_sensor(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_RAW_RATE_SENSOR_ID);
@@ -3213,7 +3213,7 @@ static inline icd_status_t cubeacp_receive_raw_rate_sensor(cubeacp_raw_rate_sens
     return cubeacp_raw_rate_sensor_decode(message, event->data, event->length);
 }
 
-/** Requests Estimated Quaternion. */
+/** Requests Estimated Quaternion, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_quaternion(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATED_QUATERNION_ID);
@@ -3230,7 +3230,7 @@ static inline icd_status_t cubeacp_receive_estimated_quaternion(
     return cubeacp_estimated_quaternion_decode(message, event->data, event->length);
 }
 
-/** Requests ECEF Position. */
+/** Requests ECEF Position, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_ecef_position(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ECEF_POSITION_ID);
@@ -3245,7 +3245,7 @@ static inline icd_status_t cubeacp_receive_ecef_position(cubeacp_ecef_position_t
     return cubeacp_ecef_position_decode(message, event->data, event->length);
 }
 
-/** Requests ACP Execution State. */
+/** Requests ACP Execution State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_acp_execution_state(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ACP_EXECUTION_STATE_ID);
@@ -3262,7 +3262,7 @@ static inline icd_status_t cubeacp_receive_acp_execution_state(
     return cubeacp_acp_execution_state_decode(message, event->data, event->length);
 }
 
-/** Requests Current ADCS State 2. */
+/** Requests Current ADCS State 2, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_adcs_state_2(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CURRENT_ADCS_STATE_2_ID);
@@ -3279,7 +3279,7 @@ static inline icd_status_t cubeacp_receive_current_adcs_state_2(
     return cubeacp_current_adcs_state_2_decode(message, event->data, event->length);
 }
 
-/** Requests ASGP4 TLEs. */
+/** Requests ASGP4 TLEs, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_asgp4_tles(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ASGP4_TLES_ID);
@@ -3294,7 +3294,7 @@ static inline icd_status_t cubeacp_receive_asgp4_tles(cubeacp_asgp4_tles_t *mess
     return cubeacp_asgp4_tles_decode(message, event->data, event->length);
 }
 
-/** Requests CubeStar Estimated Rates. */
+/** Requests CubeStar Estimated Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubestar_estimated_rates(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESTAR_ESTIMATED_RATES_ID);
@@ -3311,7 +3311,7 @@ static inline icd_status_t cubeacp_receive_cubestar_estimated_rates(
     return cubeacp_cubestar_estimated_rates_decode(message, event->data, event->length);
 }
 
-/** Requests CubeStar Estimated Quaternion. */
+/** Requests CubeStar Estimated Quaternion, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubestar_estimated_quaternion(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_ID);
@@ -3328,7 +3328,7 @@ static inline icd_status_t cubeacp_receive_cubestar_estimated_quaternion(
     return cubeacp_cubestar_estimated_quaternion_decode(message, event->data, event->length);
 }
 
-/** Requests Star Performance2. */
+/** Requests Star Performance2, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_performance2(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_STAR_PERFORMANCE2_ID);
@@ -3345,7 +3345,7 @@ static inline icd_status_t cubeacp_receive_star_performance2(
     return cubeacp_star_performance2_decode(message, event->data, event->length);
 }
 
-/** Requests CubeSense2 Current Measurements. */
+/** Requests CubeSense2 Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense2_currents(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE2_CURRENTS_ID);
@@ -3362,7 +3362,7 @@ static inline icd_status_t cubeacp_receive_cubesense2_currents(
     return cubeacp_cubesense2_currents_decode(message, event->data, event->length);
 }
 
-/** Requests Status of Image Capture and Save Operation. */
+/** Requests Status of Image Capture and Save Operation, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_status_of_image_capture_and_save_operation(
     cubeacp_client_t *client,
     uint32_t now)
@@ -3384,7 +3384,7 @@ static inline icd_status_t cubeacp_receive_status_of_image_capture_and_save_oper
     return cubeacp_status_of_image_capture_and_save_operation_decode(message, event->data, event->length);
 }
 
-/** Requests Set Magnetorquer Configuration. */
+/** Requests Set Magnetorquer Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_magnetorquer_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_MAGNETORQUER_CONFIGURATION_GET_ID);
@@ -3401,7 +3401,7 @@ static inline icd_status_t cubeacp_receive_set_magnetorquer_configuration(
     return cubeacp_set_magnetorquer_configuration_decode(message, event->data, event->length);
 }
 
-/** Requests Set Wheel Configuration. */
+/** Requests Set Wheel Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_wheel_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_WHEEL_CONFIGURATION_GET_ID);
@@ -3418,7 +3418,7 @@ static inline icd_status_t cubeacp_receive_set_wheel_configuration(
     return cubeacp_set_wheel_configuration_decode(message, event->data, event->length);
 }
 
-/** Requests Set Rate Gyro Configuration. */
+/** Requests Set Rate Gyro Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_rate_gyro_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_RATE_GYRO_CONFIGURATION_GET_ID);
@@ -3435,7 +3435,7 @@ static inline icd_status_t cubeacp_receive_set_rate_gyro_configuration(
     return cubeacp_set_rate_gyro_configuration_decode(message, event->data, event->length);
 }
 
-/** Requests CSS Configuration. */
+/** Requests CSS Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_css_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CSS_CONFIGURATION_GET_ID);
@@ -3452,7 +3452,7 @@ static inline icd_status_t cubeacp_receive_css_configuration(
     return cubeacp_css_configuration_decode(message, event->data, event->length);
 }
 
-/** Requests ADCS Power Control. */
+/** Requests ADCS Power Control, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_power_control(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_POWER_CONTROL_GET_ID);
@@ -3469,7 +3469,7 @@ static inline icd_status_t cubeacp_receive_adcs_power_control(
     return cubeacp_adcs_power_control_decode(message, event->data, event->length);
 }
 
-/** Requests Commanded Attitude Angles. */
+/** Requests Commanded Attitude Angles, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_commanded_attitude_angles(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_COMMANDED_ATTITUDE_ANGLES_GET_ID);
@@ -3486,7 +3486,7 @@ static inline icd_status_t cubeacp_receive_commanded_attitude_angles(
     return cubeacp_commanded_attitude_angles_decode(message, event->data, event->length);
 }
 
-/** Requests Tracking Controller Target Reference. */
+/** Requests Tracking Controller Target Reference, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_tracking_controller_target_reference(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_GET_ID);
@@ -3506,7 +3506,7 @@ static inline icd_status_t cubeacp_receive_tracking_controller_target_reference(
     return cubeacp_tracking_controller_target_reference_decode(message, event->data, event->length);
 }
 
-/** Requests Set Star Tracker Configuration. */
+/** Requests Set Star Tracker Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_star_tracker_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_STAR_TRACKER_CONFIGURATION_GET_ID);
@@ -3523,7 +3523,7 @@ static inline icd_status_t cubeacp_receive_set_star_tracker_configuration(
     return cubeacp_set_star_tracker_configuration_decode(message, event->data, event->length);
 }
 
-/** Requests CubeSense Configuration. */
+/** Requests CubeSense Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_CUBESENSE_CONFIGURATION_GET_ID);
@@ -3540,7 +3540,7 @@ static inline icd_status_t cubeacp_receive_cubesense_configuration(
     return cubeacp_cubesense_configuration_decode(message, event->data, event->length);
 }
 
-/** Requests Magnetometer Configuration. */
+/** Requests Magnetometer Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetometer_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID);
@@ -3557,7 +3557,7 @@ static inline icd_status_t cubeacp_receive_magnetometer_configuration(
     return cubeacp_magnetometer_configuration_decode(message, event->data, event->length);
 }
 
-/** Requests Redundant Magnetometer Configuration. */
+/** Requests Redundant Magnetometer Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_redundant_mag_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_REDUNDANT_MAG_CONFIGURATION_GET_ID);
@@ -3577,7 +3577,7 @@ static inline icd_status_t cubeacp_receive_redundant_mag_configuration(
     return cubeacp_redundant_mag_configuration_decode(message, event->data, event->length);
 }
 
-/** Requests ADCS Configuration. */
+/** Requests ADCS Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_CONFIGURATION_GET_ID);
@@ -3594,7 +3594,7 @@ static inline icd_status_t cubeacp_receive_adcs_configuration(
     return cubeacp_adcs_configuration_decode(message, event->data, event->length);
 }
 
-/** Requests SGP4 Orbit Parameters. */
+/** Requests SGP4 Orbit Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sgp4_orbit_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SGP4_ORBIT_PARAMETERS_GET_ID);
@@ -3611,7 +3611,7 @@ static inline icd_status_t cubeacp_receive_sgp4_orbit_parameters(
     return cubeacp_sgp4_orbit_parameters_decode(message, event->data, event->length);
 }
 
-/** Requests Set Detumbling Control Parameters. */
+/** Requests Set Detumbling Control Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_detumbling_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_GET_ID);
@@ -3630,7 +3630,7 @@ static inline icd_status_t cubeacp_receive_set_detumbling_control_parameters(
     return cubeacp_set_detumbling_control_parameters_decode(message, event->data, event->length);
 }
 
-/** Requests Set Y-Wheel Control Parameters. */
+/** Requests Set Y-Wheel Control Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_y_wheel_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_GET_ID);
@@ -3647,7 +3647,7 @@ static inline icd_status_t cubeacp_receive_set_y_wheel_control_parameters(
     return cubeacp_set_y_wheel_control_parameters_decode(message, event->data, event->length);
 }
 
-/** Requests Set Reaction Wheel Control Parameters. */
+/** Requests Set Reaction Wheel Control Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_reaction_wheel_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_GET_ID);
@@ -3667,7 +3667,7 @@ static inline icd_status_t cubeacp_receive_set_reaction_wheel_control_parameters
     return cubeacp_set_reaction_wheel_control_parameters_decode(message, event->data, event->length);
 }
 
-/** Requests Set Tracking Controller Gain Parameters. */
+/** Requests Set Tracking Controller Gain Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_tracking_controller_gain_parameters(
     cubeacp_client_t *client,
     uint32_t now)
@@ -3689,7 +3689,7 @@ static inline icd_status_t cubeacp_receive_set_tracking_controller_gain_paramete
     return cubeacp_set_tracking_controller_gain_parameters_decode(message, event->data, event->length);
 }
 
-/** Requests Moment of Inertia Matrix. */
+/** Requests Moment of Inertia Matrix, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_moment_of_inertia_matrix(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_MOMENT_OF_INERTIA_MATRIX_GET_ID);
@@ -3706,7 +3706,7 @@ static inline icd_status_t cubeacp_receive_moment_of_inertia_matrix(
     return cubeacp_moment_of_inertia_matrix_decode(message, event->data, event->length);
 }
 
-/** Requests Estimation Parameters. */
+/** Requests Estimation Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ESTIMATION_PARAMETERS_GET_ID);
@@ -3723,7 +3723,7 @@ static inline icd_status_t cubeacp_receive_estimation_parameters(
     return cubeacp_estimation_parameters_decode(message, event->data, event->length);
 }
 
-/** Requests ADCS System Configuration. */
+/** Requests ADCS System Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_system_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_ADCS_SYSTEM_CONFIGURATION_GET_ID);
@@ -3740,7 +3740,7 @@ static inline icd_status_t cubeacp_receive_adcs_system_configuration(
     return cubeacp_adcs_system_configuration_decode(message, event->data, event->length);
 }
 
-/** Requests User-coded Controller and Estimator Parameters. */
+/** Requests User-coded Controller and Estimator Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_user_coded_controller_and_estimator_parameters(
     cubeacp_client_t *client,
     uint32_t now)
@@ -3762,7 +3762,7 @@ static inline icd_status_t cubeacp_receive_user_coded_controller_and_estimator_p
     return cubeacp_user_coded_controller_and_estimator_parameters_decode(message, event->data, event->length);
 }
 
-/** Requests Augmented-SGP4 Parameters. */
+/** Requests Augmented-SGP4 Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_augmented_sgp4_parameters(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_AUGMENTED_SGP4_PARAMETERS_GET_ID);
@@ -3779,7 +3779,7 @@ static inline icd_status_t cubeacp_receive_augmented_sgp4_parameters(
     return cubeacp_augmented_sgp4_parameters_decode(message, event->data, event->length);
 }
 
-/** Requests SD Log1 Configuration. */
+/** Requests SD Log1 Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_log1_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SD_LOG1_CONFIGURATION_GET_ID);
@@ -3796,7 +3796,7 @@ static inline icd_status_t cubeacp_receive_sd_log1_configuration(
     return cubeacp_sd_log1_configuration_decode(message, event->data, event->length);
 }
 
-/** Requests SD Log2 Configuration. */
+/** Requests SD Log2 Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_log2_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_SD_LOG2_CONFIGURATION_GET_ID);
@@ -3813,7 +3813,7 @@ static inline icd_status_t cubeacp_receive_sd_log2_configuration(
     return cubeacp_sd_log2_configuration_decode(message, event->data, event->length);
 }
 
-/** Requests UART Log Configuration. */
+/** Requests UART Log Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_uart_log_configuration(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_UART_LOG_CONFIGURATION_GET_ID);
@@ -3830,7 +3830,7 @@ static inline icd_status_t cubeacp_receive_uart_log_configuration(
     return cubeacp_uart_log_configuration_decode(message, event->data, event->length);
 }
 
-/** Requests Inertial Pointing Reference Vector. */
+/** Requests Inertial Pointing Reference Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_inertial_pointing_reference_vector(cubeacp_client_t *client, uint32_t now)
 {
     return icd_client_request(&client->client, now, CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_GET_ID);

@@ -6,7 +6,7 @@
 /**
  * @file
  * Commanded Attitude Angles: configuration, set by telecommand 15, got by telemetry 199, 6 bytes. Table 186.
- * @note Note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and yaw need a sequence and a
+ * @note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and yaw need a sequence and a
  * reference. Neither is given, for estimated or for commanded angles.
  */
 
@@ -63,6 +63,18 @@ static inline icd_status_t cubeacp_commanded_attitude_angles_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->commanded_pitch_angle));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->commanded_yaw_angle));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_commanded_attitude_angles_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Commanded Roll Angle", "deg", 0u, 16u, 1u, NULL, 0u},
+        {"Commanded Pitch Angle", "deg", 16u, 16u, 1u, NULL, 0u},
+        {"Commanded Yaw Angle", "deg", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Commanded Roll Angle in thousandths of deg, exact: -327680 to 327670. */

@@ -20,19 +20,19 @@
 typedef struct {
     /**
      * Source File Counter: bits 0 to 7, raw 0 to 255.
-     * @note Note ACP-052 (open): Convert to JPG: which file. The source is given by a counter without a type. Raw and
-     * BMP files are named, and the file types have no raw one.
+     * @note ACP-052 (open): Convert to JPG: which file. The source is given by a counter without a type. Raw and BMP
+     * files are named, and the file types have no raw one.
      */
     uint8_t source_file_counter;
     /**
      * Quality Factor: bits 8 to 15, raw 0 to 255.
-     * @note Note ACP-053 (open): Convert to JPG: quality and white balance have no scale. Neither range nor meaning of
-     * the two parameters is given.
+     * @note ACP-053 (open): Convert to JPG: quality and white balance have no scale. Neither range nor meaning of the
+     * two parameters is given.
      */
     uint8_t quality_factor;
     /**
      * White Balance: bits 16 to 23, raw 0 to 255.
-     * @note Note ACP-053 (open): see Quality Factor.
+     * @note ACP-053 (open): see Quality Factor.
      */
     uint8_t white_balance;
 } cubeacp_convert_to_jpg_file_t;
@@ -71,6 +71,18 @@ static inline icd_status_t cubeacp_convert_to_jpg_file_encode(
     buffer[1] = message->quality_factor;
     buffer[2] = message->white_balance;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_convert_to_jpg_file_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Source File Counter", "", 0u, 8u, 1u, NULL, 0u},
+        {"Quality Factor", "", 8u, 8u, 1u, NULL, 0u},
+        {"White Balance", "", 16u, 8u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_CONVERT_TO_JPG_FILE_H */

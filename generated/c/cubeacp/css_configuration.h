@@ -63,8 +63,8 @@ typedef struct {
     uint8_t css10_relative_scale;
     /**
      * CSS Threshold: bits 160 to 167, raw 0 to 255.
-     * @note Note ACP-133 (open): CSS threshold has no description. The name is repeated; neither unit nor what lies
-     * below it is said. The message is described as directions and scale factors.
+     * @note ACP-133 (open): CSS threshold has no description. The name is repeated; neither unit nor what lies below it
+     * is said. The message is described as directions and scale factors.
      */
     uint8_t css_threshold;
 } cubeacp_css_configuration_t;
@@ -99,6 +99,36 @@ static inline icd_status_t cubeacp_css_configuration_encode(
     }
     ICDGEN_WRITE_ROW_LE(cubeacp_css_configuration_t, message, &buffer[0], 21u, css1_configuration, css_threshold);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_css_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CSS1 Configuration", "", 0u, 8u, 1u, NULL, 0u},
+        {"CSS2 Configuration", "", 8u, 8u, 1u, NULL, 0u},
+        {"CSS3 Configuration", "", 16u, 8u, 1u, NULL, 0u},
+        {"CSS4 Configuration", "", 24u, 8u, 1u, NULL, 0u},
+        {"CSS5 Configuration", "", 32u, 8u, 1u, NULL, 0u},
+        {"CSS6 Configuration", "", 40u, 8u, 1u, NULL, 0u},
+        {"CSS7 Configuration", "", 48u, 8u, 1u, NULL, 0u},
+        {"CSS8 Configuration", "", 56u, 8u, 1u, NULL, 0u},
+        {"CSS9 Configuration", "", 64u, 8u, 1u, NULL, 0u},
+        {"CSS10 Configuration", "", 72u, 8u, 1u, NULL, 0u},
+        {"CSS1 Relative Scale", "", 80u, 8u, 1u, NULL, 0u},
+        {"CSS2 Relative Scale", "", 88u, 8u, 1u, NULL, 0u},
+        {"CSS3 Relative Scale", "", 96u, 8u, 1u, NULL, 0u},
+        {"CSS4 Relative Scale", "", 104u, 8u, 1u, NULL, 0u},
+        {"CSS5 Relative Scale", "", 112u, 8u, 1u, NULL, 0u},
+        {"CSS6 Relative Scale", "", 120u, 8u, 1u, NULL, 0u},
+        {"CSS7 Relative Scale", "", 128u, 8u, 1u, NULL, 0u},
+        {"CSS8 Relative Scale", "", 136u, 8u, 1u, NULL, 0u},
+        {"CSS9 Relative Scale", "", 144u, 8u, 1u, NULL, 0u},
+        {"CSS10 Relative Scale", "", 152u, 8u, 1u, NULL, 0u},
+        {"CSS Threshold", "", 160u, 8u, 1u, NULL, 0u},
+    };
+    *count = 21u;
+    return fields;
 }
 
 /** CSS1 Relative Scale in thousandths, exact: 0 to 2550. */

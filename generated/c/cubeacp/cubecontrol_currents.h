@@ -62,6 +62,18 @@ static inline icd_status_t cubeacp_cubecontrol_currents_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_cubecontrol_currents_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CubeControl 3V3 Current", "mA", 0u, 16u, 1u, NULL, 0u},
+        {"CubeControl 5V Current", "mA", 16u, 16u, 1u, NULL, 0u},
+        {"CubeControl Vbat Current", "mA", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #ifndef ICDGEN_NO_DOUBLE
 
 /** CubeControl 3V3 Current in mA: 0 to 31999.51171875. */

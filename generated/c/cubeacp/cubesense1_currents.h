@@ -7,8 +7,8 @@
  * @file
  * CubeSense1 Current Measurements: telemetry 171, 4 bytes. Table 129.
  * Bit 21 of the log mask.
- * @note Note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to have 10+6*(N+1)*M bytes,
- * and the UART message 11+6*N. With a frame of 4 bytes in the mask both hold only if it is filled up.
+ * @note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to have 10+6*(N+1)*M bytes, and
+ * the UART message 11+6*N. With a frame of 4 bytes in the mask both hold only if it is filled up.
  */
 
 #include "../icdgen.h"
@@ -58,6 +58,17 @@ static inline icd_status_t cubeacp_cubesense1_currents_encode(
     icdgen_store_u16le(&buffer[0], message->cubesense1_3v3_current);
     icdgen_store_u16le(&buffer[2], message->cubesense1_cam_sram_current);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_cubesense1_currents_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CubeSense1 3V3 Current", "mA", 0u, 16u, 1u, NULL, 0u},
+        {"CubeSense1 Cam SRAM Current", "mA", 16u, 16u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 /** CubeSense1 3V3 Current in uA, exact: 0 to 6553500. */

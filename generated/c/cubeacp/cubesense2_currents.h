@@ -7,10 +7,10 @@
  * @file
  * CubeSense2 Current Measurements: telemetry 232, 4 bytes. Table 175.
  * Bit 65 of the log mask.
- * @note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request
- * sent to the wrong program is taken for another one.
- * @note Note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to have 10+6*(N+1)*M bytes,
- * and the UART message 11+6*N. With a frame of 4 bytes in the mask both hold only if it is filled up.
+ * @note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request sent
+ * to the wrong program is taken for another one.
+ * @note ACP-194 (open): Size of a log file follows from 6 bytes a frame. The file is to have 10+6*(N+1)*M bytes, and
+ * the UART message 11+6*N. With a frame of 4 bytes in the mask both hold only if it is filled up.
  */
 
 #include "../icdgen.h"
@@ -60,6 +60,17 @@ static inline icd_status_t cubeacp_cubesense2_currents_encode(
     icdgen_store_u16le(&buffer[0], message->cubesense2_3v3_current);
     icdgen_store_u16le(&buffer[2], message->cubesense2_cam_sram_current);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_cubesense2_currents_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CubeSense2 3V3 Current", "mA", 0u, 16u, 1u, NULL, 0u},
+        {"CubeSense2 Cam SRAM Current", "mA", 16u, 16u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 /** CubeSense2 3V3 Current in uA, exact: 0 to 6553500. */

@@ -6,8 +6,8 @@
 /**
  * @file
  * CubeSense Configuration: configuration, set by telecommand 25, got by telemetry 203, 112 bytes. Table 189.
- * @note Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0
- * and ignored.
+ * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
+ * ignored.
  */
 
 #include "../icdgen.h"
@@ -24,41 +24,41 @@ typedef struct {
     /**
      * Cam1 Sensor Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need a sequence of axes and
-     * a direction. None is given.
+     * @note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need a sequence of axes and a
+     * direction. None is given.
      */
     int16_t cam1_mounting_alpha;
     /**
      * Cam1 Sensor Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
+     * @note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
      */
     int16_t cam1_mounting_beta;
     /**
      * Cam1 Sensor Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
+     * @note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
      */
     int16_t cam1_mounting_gamma;
     /**
      * Cam1 detection threshold: bits 48 to 55, raw 0 to 255.
-     * @note Note ACP-150 (certain): Cam1 detection threshold has no description in one table. The description is empty
-     * in the message and present in the whole configuration.
+     * @note ACP-150 (certain): Cam1 detection threshold has no description in one table. The description is empty in
+     * the message and present in the whole configuration.
      */
     uint8_t cam1_detection_threshold;
     /** Cam1 sensor auto adjust mode: bit 56. */
     bool cam1_sensor_auto_adjust_mode;
     /**
      * Cam1 sensor exposure time: bits 64 to 79, raw 0 to 65535. Register value.
-     * @note Note ACP-145 (open): Exposure and gain are register values. Neither the register nor its scale is given, so
+     * @note ACP-145 (open): Exposure and gain are register values. Neither the register nor its scale is given, so
      * times and gains cannot be told from them.
      */
     uint16_t cam1_sensor_exposure_time;
     /**
      * Cam1 Boresight X: bits 80 to 95, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * @note Note ACP-154 (certain): Cam1 and Cam 1. Within one message the cameras are written with and without a
-     * blank, area and Area too.
+     * @note ACP-154 (certain): Cam1 and Cam 1. Within one message the cameras are written with and without a blank,
+     * area and Area too.
      */
     uint16_t cam1_boresight_x;
     /**
@@ -69,19 +69,19 @@ typedef struct {
     /**
      * Cam2 Sensor Mounting Transform Alpha Angle: bits 112 to 127, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
+     * @note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
      */
     int16_t cam2_mounting_alpha;
     /**
      * Cam2 Sensor Mounting Transform Beta Angle: bits 128 to 143, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
+     * @note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
      */
     int16_t cam2_mounting_beta;
     /**
      * Cam2 Sensor Mounting Transform Gamma Angle: bits 144 to 159, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
+     * @note ACP-157 (open): see Cam1 Sensor Mounting Transform Alpha Angle.
      */
     int16_t cam2_mounting_gamma;
     /** Cam2 detection threshold: bits 160 to 167, raw 0 to 255. */
@@ -90,13 +90,13 @@ typedef struct {
     bool cam2_sensor_auto_adjust_mode;
     /**
      * Cam2 sensor exposure time: bits 176 to 191, raw 0 to 65535. Register value.
-     * @note Note ACP-145 (open): see Cam1 sensor exposure time.
+     * @note ACP-145 (open): see Cam1 sensor exposure time.
      */
     uint16_t cam2_sensor_exposure_time;
     /**
      * Cam2 Boresight X: bits 192 to 207, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * @note Note ACP-154 (certain): see Cam1 Boresight X.
+     * @note ACP-154 (certain): see Cam1 Boresight X.
      */
     uint16_t cam2_boresight_x;
     /**
@@ -128,205 +128,205 @@ typedef struct {
     uint8_t nadir_min_radius;
     /**
      * Cam 1 Minimum X of area 1: bits 256 to 271, raw 0 to 65535.
-     * @note Note ACP-153 (open): Masked areas: purpose, unit and an unused area. Forty limits in 16 bits have no unit
-     * and no purpose; whether pixels inside are ignored, and how an area is switched off, is not said.
-     * @note Note ACP-154 (certain): see Cam1 Boresight X.
+     * @note ACP-153 (open): Masked areas: purpose, unit and an unused area. Forty limits in 16 bits have no unit and no
+     * purpose; whether pixels inside are ignored, and how an area is switched off, is not said.
+     * @note ACP-154 (certain): see Cam1 Boresight X.
      */
     uint16_t cam_1_minimum_x_of_area_1;
     /**
      * Cam 1 Maximum X of area 1: bits 272 to 287, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_maximum_x_of_area_1;
     /**
      * Cam 1 Minimum Y of area 1: bits 288 to 303, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_minimum_y_of_area_1;
     /**
      * Cam 1 Maximum Y of area 1: bits 304 to 319, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_maximum_y_of_area_1;
     /**
      * Cam 1 Minimum X of area 2: bits 320 to 335, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_minimum_x_of_area_2;
     /**
      * Cam 1 Maximum X of area 2: bits 336 to 351, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_maximum_x_of_area_2;
     /**
      * Cam 1 Minimum Y of area 2: bits 352 to 367, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_minimum_y_of_area_2;
     /**
      * Cam 1 Maximum Y of area 2: bits 368 to 383, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_maximum_y_of_area_2;
     /**
      * Cam 1 Minimum X of area 3: bits 384 to 399, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_minimum_x_of_area_3;
     /**
      * Cam 1 Maximum X of area 3: bits 400 to 415, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_maximum_x_of_area_3;
     /**
      * Cam 1 Minimum Y of area 3: bits 416 to 431, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_minimum_y_of_area_3;
     /**
      * Cam 1 Maximum Y of area 3: bits 432 to 447, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_maximum_y_of_area_3;
     /**
      * Cam 1 Minimum X of area 4: bits 448 to 463, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_minimum_x_of_area_4;
     /**
      * Cam 1 Maximum X of area 4: bits 464 to 479, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_maximum_x_of_area_4;
     /**
      * Cam 1 Minimum Y of area 4: bits 480 to 495, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_minimum_y_of_area_4;
     /**
      * Cam 1 Maximum Y of area 4: bits 496 to 511, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_maximum_y_of_area_4;
     /**
      * Cam 1 Minimum X of area 5: bits 512 to 527, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_minimum_x_of_area_5;
     /**
      * Cam 1 Maximum X of area 5: bits 528 to 543, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_maximum_x_of_area_5;
     /**
      * Cam 1 Minimum Y of area 5: bits 544 to 559, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_minimum_y_of_area_5;
     /**
      * Cam 1 Maximum Y of area 5: bits 560 to 575, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_1_maximum_y_of_area_5;
     /**
      * Cam 2 Minimum X of area 1: bits 576 to 591, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
-     * @note Note ACP-154 (certain): see Cam1 Boresight X.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-154 (certain): see Cam1 Boresight X.
      */
     uint16_t cam_2_minimum_x_of_area_1;
     /**
      * Cam 2 Maximum X of area 1: bits 592 to 607, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_maximum_x_of_area_1;
     /**
      * Cam 2 Minimum Y of area 1: bits 608 to 623, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_minimum_y_of_area_1;
     /**
      * Cam 2 Maximum Y of area 1: bits 624 to 639, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_maximum_y_of_area_1;
     /**
      * Cam 2 Minimum X of area 2: bits 640 to 655, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_minimum_x_of_area_2;
     /**
      * Cam 2 Maximum X of area 2: bits 656 to 671, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_maximum_x_of_area_2;
     /**
      * Cam 2 Minimum Y of area 2: bits 672 to 687, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_minimum_y_of_area_2;
     /**
      * Cam 2 Maximum Y of area 2: bits 688 to 703, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_maximum_y_of_area_2;
     /**
      * Cam 2 Minimum X of area 3: bits 704 to 719, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_minimum_x_of_area_3;
     /**
      * Cam 2 Maximum X of area 3: bits 720 to 735, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_maximum_x_of_area_3;
     /**
      * Cam 2 Minimum Y of area 3: bits 736 to 751, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_minimum_y_of_area_3;
     /**
      * Cam 2 Maximum Y of area 3: bits 752 to 767, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_maximum_y_of_area_3;
     /**
      * Cam 2 Minimum X of area 4: bits 768 to 783, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_minimum_x_of_area_4;
     /**
      * Cam 2 Maximum X of area 4: bits 784 to 799, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_maximum_x_of_area_4;
     /**
      * Cam 2 Minimum Y of area 4: bits 800 to 815, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_minimum_y_of_area_4;
     /**
      * Cam 2 Maximum Y of area 4: bits 816 to 831, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_maximum_y_of_area_4;
     /**
      * Cam 2 Minimum X of area 5: bits 832 to 847, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_minimum_x_of_area_5;
     /**
      * Cam 2 Maximum X of area 5: bits 848 to 863, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_maximum_x_of_area_5;
     /**
      * Cam 2 Minimum Y of area 5: bits 864 to 879, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_minimum_y_of_area_5;
     /**
      * Cam 2 Maximum Y of area 5: bits 880 to 895, raw 0 to 65535.
-     * @note Note ACP-153 (open): see Cam 1 Minimum X of area 1.
+     * @note ACP-153 (open): see Cam 1 Minimum X of area 1.
      */
     uint16_t cam_2_maximum_y_of_area_5;
 } cubeacp_cubesense_configuration_t;
@@ -413,6 +413,75 @@ static inline icd_status_t cubeacp_cubesense_configuration_encode(
         cam_1_minimum_x_of_area_1,
         cam_2_maximum_y_of_area_5);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_cubesense_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Cam1 Sensor Mounting Transform Alpha Angle", "deg", 0u, 16u, 1u, NULL, 0u},
+        {"Cam1 Sensor Mounting Transform Beta Angle", "deg", 16u, 16u, 1u, NULL, 0u},
+        {"Cam1 Sensor Mounting Transform Gamma Angle", "deg", 32u, 16u, 1u, NULL, 0u},
+        {"Cam1 detection threshold", "", 48u, 8u, 1u, NULL, 0u},
+        {"Cam1 sensor auto adjust mode", "", 56u, 1u, 1u, NULL, 0u},
+        {"Cam1 sensor exposure time", "", 64u, 16u, 1u, NULL, 0u},
+        {"Cam1 Boresight X", "pixels", 80u, 16u, 1u, NULL, 0u},
+        {"Cam1 Boresight Y", "pixels", 96u, 16u, 1u, NULL, 0u},
+        {"Cam2 Sensor Mounting Transform Alpha Angle", "deg", 112u, 16u, 1u, NULL, 0u},
+        {"Cam2 Sensor Mounting Transform Beta Angle", "deg", 128u, 16u, 1u, NULL, 0u},
+        {"Cam2 Sensor Mounting Transform Gamma Angle", "deg", 144u, 16u, 1u, NULL, 0u},
+        {"Cam2 detection threshold", "", 160u, 8u, 1u, NULL, 0u},
+        {"Cam2 sensor auto adjust mode", "", 168u, 1u, 1u, NULL, 0u},
+        {"Cam2 sensor exposure time", "", 176u, 16u, 1u, NULL, 0u},
+        {"Cam2 Boresight X", "pixels", 192u, 16u, 1u, NULL, 0u},
+        {"Cam2 Boresight Y", "pixels", 208u, 16u, 1u, NULL, 0u},
+        {"Nadir Max Deviation Percentage", "%", 224u, 8u, 1u, NULL, 0u},
+        {"Nadir Max Bad Edges", "", 232u, 8u, 1u, NULL, 0u},
+        {"Nadir Max Radius", "deg", 240u, 8u, 1u, NULL, 0u},
+        {"Nadir Min Radius", "deg", 248u, 8u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 1", "", 256u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 1", "", 272u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 1", "", 288u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 1", "", 304u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 2", "", 320u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 2", "", 336u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 2", "", 352u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 2", "", 368u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 3", "", 384u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 3", "", 400u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 3", "", 416u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 3", "", 432u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 4", "", 448u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 4", "", 464u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 4", "", 480u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 4", "", 496u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum X of area 5", "", 512u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum X of area 5", "", 528u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Minimum Y of area 5", "", 544u, 16u, 1u, NULL, 0u},
+        {"Cam 1 Maximum Y of area 5", "", 560u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 1", "", 576u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 1", "", 592u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 1", "", 608u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 1", "", 624u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 2", "", 640u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 2", "", 656u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 2", "", 672u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 2", "", 688u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 3", "", 704u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 3", "", 720u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 3", "", 736u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 3", "", 752u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 4", "", 768u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 4", "", 784u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 4", "", 800u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 4", "", 816u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum X of area 5", "", 832u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum X of area 5", "", 848u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Minimum Y of area 5", "", 864u, 16u, 1u, NULL, 0u},
+        {"Cam 2 Maximum Y of area 5", "", 880u, 16u, 1u, NULL, 0u},
+    };
+    *count = 60u;
+    return fields;
 }
 
 /** Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */

@@ -7,8 +7,8 @@
  * @file
  * CubeStar Estimated Quaternion: telemetry 230, 6 bytes. Table 173.
  * Bit 63 of the log mask.
- * @note Note ACP-075 (open): Quaternions: the fourth component. Three of four components are sent. The fourth follows
- * up to its sign only, and which component is the scalar is not said.
+ * @note ACP-075 (open): Quaternions: the fourth component. Three of four components are sent. The fourth follows up to
+ * its sign only, and which component is the scalar is not said.
  */
 
 #include "../icdgen.h"
@@ -23,7 +23,7 @@ typedef struct {
     /**
      * Q0: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Of the attitude estimated by
      * CubeStar, described as Q1.
-     * @note Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names and descriptions count
+     * @note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names and descriptions count
      * differently. Q1 to Q3 agree with the other quaternions; if Q0 were the scalar, the third vector component would
      * be missing.
      */
@@ -31,13 +31,13 @@ typedef struct {
     /**
      * Q1: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Of the attitude estimated by
      * CubeStar, described as Q2.
-     * @note Note ACP-112 (open): see Q0.
+     * @note ACP-112 (open): see Q0.
      */
     int16_t q1;
     /**
      * Q2: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Of the attitude estimated by
      * CubeStar, described as Q3.
-     * @note Note ACP-112 (open): see Q0.
+     * @note ACP-112 (open): see Q0.
      */
     int16_t q2;
 } cubeacp_cubestar_estimated_quaternion_t;
@@ -76,6 +76,18 @@ static inline icd_status_t cubeacp_cubestar_estimated_quaternion_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->q1));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->q2));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_cubestar_estimated_quaternion_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Q0", "", 0u, 16u, 1u, NULL, 0u},
+        {"Q1", "", 16u, 16u, 1u, NULL, 0u},
+        {"Q2", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Q0 in millionths, exact: -3276800 to 3276700. */

@@ -21,20 +21,20 @@ typedef struct {
     /**
      * x-Axis rate: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Estimated by CubeStar,
      * about its own X axis.
-     * @note Note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given without a unit. The other
-     * rates are in deg/s; rad/s would fit the range as well.
+     * @note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given without a unit. The other rates
+     * are in deg/s; rad/s would fit the range as well.
      */
     int16_t x_axis_rate;
     /**
      * y-Axis rate: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Estimated by
      * CubeStar, about its own Y axis.
-     * @note Note ACP-111 (open): see x-Axis rate.
+     * @note ACP-111 (open): see x-Axis rate.
      */
     int16_t y_axis_rate;
     /**
      * z-Axis rate: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Estimated by
      * CubeStar, about its own Z axis.
-     * @note Note ACP-111 (open): see x-Axis rate.
+     * @note ACP-111 (open): see x-Axis rate.
      */
     int16_t z_axis_rate;
 } cubeacp_cubestar_estimated_rates_t;
@@ -73,6 +73,18 @@ static inline icd_status_t cubeacp_cubestar_estimated_rates_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->y_axis_rate));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->z_axis_rate));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_cubestar_estimated_rates_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"x-Axis rate", "", 0u, 16u, 1u, NULL, 0u},
+        {"y-Axis rate", "", 16u, 16u, 1u, NULL, 0u},
+        {"z-Axis rate", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** x-Axis rate in millionths, exact: -3276800 to 3276700. */

@@ -8,14 +8,14 @@
  * Current ADCS State: telemetry 132, 6 bytes. Table 98.
  * State of the control processor, frame 1.
  * Bit 27 of the log mask.
- * @note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request
- * sent to the wrong program is taken for another one.
- * @note Note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS Control Program, the state
- * frames have Attitude Control Processor.
- * @note Note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called Current ADCS State, and frame
- * 190, which holds it and much more, ADCS State with the description current ADCS state.
- * @note Note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but the state frames do not
- * tell latched flags from present states.
+ * @note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request sent
+ * to the wrong program is taken for another one.
+ * @note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS Control Program, the state frames
+ * have Attitude Control Processor.
+ * @note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called Current ADCS State, and frame 190,
+ * which holds it and much more, ADCS State with the description current ADCS state.
+ * @note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but the state frames do not tell
+ * latched flags from present states.
  */
 
 #include "../icdgen.h"
@@ -36,8 +36,8 @@ typedef struct {
     cubeacp_adcs_run_mode_t adcs_run_mode;
     /**
      * ASGP4 Mode: bits 10 to 11.
-     * @note Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode with four
-     * values; the description has an enabled state.
+     * @note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold a mode with four values;
+     * the description has an enabled state.
      */
     cubeacp_asgp4_mode_select_t asgp4_mode;
     /** CubeControl Signal Enabled: bit 12. */
@@ -56,25 +56,25 @@ typedef struct {
     bool cubewheel3_enabled;
     /**
      * CubeStar Enabled: bit 19.
-     * @note Note ACP-063 (certain): Star tracker has four spellings. StarTracker Match Error stands beside Star Tracker
+     * @note ACP-063 (certain): Star tracker has four spellings. StarTracker Match Error stands beside Star Tracker
      * Overcurrent Detected; elsewhere CubeStar and star tracking.
      */
     bool cubestar_enabled;
     /**
      * GPS Receiver Enabled: bit 20.
-     * @note Note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is reported as Motor Driver
+     * @note ACP-062 (open): Power switches and enabled flags do not match. Motor Power is reported as Motor Driver
      * Enabled, GPS Power switches the antenna amplifier and is reported as GPS LNA Power Enabled. GPS Receiver Enabled
      * has no switch.
      */
     bool gps_receiver_enabled;
     /**
      * GPS LNA Power Enabled: bit 21. Amplifier of the GPS antenna.
-     * @note Note ACP-062 (open): see GPS Receiver Enabled.
+     * @note ACP-062 (open): see GPS Receiver Enabled.
      */
     bool gps_lna_power_enabled;
     /**
      * Motor Driver Enabled: bit 22.
-     * @note Note ACP-062 (open): see GPS Receiver Enabled.
+     * @note ACP-062 (open): see GPS Receiver Enabled.
      */
     bool motor_driver_enabled;
     /** Sun is Above Local Horizon: bit 23. The elevation is above 0. */
@@ -97,8 +97,8 @@ typedef struct {
     bool cubestar_communications_error;
     /**
      * Magnetometer Range Error: bit 32. About a measured field of 65 uT. Whether above or below is not printed.
-     * @note Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is set when the field has
-     * a size 65 uT. Above is likely, since the field of the earth hardly reaches it.
+     * @note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is set when the field has a
+     * size 65 uT. Above is likely, since the field of the earth hardly reaches it.
      */
     bool magnetometer_range_error;
     /** Cam1 SRAM Overcurrent Detected: bit 33. */
@@ -111,9 +111,9 @@ typedef struct {
     bool cam1_sensor_detection_error;
     /**
      * Sun Sensor Range Error: bit 37. A detected sun angle was beyond +/-90 deg.
-     * @note Note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag each is for the sun and
-     * the nadir sensor; the cameras are numbered, and which of them is which is a setting. With two sun sensors one
-     * flag serves both.
+     * @note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag each is for the sun and the
+     * nadir sensor; the cameras are numbered, and which of them is which is a setting. With two sun sensors one flag
+     * serves both.
      */
     bool sun_sensor_range_error;
     /** Cam2 SRAM Overcurrent Detected: bit 38. */
@@ -126,7 +126,7 @@ typedef struct {
     bool cam2_sensor_detection_error;
     /**
      * Nadir Sensor Range Error: bit 42. A detected nadir angle was beyond +/-60 deg.
-     * @note Note ACP-061 (open): see Sun Sensor Range Error.
+     * @note ACP-061 (open): see Sun Sensor Range Error.
      */
     bool nadir_sensor_range_error;
     /** Rate Sensor Range Error: bit 43. A measured body rate was beyond +/-20 deg/s. */
@@ -137,12 +137,12 @@ typedef struct {
     bool coarse_sun_sensor_error;
     /**
      * StarTracker Match Error: bit 46. Too few stars were matched.
-     * @note Note ACP-063 (certain): see CubeStar Enabled.
+     * @note ACP-063 (certain): see CubeStar Enabled.
      */
     bool star_tracker_match_error;
     /**
      * Star Tracker Overcurrent Detected: bit 47.
-     * @note Note ACP-063 (certain): see CubeStar Enabled.
+     * @note ACP-063 (certain): see CubeStar Enabled.
      */
     bool star_tracker_overcurrent_detected;
 } cubeacp_current_adcs_state_t;
@@ -317,6 +317,55 @@ static inline icd_status_t cubeacp_current_adcs_state_encode(
         star_tracker_match_error,
         star_tracker_overcurrent_detected);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_current_adcs_state_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Attitude Estimation Mode", "", 0u, 4u, 1u, NULL, 0u},
+        {"Control Mode", "", 4u, 4u, 1u, NULL, 0u},
+        {"ADCS Run Mode", "", 8u, 2u, 1u, NULL, 0u},
+        {"ASGP4 Mode", "", 10u, 2u, 1u, NULL, 0u},
+        {"CubeControl Signal Enabled", "", 12u, 1u, 1u, NULL, 0u},
+        {"CubeControl Motor Enabled", "", 13u, 1u, 1u, NULL, 0u},
+        {"CubeSense1 Enabled", "", 14u, 1u, 1u, NULL, 0u},
+        {"CubeSense2 Enabled", "", 15u, 1u, 1u, NULL, 0u},
+        {"CubeWheel1 Enabled", "", 16u, 1u, 1u, NULL, 0u},
+        {"CubeWheel2 Enabled", "", 17u, 1u, 1u, NULL, 0u},
+        {"CubeWheel3 Enabled", "", 18u, 1u, 1u, NULL, 0u},
+        {"CubeStar Enabled", "", 19u, 1u, 1u, NULL, 0u},
+        {"GPS Receiver Enabled", "", 20u, 1u, 1u, NULL, 0u},
+        {"GPS LNA Power Enabled", "", 21u, 1u, 1u, NULL, 0u},
+        {"Motor Driver Enabled", "", 22u, 1u, 1u, NULL, 0u},
+        {"Sun is Above Local Horizon", "", 23u, 1u, 1u, NULL, 0u},
+        {"CubeSense1 Communications Error", "", 24u, 1u, 1u, NULL, 0u},
+        {"CubeSense2 Communications Error", "", 25u, 1u, 1u, NULL, 0u},
+        {"CubeControl Signal Communications Error", "", 26u, 1u, 1u, NULL, 0u},
+        {"CubeControl Motor Communications Error", "", 27u, 1u, 1u, NULL, 0u},
+        {"CubeWheel1 Communications Error", "", 28u, 1u, 1u, NULL, 0u},
+        {"CubeWheel2 Communications Error", "", 29u, 1u, 1u, NULL, 0u},
+        {"CubeWheel3 Communications Error", "", 30u, 1u, 1u, NULL, 0u},
+        {"CubeStar Communications Error", "", 31u, 1u, 1u, NULL, 0u},
+        {"Magnetometer Range Error", "", 32u, 1u, 1u, NULL, 0u},
+        {"Cam1 SRAM Overcurrent Detected", "", 33u, 1u, 1u, NULL, 0u},
+        {"Cam1 3V3 Overcurrent Detected", "", 34u, 1u, 1u, NULL, 0u},
+        {"Cam1 Sensor Busy Error", "", 35u, 1u, 1u, NULL, 0u},
+        {"Cam1 Sensor Detection Error", "", 36u, 1u, 1u, NULL, 0u},
+        {"Sun Sensor Range Error", "", 37u, 1u, 1u, NULL, 0u},
+        {"Cam2 SRAM Overcurrent Detected", "", 38u, 1u, 1u, NULL, 0u},
+        {"Cam2 3V3 Overcurrent Detected", "", 39u, 1u, 1u, NULL, 0u},
+        {"Cam2 Sensor Busy Error", "", 40u, 1u, 1u, NULL, 0u},
+        {"Cam2 Sensor Detection Error", "", 41u, 1u, 1u, NULL, 0u},
+        {"Nadir Sensor Range Error", "", 42u, 1u, 1u, NULL, 0u},
+        {"Rate Sensor Range Error", "", 43u, 1u, 1u, NULL, 0u},
+        {"Wheel Speed Range Error", "", 44u, 1u, 1u, NULL, 0u},
+        {"Coarse Sun Sensor Error", "", 45u, 1u, 1u, NULL, 0u},
+        {"StarTracker Match Error", "", 46u, 1u, 1u, NULL, 0u},
+        {"Star Tracker Overcurrent Detected", "", 47u, 1u, 1u, NULL, 0u},
+    };
+    *count = 40u;
+    return fields;
 }
 
 #endif /* CUBEACP_CURRENT_ADCS_STATE_H */

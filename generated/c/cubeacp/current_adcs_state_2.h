@@ -10,10 +10,10 @@
  * Bit 61 of the log mask.
  * @note Erratum ACP-120 (open): Current ADCS State 2: 6 bytes announced, 18 bits described. More than half of the frame
  * is not explained. It is held as reserved, here and where frame 190 repeats it.
- * @note Note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS Control Program, the state
- * frames have Attitude Control Processor.
- * @note Note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but the state frames do not
- * tell latched flags from present states.
+ * @note ACP-057 (certain): ACP stands for two things. The list of acronyms has ADCS Control Program, the state frames
+ * have Attitude Control Processor.
+ * @note ACP-064 (open): Which flags are latched. Clear Errors clears latched flags, but the state frames do not tell
+ * latched flags from present states.
  */
 
 #include "../icdgen.h"
@@ -29,15 +29,15 @@ typedef struct {
     /**
      * Orbit Parameters are Invalid: bit 0. A parameter is out of bounds, or the SGP4 propagator could not start from
      * them.
-     * @note Note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds, or a propagator that
-     * failed to start, are told as two sentences for one bit.
+     * @note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds, or a propagator that failed
+     * to start, are told as two sentences for one bit.
      */
     bool orbit_parameters_are_invalid;
     /**
      * Configuration is Invalid: bit 1. Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at
      * least one CSS.
-     * @note Note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames differ by a letter in
-     * the description, and principle stands for principal twice in each.
+     * @note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames differ by a letter in the
+     * description, and principle stands for principal twice in each.
      */
     bool configuration_is_invalid;
     /**
@@ -170,6 +170,32 @@ static inline icd_status_t cubeacp_current_adcs_state_2_encode(
     buffer[2] = ICDGEN_U8(message->magnetometer_error | (message->rate_sensor_failure << 1));
     (void)memset(&buffer[3], 0, 3u);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_current_adcs_state_2_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Orbit Parameters are Invalid", "", 0u, 1u, 1u, NULL, 0u},
+        {"Configuration is Invalid", "", 1u, 1u, 1u, NULL, 0u},
+        {"Control Mode Change is not allowed", "", 2u, 1u, 1u, NULL, 0u},
+        {"Estimator Change is not allowed", "", 3u, 1u, 1u, NULL, 0u},
+        {"Current Magnetometer Sampling Mode", "", 4u, 2u, 1u, NULL, 0u},
+        {"Modelled and measured magnetic field differs in size", "", 6u, 1u, 1u, NULL, 0u},
+        {"Node Recovery Error", "", 7u, 1u, 1u, NULL, 0u},
+        {"CubeSense1 Runtime Error", "", 8u, 1u, 1u, NULL, 0u},
+        {"CubeSense2 Runtime Error", "", 9u, 1u, 1u, NULL, 0u},
+        {"CubeControl Signal Runtime Error", "", 10u, 1u, 1u, NULL, 0u},
+        {"CubeControl Motor Runtime Error", "", 11u, 1u, 1u, NULL, 0u},
+        {"CubeWheel1 Runtime Error", "", 12u, 1u, 1u, NULL, 0u},
+        {"CubeWheel2 Runtime Error", "", 13u, 1u, 1u, NULL, 0u},
+        {"CubeWheel3 Runtime Error", "", 14u, 1u, 1u, NULL, 0u},
+        {"CubeStar Runtime Error", "", 15u, 1u, 1u, NULL, 0u},
+        {"Magnetometer Error", "", 16u, 1u, 1u, NULL, 0u},
+        {"Rate Sensor Failure", "", 17u, 1u, 1u, NULL, 0u},
+    };
+    *count = 17u;
+    return fields;
 }
 
 #endif /* CUBEACP_CURRENT_ADCS_STATE_2_H */

@@ -7,8 +7,8 @@
  * @file
  * Deploy Magnetometer Boom: telecommand 7, 1 byte. Table 73.
  * Dangerous: The boom stays deployed.
- * @note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request
- * sent to the wrong program is taken for another one.
+ * @note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request sent
+ * to the wrong program is taken for another one.
  */
 
 #include "../icdgen.h"
@@ -22,8 +22,8 @@
 typedef struct {
     /**
      * Timeout: bits 0 to 7, raw 0 to 255, in s. Of the deployment actuation.
-     * @note Note ACP-016 (open): Deployment timeout: range and default. The field has 8 bits of seconds; whether 0
-     * means none, for ever or a default is not said. The telecommand has no magic number, unlike a reset.
+     * @note ACP-016 (open): Deployment timeout: range and default. The field has 8 bits of seconds; whether 0 means
+     * none, for ever or a default is not said. The telecommand has no magic number, unlike a reset.
      */
     uint8_t timeout;
 } cubeacp_deploy_magnetometer_boom_t;
@@ -58,6 +58,16 @@ static inline icd_status_t cubeacp_deploy_magnetometer_boom_encode(
     }
     buffer[0] = message->timeout;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_deploy_magnetometer_boom_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Timeout", "s", 0u, 8u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
 }
 
 #endif /* CUBEACP_DEPLOY_MAGNETOMETER_BOOM_H */

@@ -23,20 +23,20 @@ typedef struct {
      * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres. In metres the field reaches 32.767 km, a
      * position some 7000 km. A factor is missing; 0.25 km as in the inertial position is one possibility, km another.
      * No unit is held, so nothing is converted.
-     * @note Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16 bits in the state
+     * @note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16 bits in the state
      * frames and 32 bits in the GPS frames and the simulated data, with the same name, description and unit.
      */
     int16_t ecef_position_x;
     /**
      * ECEF Position Y: bits 16 to 31, raw -32768 to 32767.
      * @note Erratum ACP-098 (likely): see ECEF Position X.
-     * @note Note ACP-099 (certain): see ECEF Position X.
+     * @note ACP-099 (certain): see ECEF Position X.
      */
     int16_t ecef_position_y;
     /**
      * ECEF Position Z: bits 32 to 47, raw -32768 to 32767.
      * @note Erratum ACP-098 (likely): see ECEF Position X.
-     * @note Note ACP-099 (certain): see ECEF Position X.
+     * @note ACP-099 (certain): see ECEF Position X.
      */
     int16_t ecef_position_z;
 } cubeacp_ecef_position_t;
@@ -75,6 +75,18 @@ static inline icd_status_t cubeacp_ecef_position_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->ecef_position_y));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->ecef_position_z));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_ecef_position_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"ECEF Position X", "", 0u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Y", "", 16u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Z", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_ECEF_POSITION_H */

@@ -17,8 +17,8 @@ typedef uint8_t cubeacp_adcs_run_mode_t;
 enum {
     /**
      * Off (0). The loop does not run.
-     * @note Note ACP-019 (certain): Disabled is Off. The text says what happens when the ADCS is disabled; no member
-     * has that name.
+     * @note ACP-019 (certain): Disabled is Off. The text says what happens when the ADCS is disabled; no member has
+     * that name.
      */
     CUBEACP_ADCS_RUN_MODE_OFF = 0,
     /** Enabled (1). The loop runs at 1 Hz. */
@@ -27,8 +27,8 @@ enum {
     CUBEACP_ADCS_RUN_MODE_TRIGGERED = 2,
     /**
      * Simulation (3).
-     * @note Note ACP-032 (open): Simulated data are accepted while triggered, not while simulating. The telecommand
-     * with simulated measurements is valid only in mode Triggered, and there is a mode Simulation that no other text
+     * @note ACP-032 (open): Simulated data are accepted while triggered, not while simulating. The telecommand with
+     * simulated measurements is valid only in mode Triggered, and there is a mode Simulation that no other text
      * mentions. The sentence was probably taken over from the telecommand before it.
      */
     CUBEACP_ADCS_RUN_MODE_SIMULATION = 3
@@ -53,93 +53,93 @@ static inline const char *cubeacp_adcs_run_mode_name(cubeacp_adcs_run_mode_t val
 
 /**
  * ConModeSelect: an enumeration. Table 78.
- * @note Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control mode has a
- * reference vector, and GEO tracking, inertial and two sun pointing modes are special selections. The list of control
- * modes has none of them.
+ * @note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control mode has a reference
+ * vector, and GEO tracking, inertial and two sun pointing modes are special selections. The list of control modes has
+ * none of them.
  */
 typedef uint8_t cubeacp_con_mode_select_t;
 
 enum {
     /**
      * No control (0).
-     * @note Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode falls back,
-     * when the control mode is None. The member with value 0 is called No control.
+     * @note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode falls back, when
+     * the control mode is None. The member with value 0 is called No control.
      */
     CUBEACP_CON_MODE_SELECT_NO_CONTROL = 0,
     /** Detumbling control (1). */
     CUBEACP_CON_MODE_SELECT_DETUMBLING_CONTROL = 1,
     /**
      * Y-Thomson spin (2).
-     * @note Note ACP-028 (certain): Y-Thomson is a spin or a mode. The mode is called Y-Thomson spin in the list,
-     * Y-Thomson mode and steady-state Y-Thomson elsewhere; and Y-momentum mode is one of the two Y-Wheel modes.
+     * @note ACP-028 (certain): Y-Thomson is a spin or a mode. The mode is called Y-Thomson spin in the list, Y-Thomson
+     * mode and steady-state Y-Thomson elsewhere; and Y-momentum mode is one of the two Y-Wheel modes.
      */
     CUBEACP_CON_MODE_SELECT_Y_THOMSON_SPIN = 2,
     /**
      * Y-Wheel momentum stabilized - Initial Pitch Acquisition (3).
-     * @note Note ACP-027 (certain): Wheel control modes are written in five ways. Y-Wheel, XYZ-Wheel, Rwheel, R-wheels
-     * and wheel stand side by side, capital and small; elsewhere RWheel and RW.
+     * @note ACP-027 (certain): Wheel control modes are written in five ways. Y-Wheel, XYZ-Wheel, Rwheel, R-wheels and
+     * wheel stand side by side, capital and small; elsewhere RWheel and RW.
      */
     CUBEACP_CON_MODE_SELECT_Y_WHEEL_INITIAL_PITCH_ACQUISITION = 3,
     /**
      * Y-Wheel momentum stabilized - Steady State (4).
-     * @note Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
+     * @note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
      */
     CUBEACP_CON_MODE_SELECT_Y_WHEEL_STEADY_STATE = 4,
     /**
      * XYZ-Wheel control (5).
-     * @note Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
+     * @note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
      */
     CUBEACP_CON_MODE_SELECT_XYZ_WHEEL_CONTROL = 5,
     /**
      * Rwheel sun tracking control (6).
-     * @note Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
+     * @note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
      */
     CUBEACP_CON_MODE_SELECT_RWHEEL_SUN_TRACKING_CONTROL = 6,
     /**
      * Rwheel target tracking control (7).
-     * @note Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
+     * @note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
      */
     CUBEACP_CON_MODE_SELECT_RWHEEL_TARGET_TRACKING_CONTROL = 7,
     /**
      * Very Fast-spin Detumbling control (8). At 10 Hz, within CubeControl.
-     * @note Note ACP-026 (certain): Control modes 8 and 9 have other names in their descriptions. Very Fast-spin
-     * Detumbling is described as 10 Hz detumbling within CubeControl, Fast-spin as fast. The loop itself runs at 1 Hz.
+     * @note ACP-026 (certain): Control modes 8 and 9 have other names in their descriptions. Very Fast-spin Detumbling
+     * is described as 10 Hz detumbling within CubeControl, Fast-spin as fast. The loop itself runs at 1 Hz.
      */
     CUBEACP_CON_MODE_SELECT_VERY_FAST_SPIN_DETUMBLING_CONTROL = 8,
     /**
      * Fast-spin Detumbling control (9).
-     * @note Note ACP-026 (certain): see Very Fast-spin Detumbling control.
+     * @note ACP-026 (certain): see Very Fast-spin Detumbling control.
      */
     CUBEACP_CON_MODE_SELECT_FAST_SPIN_DETUMBLING_CONTROL = 9,
     /**
      * User Specific Control Mode 1 (10). User-defined or custom.
-     * @note Note ACP-025 (open): Control modes: specific, defined, custom and coded. Two modes are User Specific and
+     * @note ACP-025 (open): Control modes: specific, defined, custom and coded. Two modes are User Specific and
      * described as user defined or custom, a third is User Coded. Which of them use the user coded settings is open.
      */
     CUBEACP_CON_MODE_SELECT_USER_SPECIFIC_CONTROL_MODE_1 = 10,
     /**
      * User Specific Control Mode 2 (11). User-defined or custom.
-     * @note Note ACP-025 (open): see User Specific Control Mode 1.
+     * @note ACP-025 (open): see User Specific Control Mode 1.
      */
     CUBEACP_CON_MODE_SELECT_USER_SPECIFIC_CONTROL_MODE_2 = 11,
     /**
      * Stop R-wheels (12).
-     * @note Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
+     * @note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
      */
     CUBEACP_CON_MODE_SELECT_STOP_R_WHEELS = 12,
     /**
      * User Coded Control Mode (13).
-     * @note Note ACP-025 (open): see User Specific Control Mode 1.
+     * @note ACP-025 (open): see User Specific Control Mode 1.
      */
     CUBEACP_CON_MODE_SELECT_USER_CODED_CONTROL_MODE = 13,
     /**
      * Sun-tracking yaw- or roll-only wheel control mode (14).
-     * @note Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
+     * @note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
      */
     CUBEACP_CON_MODE_SELECT_SUN_TRACKING_YAW_OR_ROLL_ONLY = 14,
     /**
      * Target-tracking yaw-only wheel control Mode (15). Turns the selected facet towards a ground target.
-     * @note Note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
+     * @note ACP-027 (certain): see Y-Wheel momentum stabilized - Initial Pitch Acquisition.
      */
     CUBEACP_CON_MODE_SELECT_TARGET_TRACKING_YAW_ONLY = 15
 };
@@ -193,13 +193,13 @@ enum {
     CUBEACP_ESTIM_MODE_SELECT_NO_ATTITUDE_ESTIMATION = 0,
     /**
      * MEMS rate sensing (1).
-     * @note Note ACP-029 (certain): Estimation modes have other names in settings. MEMS rate estimation mode and RKF
-     * appear in the description of a flag; the list has MEMS rate sensing and Magnetometer rate filter.
+     * @note ACP-029 (certain): Estimation modes have other names in settings. MEMS rate estimation mode and RKF appear
+     * in the description of a flag; the list has MEMS rate sensing and Magnetometer rate filter.
      */
     CUBEACP_ESTIM_MODE_SELECT_MEMS_RATE_SENSING = 1,
     /**
      * Magnetometer rate filter (2).
-     * @note Note ACP-029 (certain): see MEMS rate sensing.
+     * @note ACP-029 (certain): see MEMS rate sensing.
      */
     CUBEACP_ESTIM_MODE_SELECT_MAGNETOMETER_RATE_FILTER = 2,
     /** Magnetometer rate filter with pitch estimation (3). */
@@ -241,9 +241,9 @@ static inline const char *cubeacp_estim_mode_select_name(cubeacp_estim_mode_sele
 
 /**
  * GpsSolutionStatus: an enumeration. Table 85.
- * @note Note ACP-045 (open): One GPS status for different receivers. The enumeration is used whatever receiver is
- * fitted; three types are listed, among them none. Whether the values are those of the receiver or of the control
- * program is not said.
+ * @note ACP-045 (open): One GPS status for different receivers. The enumeration is used whatever receiver is fitted;
+ * three types are listed, among them none. Whether the values are those of the receiver or of the control program is
+ * not said.
  */
 typedef uint8_t cubeacp_gps_solution_status_t;
 
@@ -309,8 +309,8 @@ static inline const char *cubeacp_gps_solution_status_name(cubeacp_gps_solution_
 
 /**
  * Asgp4ModeSelect: an enumeration. Table 87.
- * @note Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one module are spelt
- * in four ways.
+ * @note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one module are spelt in
+ * four ways.
  */
 typedef uint8_t cubeacp_asgp4_mode_select_t;
 
@@ -345,10 +345,10 @@ static inline const char *cubeacp_asgp4_mode_select_name(cubeacp_asgp4_mode_sele
 /**
  * MagModeVal: an enumeration. Table 90. MTM is the magnetometer, Signal and Motor are the microcontrollers that sample
  * it.
- * @note Note ACP-050 (open): MagModeVal: one combination is missing, and None is not explained. The redundant
- * magnetometer cannot be sampled through the motor controller, the main one can. What None does to estimation and
- * control is not said.
- * @note Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for one; redundant,
+ * @note ACP-050 (open): MagModeVal: one combination is missing, and None is not explained. The redundant magnetometer
+ * cannot be sampled through the motor controller, the main one can. What None does to estimation and control is not
+ * said.
+ * @note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for one; redundant,
  * secondary and 2nd for the other.
  */
 typedef uint8_t cubeacp_mag_mode_val_t;
@@ -362,7 +362,7 @@ enum {
     CUBEACP_MAG_MODE_VAL_MAIN_MTM_SAMPLED_THROUGH_MOTOR = 2,
     /**
      * None (3).
-     * @note Note ACP-050 (open): see MagModeVal.
+     * @note ACP-050 (open): see MagModeVal.
      */
     CUBEACP_MAG_MODE_VAL_NONE = 3
 };
@@ -386,9 +386,9 @@ static inline const char *cubeacp_mag_mode_val_name(cubeacp_mag_mode_val_t value
 
 /**
  * CamSelect: an enumeration. Table 95.
- * @note Note ACP-056 (likely): Cameras: Cam, CubeSense, and star. Cam1 and Cam2 appear beside CubeSense1 and
- * CubeSense2, once as Cam 1; the third camera is Star, CubeStar or star tracker. That CamN is the camera of CubeSenseN
- * is only likely.
+ * @note ACP-056 (likely): Cameras: Cam, CubeSense, and star. Cam1 and Cam2 appear beside CubeSense1 and CubeSense2,
+ * once as Cam 1; the third camera is Star, CubeStar or star tracker. That CamN is the camera of CubeSenseN is only
+ * likely.
  */
 typedef uint8_t cubeacp_cam_select_t;
 
@@ -570,8 +570,8 @@ static inline const char *cubeacp_detect_result_name(cubeacp_detect_result_t val
 
 /**
  * StarIDModeVal: an enumeration. Table 147.
- * @note Note ACP-097 (open): StarIDModeVal is not described. The members of the identification mode have no
- * descriptions; Lost Mode may be the lost-in-space search or a lost track.
+ * @note ACP-097 (open): StarIDModeVal is not described. The members of the identification mode have no descriptions;
+ * Lost Mode may be the lost-in-space search or a lost track.
  */
 typedef uint8_t cubeacp_star_id_mode_val_t;
 
@@ -621,7 +621,7 @@ enum {
     CUBEACP_EXECUTION_WAYPOINTS_LOGGING = 9,
     /**
      * Log File Compression (10).
-     * @note Note ACP-119 (open): Loop waypoints: logs are compressed. The loop has a step that compresses the log file,
+     * @note ACP-119 (open): Loop waypoints: logs are compressed. The loop has a step that compresses the log file,
      * while the log format is described without compression and its size by a plain formula.
      */
     CUBEACP_EXECUTION_WAYPOINTS_LOG_FILE_COMPRESSION = 10,
@@ -668,16 +668,16 @@ static inline const char *cubeacp_execution_waypoints_name(cubeacp_execution_way
 
 /**
  * AsgpError: an enumeration. Table 171.
- * @note Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one module are spelt
- * in four ways.
+ * @note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one module are spelt in
+ * four ways.
  */
 typedef uint8_t cubeacp_asgp_error_t;
 
 enum {
     /**
      * Off (0). No error.
-     * @note Note ACP-123 (certain): AsgpError: no error is called Off. The member for no error has the name of the
-     * inactive mode.
+     * @note ACP-123 (certain): AsgpError: no error is called Off. The member for no error has the name of the inactive
+     * mode.
      */
     CUBEACP_ASGP_ERROR_OFF = 0,
     /** Unix Time (1). Error due to the time. */
@@ -758,9 +758,8 @@ enum {
     CUBEACP_AXIS_SELECT_NEGATIVE_Z = 5,
     /**
      * Not Used (6).
-     * @note Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration serves actuators,
-     * sensors and facets. A facet that points to the sun or to a target as Not Used is allowed by its table and not
-     * explained.
+     * @note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration serves actuators, sensors
+     * and facets. A facet that points to the sun or to a target as Not Used is allowed by its table and not explained.
      */
     CUBEACP_AXIS_SELECT_NOT_USED = 6
 };
@@ -798,8 +797,8 @@ enum {
     CUBEACP_POWER_SELECT_ON = 1,
     /**
      * Power state kept the same (2).
-     * @note Note ACP-137 (open): Power state kept the same, when read. The value is a request not to change. What a
-     * unit left alone reads as, and what the unassigned value 3 does, is not said.
+     * @note ACP-137 (open): Power state kept the same, when read. The value is a request not to change. What a unit
+     * left alone reads as, and what the unassigned value 3 does, is not said.
      */
     CUBEACP_POWER_SELECT_POWER_STATE_KEPT_THE_SAME = 2
 };
@@ -821,8 +820,8 @@ static inline const char *cubeacp_power_select_name(cubeacp_power_select_t value
 
 /**
  * AsgpFilter: an enumeration. Table 193.
- * @note Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one module are spelt
- * in four ways.
+ * @note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one module are spelt in
+ * four ways.
  */
 typedef uint8_t cubeacp_asgp_filter_t;
 
@@ -871,9 +870,9 @@ static inline const char *cubeacp_acp_program_type_name(cubeacp_acp_program_type
 
 /**
  * SpecialConSelect: an enumeration. Table 203.
- * @note Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control mode has a
- * reference vector, and GEO tracking, inertial and two sun pointing modes are special selections. The list of control
- * modes has none of them.
+ * @note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control mode has a reference
+ * vector, and GEO tracking, inertial and two sun pointing modes are special selections. The list of control modes has
+ * none of them.
  */
 typedef uint8_t cubeacp_special_con_select_t;
 
@@ -882,13 +881,13 @@ enum {
     CUBEACP_SPECIAL_CON_SELECT_NONE = 0,
     /**
      * Z-axis Sun pointing (1).
-     * @note Note ACP-177 (open): Sun-pointing facet and special control selection. Facets can be chosen by a setting,
-     * and sun pointing with Z or Y by the system configuration. Which one counts is not said.
+     * @note ACP-177 (open): Sun-pointing facet and special control selection. Facets can be chosen by a setting, and
+     * sun pointing with Z or Y by the system configuration. Which one counts is not said.
      */
     CUBEACP_SPECIAL_CON_SELECT_Z_AXIS_SUN_POINTING = 1,
     /**
      * GEO Tracking (2).
-     * @note Note ACP-176 (open): Satellite position: range against GEO tracking. Neither position frame can hold a
+     * @note ACP-176 (open): Satellite position: range against GEO tracking. Neither position frame can hold a
      * geostationary orbit, while a GEO tracking control exists. It may mean a target on the ground.
      */
     CUBEACP_SPECIAL_CON_SELECT_GEO_TRACKING = 2,
@@ -896,7 +895,7 @@ enum {
     CUBEACP_SPECIAL_CON_SELECT_INERTIAL_POINTING = 3,
     /**
      * Y-axis Sun pointing (4).
-     * @note Note ACP-177 (open): see Z-axis Sun pointing.
+     * @note ACP-177 (open): see Z-axis Sun pointing.
      */
     CUBEACP_SPECIAL_CON_SELECT_Y_AXIS_SUN_POINTING = 4
 };
@@ -1096,8 +1095,8 @@ enum {
     CUBEACP_SD_LOG_SELECT_PRIMARY_SD_CARD = 0,
     /**
      * Secondary SD Card (1).
-     * @note Note ACP-187 (open): A secondary SD card. Logs can go to a second card. Download, erase, format and the
-     * error flags know one card and do not say which.
+     * @note ACP-187 (open): A secondary SD card. Logs can go to a second card. Download, erase, format and the error
+     * flags know one card and do not say which.
      */
     CUBEACP_SD_LOG_SELECT_SECONDARY_SD_CARD = 1
 };

@@ -63,6 +63,18 @@ static inline icd_status_t cubeacp_estimated_angular_rates_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_estimated_angular_rates_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Estimated X Angular Rate", "deg/s", 0u, 16u, 1u, NULL, 0u},
+        {"Estimated Y Angular Rate", "deg/s", 16u, 16u, 1u, NULL, 0u},
+        {"Estimated Z Angular Rate", "deg/s", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Estimated X Angular Rate in thousandths of deg/s, exact: -327680 to 327670. */
 static inline int32_t cubeacp_estimated_angular_rates_estimated_x_angular_rate_mdeg_per_s(
     const cubeacp_estimated_angular_rates_t *message)

@@ -63,6 +63,18 @@ static inline icd_status_t cubeacp_estimated_gyro_bias_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_estimated_gyro_bias_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Estimated X-gyro Bias", "deg/s", 0u, 16u, 1u, NULL, 0u},
+        {"Estimated Y-gyro Bias", "deg/s", 16u, 16u, 1u, NULL, 0u},
+        {"Estimated Z-gyro Bias", "deg/s", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Estimated X-gyro Bias in thousandths of deg/s, exact: -32768 to 32767. */
 static inline int32_t cubeacp_estimated_gyro_bias_estimated_x_gyro_bias_mdeg_per_s(
     const cubeacp_estimated_gyro_bias_t *message)

@@ -7,8 +7,8 @@
  * @file
  * Estimated Quaternion: telemetry 218, 6 bytes. Table 165.
  * Bit 29 of the log mask.
- * @note Note ACP-075 (open): Quaternions: the fourth component. Three of four components are sent. The fourth follows
- * up to its sign only, and which component is the scalar is not said.
+ * @note ACP-075 (open): Quaternions: the fourth component. Three of four components are sent. The fourth follows up to
+ * its sign only, and which component is the scalar is not said.
  */
 
 #include "../icdgen.h"
@@ -22,19 +22,19 @@
 typedef struct {
     /**
      * Estimated q1: bits 0 to 15, raw -32768 to 32767.
-     * @note Note ACP-100 (open): Estimated quaternion has no formula. Components of a unit quaternion in 16 bits need a
+     * @note ACP-100 (open): Estimated quaternion has no formula. Components of a unit quaternion in 16 bits need a
      * factor; all other quaternions have one of 1/10000. It is likely here too, but not printed, so the raw value is
      * all that is offered.
      */
     int16_t estimated_q1;
     /**
      * Estimated q2: bits 16 to 31, raw -32768 to 32767.
-     * @note Note ACP-100 (open): see Estimated q1.
+     * @note ACP-100 (open): see Estimated q1.
      */
     int16_t estimated_q2;
     /**
      * Estimated q3: bits 32 to 47, raw -32768 to 32767.
-     * @note Note ACP-100 (open): see Estimated q1.
+     * @note ACP-100 (open): see Estimated q1.
      */
     int16_t estimated_q3;
 } cubeacp_estimated_quaternion_t;
@@ -73,6 +73,18 @@ static inline icd_status_t cubeacp_estimated_quaternion_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->estimated_q2));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->estimated_q3));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_estimated_quaternion_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Estimated q1", "", 0u, 16u, 1u, NULL, 0u},
+        {"Estimated q2", "", 16u, 16u, 1u, NULL, 0u},
+        {"Estimated q3", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_ESTIMATED_QUATERNION_H */

@@ -52,18 +52,18 @@ typedef struct {
     int16_t estimated_z_gyro_bias;
     /**
      * Innovation Vector X: bits 144 to 159, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767.
-     * @note Note ACP-074 (open): Innovation has no unit. What the innovation vector is a difference of, and hence its
-     * unit, is not said.
+     * @note ACP-074 (open): Innovation has no unit. What the innovation vector is a difference of, and hence its unit,
+     * is not said.
      */
     int16_t innovation_vector_x;
     /**
      * Innovation Vector Y: bits 160 to 175, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767.
-     * @note Note ACP-074 (open): see Innovation Vector X.
+     * @note ACP-074 (open): see Innovation Vector X.
      */
     int16_t innovation_vector_y;
     /**
      * Innovation Vector Z: bits 176 to 191, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767.
-     * @note Note ACP-074 (open): see Innovation Vector X.
+     * @note ACP-074 (open): see Innovation Vector X.
      */
     int16_t innovation_vector_z;
     /** Quaternion Error - Q1: bits 192 to 207, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767. */
@@ -74,34 +74,34 @@ typedef struct {
     int16_t quaternion_error_q3;
     /**
      * Quaternion Covariance - Q1 RMS: bits 240 to 255, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-076 (open): Quaternion covariance: an RMS with a sign. The field is a covariance by its frame, an
-     * RMS by its name and signed by its type. Neither quantity, on the diagonal, is negative.
+     * @note ACP-076 (open): Quaternion covariance: an RMS with a sign. The field is a covariance by its frame, an RMS
+     * by its name and signed by its type. Neither quantity, on the diagonal, is negative.
      */
     int16_t quaternion_covariance_q1_rms;
     /**
      * Quaternion Covariance - Q2 RMS: bits 256 to 271, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
+     * @note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
      */
     int16_t quaternion_covariance_q2_rms;
     /**
      * Quaternion Covariance - Q3 RMS: bits 272 to 287, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
+     * @note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
      */
     int16_t quaternion_covariance_q3_rms;
     /**
      * X Angular Rate Covariance: bits 288 to 303, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for the square of a rate, and
-     * the type is signed.
+     * @note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for the square of a rate, and the
+     * type is signed.
      */
     int16_t x_angular_rate_covariance;
     /**
      * Y Angular Rate Covariance: bits 304 to 319, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-077 (open): see X Angular Rate Covariance.
+     * @note ACP-077 (open): see X Angular Rate Covariance.
      */
     int16_t y_angular_rate_covariance;
     /**
      * Z Angular Rate Covariance: bits 320 to 335, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-077 (open): see X Angular Rate Covariance.
+     * @note ACP-077 (open): see X Angular Rate Covariance.
      */
     int16_t z_angular_rate_covariance;
 } cubeacp_estimation_data_t;
@@ -148,6 +148,36 @@ static inline icd_status_t cubeacp_estimation_data_encode(
         igrf_modelled_magnetic_field_x,
         z_angular_rate_covariance);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_estimation_data_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"IGRF Modelled Magnetic Field X", "uT", 0u, 16u, 1u, NULL, 0u},
+        {"IGRF Modelled Magnetic Field Y", "uT", 16u, 16u, 1u, NULL, 0u},
+        {"IGRF Modelled Magnetic Field Z", "uT", 32u, 16u, 1u, NULL, 0u},
+        {"Modelled Sun Vector X", "", 48u, 16u, 1u, NULL, 0u},
+        {"Modelled Sun Vector Y", "", 64u, 16u, 1u, NULL, 0u},
+        {"Modelled Sun Vector Z", "", 80u, 16u, 1u, NULL, 0u},
+        {"Estimated X-gyro Bias", "deg/s", 96u, 16u, 1u, NULL, 0u},
+        {"Estimated Y-gyro Bias", "deg/s", 112u, 16u, 1u, NULL, 0u},
+        {"Estimated Z-gyro Bias", "deg/s", 128u, 16u, 1u, NULL, 0u},
+        {"Innovation Vector X", "", 144u, 16u, 1u, NULL, 0u},
+        {"Innovation Vector Y", "", 160u, 16u, 1u, NULL, 0u},
+        {"Innovation Vector Z", "", 176u, 16u, 1u, NULL, 0u},
+        {"Quaternion Error - Q1", "", 192u, 16u, 1u, NULL, 0u},
+        {"Quaternion Error - Q2", "", 208u, 16u, 1u, NULL, 0u},
+        {"Quaternion Error - Q3", "", 224u, 16u, 1u, NULL, 0u},
+        {"Quaternion Covariance - Q1 RMS", "", 240u, 16u, 1u, NULL, 0u},
+        {"Quaternion Covariance - Q2 RMS", "", 256u, 16u, 1u, NULL, 0u},
+        {"Quaternion Covariance - Q3 RMS", "", 272u, 16u, 1u, NULL, 0u},
+        {"X Angular Rate Covariance", "", 288u, 16u, 1u, NULL, 0u},
+        {"Y Angular Rate Covariance", "", 304u, 16u, 1u, NULL, 0u},
+        {"Z Angular Rate Covariance", "", 320u, 16u, 1u, NULL, 0u},
+    };
+    *count = 21u;
+    return fields;
 }
 
 /** IGRF Modelled Magnetic Field Vector, as it is repeated from byte 0. */

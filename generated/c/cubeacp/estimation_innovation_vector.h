@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * Innovation Vector X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767.
-     * @note Note ACP-074 (open): Innovation has no unit. What the innovation vector is a difference of, and hence its
-     * unit, is not said.
+     * @note ACP-074 (open): Innovation has no unit. What the innovation vector is a difference of, and hence its unit,
+     * is not said.
      */
     int16_t innovation_vector_x;
     /**
      * Innovation Vector Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767.
-     * @note Note ACP-074 (open): see Innovation Vector X.
+     * @note ACP-074 (open): see Innovation Vector X.
      */
     int16_t innovation_vector_y;
     /**
      * Innovation Vector Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767.
-     * @note Note ACP-074 (open): see Innovation Vector X.
+     * @note ACP-074 (open): see Innovation Vector X.
      */
     int16_t innovation_vector_z;
 } cubeacp_estimation_innovation_vector_t;
@@ -70,6 +70,18 @@ static inline icd_status_t cubeacp_estimation_innovation_vector_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->innovation_vector_y));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->innovation_vector_z));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_estimation_innovation_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Innovation Vector X", "", 0u, 16u, 1u, NULL, 0u},
+        {"Innovation Vector Y", "", 16u, 16u, 1u, NULL, 0u},
+        {"Innovation Vector Z", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Innovation Vector X in millionths, exact: -3276800 to 3276700. */

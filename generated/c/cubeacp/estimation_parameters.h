@@ -7,9 +7,9 @@
  * @file
  * Estimation Parameters: configuration, set by telecommand 27, got by telemetry 223, 31 bytes. Table 200.
  * Noise covariances, and which sensors the estimator uses.
- * @note Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0
- * and ignored.
- * @note Note ACP-167 (certain): Estimation Parameters: more than its description. Noise covariance and sensor mask are
+ * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
+ * ignored.
+ * @note ACP-167 (certain): Estimation Parameters: more than its description. Noise covariance and sensor mask are
  * promised; magnetometer modes, recovery and sampling periods are in the message as well.
  */
 
@@ -27,38 +27,38 @@
 typedef struct {
     /**
      * Magnetometer Rate Filter System Noise: bits 0 to 31, 32-bit float.
-     * @note Note ACP-168 (open): Noise: covariance or deviation, and no unit. The message calls them covariances, the
-     * fields noise. Units are missing.
+     * @note ACP-168 (open): Noise: covariance or deviation, and no unit. The message calls them covariances, the fields
+     * noise. Units are missing.
      */
     float magnetometer_rate_filter_system_noise;
     /**
      * EKF System Noise: bits 32 to 63, 32-bit float.
-     * @note Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
+     * @note ACP-168 (open): see Magnetometer Rate Filter System Noise.
      */
     float ekf_system_noise;
     /**
      * CSS Measurement Noise: bits 64 to 95, 32-bit float.
-     * @note Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
+     * @note ACP-168 (open): see Magnetometer Rate Filter System Noise.
      */
     float css_measurement_noise;
     /**
      * Sun Sensor Measurement Noise: bits 96 to 127, 32-bit float.
-     * @note Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
+     * @note ACP-168 (open): see Magnetometer Rate Filter System Noise.
      */
     float sun_sensor_measurement_noise;
     /**
      * Nadir Sensor Measurement Noise: bits 128 to 159, 32-bit float.
-     * @note Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
+     * @note ACP-168 (open): see Magnetometer Rate Filter System Noise.
      */
     float nadir_sensor_measurement_noise;
     /**
      * Magnetometer Measurement Noise: bits 160 to 191, 32-bit float.
-     * @note Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
+     * @note ACP-168 (open): see Magnetometer Rate Filter System Noise.
      */
     float magnetometer_measurement_noise;
     /**
      * Star Tracker Measurement Noise: bits 192 to 223, 32-bit float.
-     * @note Note ACP-168 (open): see Magnetometer Rate Filter System Noise.
+     * @note ACP-168 (open): see Magnetometer Rate Filter System Noise.
      */
     float star_tracker_measurement_noise;
     /** Use Sun Sensor: bit 224. In the EKF. */
@@ -75,15 +75,15 @@ typedef struct {
     bool automatic_magnetometer_recovery;
     /**
      * Magnetometer Mode: bits 230 to 231. The magnetometer that estimation and control use.
-     * @note Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a configuration message
-     * set the same mode. Which wins after a restart, and whether the telecommand changes what the configuration
-     * returns, is not said.
+     * @note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a configuration message set
+     * the same mode. Which wins after a restart, and whether the telecommand changes what the configuration returns, is
+     * not said.
      */
     cubeacp_mag_mode_val_t magnetometer_mode;
     /**
      * Magnetometer Selection for RAW MTM TLM: bits 232 to 233. Magnetometer and sampling path for the second raw
      * magnetometer frame.
-     * @note Note ACP-118 (likely): Secondary magnetometer: fixed or selected. The frame is named for the secondary
+     * @note ACP-118 (likely): Secondary magnetometer: fixed or selected. The frame is named for the secondary
      * magnetometer, with the field names of the primary one. A setting selects which magnetometer, sampled how, it
      * shows.
      */
@@ -211,6 +211,33 @@ static inline icd_status_t cubeacp_estimation_parameters_encode(
         (message->estimation_transition_on_rate_sensor_error << 2));
     buffer[30] = ICDGEN_U8(message->cam1_period | (message->cam2_period << 4));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_estimation_parameters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Magnetometer Rate Filter System Noise", "", 0u, 32u, 1u, NULL, 0u},
+        {"EKF System Noise", "", 32u, 32u, 1u, NULL, 0u},
+        {"CSS Measurement Noise", "", 64u, 32u, 1u, NULL, 0u},
+        {"Sun Sensor Measurement Noise", "", 96u, 32u, 1u, NULL, 0u},
+        {"Nadir Sensor Measurement Noise", "", 128u, 32u, 1u, NULL, 0u},
+        {"Magnetometer Measurement Noise", "", 160u, 32u, 1u, NULL, 0u},
+        {"Star Tracker Measurement Noise", "", 192u, 32u, 1u, NULL, 0u},
+        {"Use Sun Sensor", "", 224u, 1u, 1u, NULL, 0u},
+        {"Use Nadir Sensor", "", 225u, 1u, 1u, NULL, 0u},
+        {"Use CSS", "", 226u, 1u, 1u, NULL, 0u},
+        {"Use Star Tracker", "", 227u, 1u, 1u, NULL, 0u},
+        {"Nadir sensor terminator test", "", 228u, 1u, 1u, NULL, 0u},
+        {"Automatic Magnetometer Recovery", "", 229u, 1u, 1u, NULL, 0u},
+        {"Magnetometer Mode", "", 230u, 2u, 1u, NULL, 0u},
+        {"Magnetometer Selection for RAW MTM TLM", "", 232u, 2u, 1u, NULL, 0u},
+        {"Automatic Estimation Transition due to Rate Sensor Errors", "", 234u, 1u, 1u, NULL, 0u},
+        {"Cam1 period", "s", 240u, 4u, 1u, NULL, 0u},
+        {"Cam2 period", "s", 244u, 4u, 1u, NULL, 0u},
+    };
+    *count = 18u;
+    return fields;
 }
 
 #endif /* CUBEACP_ESTIMATION_PARAMETERS_H */

@@ -21,22 +21,22 @@
 typedef struct {
     /**
      * Estimated X Angular Rate: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * @note Note ACP-109 (certain): Fine and normal rates have the same field names. Estimated X Angular Rate has a
-     * factor of 0.01 in one frame and of 0.001 in another. A value copied by its name is wrong by ten.
-     * @note Note ACP-110 (open): Fine rates end at 32 deg/s. The range is +/-32.767 deg/s; whether faster rates
-     * saturate or wrap is not said. The rate error flag starts at 20 deg/s.
+     * @note ACP-109 (certain): Fine and normal rates have the same field names. Estimated X Angular Rate has a factor
+     * of 0.01 in one frame and of 0.001 in another. A value copied by its name is wrong by ten.
+     * @note ACP-110 (open): Fine rates end at 32 deg/s. The range is +/-32.767 deg/s; whether faster rates saturate or
+     * wrap is not said. The rate error flag starts at 20 deg/s.
      */
     int16_t estimated_x_angular_rate;
     /**
      * Estimated Y Angular Rate: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * @note Note ACP-109 (certain): see Estimated X Angular Rate.
-     * @note Note ACP-110 (open): see Estimated X Angular Rate.
+     * @note ACP-109 (certain): see Estimated X Angular Rate.
+     * @note ACP-110 (open): see Estimated X Angular Rate.
      */
     int16_t estimated_y_angular_rate;
     /**
      * Estimated Z Angular Rate: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * @note Note ACP-109 (certain): see Estimated X Angular Rate.
-     * @note Note ACP-110 (open): see Estimated X Angular Rate.
+     * @note ACP-109 (certain): see Estimated X Angular Rate.
+     * @note ACP-110 (open): see Estimated X Angular Rate.
      */
     int16_t estimated_z_angular_rate;
 } cubeacp_fine_angular_rates_t;
@@ -75,6 +75,18 @@ static inline icd_status_t cubeacp_fine_angular_rates_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->estimated_y_angular_rate));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->estimated_z_angular_rate));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_fine_angular_rates_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Estimated X Angular Rate", "deg/s", 0u, 16u, 1u, NULL, 0u},
+        {"Estimated Y Angular Rate", "deg/s", 16u, 16u, 1u, NULL, 0u},
+        {"Estimated Z Angular Rate", "deg/s", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Estimated X Angular Rate in thousandths of deg/s, exact: -32768 to 32767. */

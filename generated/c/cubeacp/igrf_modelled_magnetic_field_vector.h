@@ -68,6 +68,18 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_igrf_modelled_magnetic_field_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"IGRF Modelled Magnetic Field X", "uT", 0u, 16u, 1u, NULL, 0u},
+        {"IGRF Modelled Magnetic Field Y", "uT", 16u, 16u, 1u, NULL, 0u},
+        {"IGRF Modelled Magnetic Field Z", "uT", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** IGRF Modelled Magnetic Field X in nT, exact: -327680 to 327670. */
 static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_field_x_nt(
     const cubeacp_igrf_modelled_magnetic_field_vector_t *message)

@@ -7,9 +7,9 @@
  * @file
  * Inertial Pointing Reference Vector: configuration, set by telecommand 34, got by telemetry 238, 6 bytes. Table 214.
  * Unit vector for the inertial pointing mode.
- * @note Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control mode has a
- * reference vector, and GEO tracking, inertial and two sun pointing modes are special selections. The list of control
- * modes has none of them.
+ * @note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control mode has a reference
+ * vector, and GEO tracking, inertial and two sun pointing modes are special selections. The list of control modes has
+ * none of them.
  */
 
 #include "../icdgen.h"
@@ -25,18 +25,18 @@
 typedef struct {
     /**
      * Inertial Reference X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
-     * @note Note ACP-188 (open): Inertial reference: unit vector without a frame. The vector is for an inertial
-     * pointing mode; which inertial frame, and which body axis points along it, is not said.
+     * @note ACP-188 (open): Inertial reference: unit vector without a frame. The vector is for an inertial pointing
+     * mode; which inertial frame, and which body axis points along it, is not said.
      */
     int16_t reference_x;
     /**
      * Inertial Reference Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
-     * @note Note ACP-188 (open): see Inertial Reference X.
+     * @note ACP-188 (open): see Inertial Reference X.
      */
     int16_t reference_y;
     /**
      * Inertial Reference Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
-     * @note Note ACP-188 (open): see Inertial Reference X.
+     * @note ACP-188 (open): see Inertial Reference X.
      */
     int16_t reference_z;
 } cubeacp_inertial_pointing_reference_vector_t;
@@ -76,6 +76,18 @@ static inline icd_status_t cubeacp_inertial_pointing_reference_vector_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->reference_y));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->reference_z));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_inertial_pointing_reference_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Inertial Reference X", "", 0u, 16u, 1u, NULL, 0u},
+        {"Inertial Reference Y", "", 16u, 16u, 1u, NULL, 0u},
+        {"Inertial Reference Z", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Inertial Reference X in millionths, exact: -3276800 to 3276700. */

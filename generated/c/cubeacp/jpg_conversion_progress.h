@@ -66,4 +66,16 @@ static inline icd_status_t cubeacp_jpg_conversion_progress_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_jpg_conversion_progress_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Progress Percentage", "%", 0u, 8u, 1u, NULL, 0u},
+        {"Conversion Result", "", 8u, 8u, 1u, NULL, 0u},
+        {"Output File Counter", "", 16u, 8u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_JPG_CONVERSION_PROGRESS_H */

@@ -327,7 +327,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         3u, /* telecommand_buses */
         2u, /* telemetry_buses */
         1u, /* bytes */
-        {8u, 0x12u, 0x0u, true, true, 0x0u, true, 0xffu, ICDGEN_TABLE(crc8_table)}, /* CRC */
+        /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, table */
+        {8u, 0x12u, 0x0u, true, true, 0x0u, true, 0xffu, ICDGEN_TABLE(crc8_table)},
     };
 #ifndef ICDGEN_NO_TABLES
     static const uint16_t crc16_table[] = {
@@ -366,6 +367,7 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
     };
 #endif
     static const icd_crc_form_t crc16 = {
+        /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, table */
         16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, ICDGEN_TABLE(crc16_table),
     };
     static const icd_log_bit_t log_bits[] = {
@@ -637,36 +639,36 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
      * second.
      */
     static const icd_link_t link = {
-        nodes,
+        nodes, /* whose messages */
         2u, /* how many */
         true, /* byte order: little */
         false, /* bit 0 is the most significant one */
         128u, 255u, /* ids of telemetry */
-        telecommands,
-        telemetry,
+        telecommands, /* what can be sent */
+        telemetry, /* what can be requested */
         68u, 126u, /* how many */
         506u, 506u, 506u, /* longest telecommand, reply, any */
         504u, /* longest without id and checksum */
         10, /* node type */
         7, /* interface version */
-        {1000u, 3u, 20u, 5000u},
-        errors,
+        {1000u, 3u, 20u, 5000u}, /* ms for a reply, retries, ms between polls, ms of polling */
+        errors, /* error codes */
         5u, 0u, /* how many; no error */
-        &framing,
-        &acknowledge,
+        &framing, /* framing of the UART */
+        &acknowledge, /* acknowledges on the UART */
         87, /* I2C address */
         5000, /* boot time in ms */
-        &polled,
-        &can,
-        &checksum,
-        &crc16,
-        &log_mask,
-        &log_file,
-        &log_message,
-        &packed_time,
-        &index_entry,
-        &hole_map,
-        &files,
+        &polled, /* what is polled for an acknowledge */
+        &can, /* CAN */
+        &checksum, /* checksums of messages */
+        &crc16, /* CRC of files */
+        &log_mask, /* mask of logs */
+        &log_file, /* log files */
+        &log_message, /* unsolicited logs */
+        &packed_time, /* packed times */
+        &index_entry, /* index of files */
+        &hole_map, /* hole map */
+        &files, /* file transfer */
         &list, /* list */
         &download, /* download */
         NULL, /* upload */

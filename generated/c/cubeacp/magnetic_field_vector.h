@@ -8,9 +8,9 @@
  * Magnetic Field Vector: telemetry 151, 6 bytes. Table 107.
  * As measured.
  * Bit 9 of the log mask.
- * @note Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled vectors are in the orbit
- * frame, estimated rates relative to it. Of the measured field, sun, nadir and rate vectors nothing is said; SBC for
- * the body frame is in the list of acronyms and used nowhere.
+ * @note ACP-069 (open): Reference frames of measured vectors are not named. Modelled vectors are in the orbit frame,
+ * estimated rates relative to it. Of the measured field, sun, nadir and rate vectors nothing is said; SBC for the body
+ * frame is in the list of acronyms and used nowhere.
  */
 
 #include "../icdgen.h"
@@ -64,6 +64,18 @@ static inline icd_status_t cubeacp_magnetic_field_vector_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->magnetic_field_y));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->magnetic_field_z));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_magnetic_field_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Magnetic Field X", "uT", 0u, 16u, 1u, NULL, 0u},
+        {"Magnetic Field Y", "uT", 16u, 16u, 1u, NULL, 0u},
+        {"Magnetic Field Z", "uT", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Magnetic Field X in nT, exact: -327680 to 327670. */

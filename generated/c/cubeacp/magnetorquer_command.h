@@ -20,23 +20,23 @@
 typedef struct {
     /**
      * X Magnetorquer Command: bits 0 to 15, raw -32768 to 32767, in 10ms units. On-time.
-     * @note Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time. The
-     * telecommand takes thousandths of a duty cycle, the frames give an on-time in units of 10 ms. The conversion
-     * depends on the loop period and on a resolution that is a setting.
-     * @note Note ACP-071 (likely): 10ms units is a factor, not a unit. The unit holds the scale that a formula should.
-     * It is kept as a unit of counts; nothing is converted.
+     * @note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time. The telecommand
+     * takes thousandths of a duty cycle, the frames give an on-time in units of 10 ms. The conversion depends on the
+     * loop period and on a resolution that is a setting.
+     * @note ACP-071 (likely): 10ms units is a factor, not a unit. The unit holds the scale that a formula should. It is
+     * kept as a unit of counts; nothing is converted.
      */
     int16_t x_magnetorquer_command;
     /**
      * Y Magnetorquer Command: bits 16 to 31, raw -32768 to 32767, in 10ms units. On-time.
-     * @note Note ACP-070 (open): see X Magnetorquer Command.
-     * @note Note ACP-071 (likely): see X Magnetorquer Command.
+     * @note ACP-070 (open): see X Magnetorquer Command.
+     * @note ACP-071 (likely): see X Magnetorquer Command.
      */
     int16_t y_magnetorquer_command;
     /**
      * Z Magnetorquer Command: bits 32 to 47, raw -32768 to 32767, in 10ms units. On-time.
-     * @note Note ACP-070 (open): see X Magnetorquer Command.
-     * @note Note ACP-071 (likely): see X Magnetorquer Command.
+     * @note ACP-070 (open): see X Magnetorquer Command.
+     * @note ACP-071 (likely): see X Magnetorquer Command.
      */
     int16_t z_magnetorquer_command;
 } cubeacp_magnetorquer_command_t;
@@ -75,6 +75,18 @@ static inline icd_status_t cubeacp_magnetorquer_command_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->y_magnetorquer_command));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->z_magnetorquer_command));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_magnetorquer_command_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"X Magnetorquer Command", "10ms units", 0u, 16u, 1u, NULL, 0u},
+        {"Y Magnetorquer Command", "10ms units", 16u, 16u, 1u, NULL, 0u},
+        {"Z Magnetorquer Command", "10ms units", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_MAGNETORQUER_COMMAND_H */

@@ -63,6 +63,18 @@ static inline icd_status_t cubeacp_modelled_sun_vector_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_modelled_sun_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Modelled Sun Vector X", "", 0u, 16u, 1u, NULL, 0u},
+        {"Modelled Sun Vector Y", "", 16u, 16u, 1u, NULL, 0u},
+        {"Modelled Sun Vector Z", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** Modelled Sun Vector X in millionths, exact: -3276800 to 3276700. */
 static inline int32_t cubeacp_modelled_sun_vector_modelled_sun_vector_x_micro(
     const cubeacp_modelled_sun_vector_t *message)

@@ -28,19 +28,19 @@ typedef struct {
     float moment_of_inertia_izz;
     /**
      * Product Of Inertia - Ixy: bits 96 to 127, 32-bit float, in kg.m^2.
-     * @note Note ACP-201 (open): Products of inertia: the sign is not given. The products are elements of a matrix by
-     * the message and products of inertia by their names, which differ in sign by the usual definitions. Neither is
+     * @note ACP-201 (open): Products of inertia: the sign is not given. The products are elements of a matrix by the
+     * message and products of inertia by their names, which differ in sign by the usual definitions. Neither is
      * defined.
      */
     float product_of_inertia_ixy;
     /**
      * Product Of Inertia - Ixz: bits 128 to 159, 32-bit float, in kg.m^2.
-     * @note Note ACP-201 (open): see Product Of Inertia - Ixy.
+     * @note ACP-201 (open): see Product Of Inertia - Ixy.
      */
     float product_of_inertia_ixz;
     /**
      * Product Of Inertia - Iyz: bits 160 to 191, 32-bit float, in kg.m^2.
-     * @note Note ACP-201 (open): see Product Of Inertia - Ixy.
+     * @note ACP-201 (open): see Product Of Inertia - Ixy.
      */
     float product_of_inertia_iyz;
 } cubeacp_moment_of_inertia_matrix_t;
@@ -85,6 +85,21 @@ static inline icd_status_t cubeacp_moment_of_inertia_matrix_encode(
     icdgen_store_u32le(&buffer[16], icdgen_bits_f32(&message->product_of_inertia_ixz));
     icdgen_store_u32le(&buffer[20], icdgen_bits_f32(&message->product_of_inertia_iyz));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_moment_of_inertia_matrix_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Moment Of Inertia - Ixx", "kg.m^2", 0u, 32u, 1u, NULL, 0u},
+        {"Moment Of Inertia - Iyy", "kg.m^2", 32u, 32u, 1u, NULL, 0u},
+        {"Moment Of Inertia - Izz", "kg.m^2", 64u, 32u, 1u, NULL, 0u},
+        {"Product Of Inertia - Ixy", "kg.m^2", 96u, 32u, 1u, NULL, 0u},
+        {"Product Of Inertia - Ixz", "kg.m^2", 128u, 32u, 1u, NULL, 0u},
+        {"Product Of Inertia - Iyz", "kg.m^2", 160u, 32u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
 }
 
 #endif /* CUBEACP_MOMENT_OF_INERTIA_MATRIX_H */

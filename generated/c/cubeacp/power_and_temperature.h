@@ -43,73 +43,72 @@ typedef struct {
     uint16_t cubecontrol_vbat_current;
     /**
      * Wheel1Current: bits 112 to 127, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): Wheel currents: by number, described by axis. The frame is described as XYZ wheel
-     * currents, its fields are numbered, and names run together although their descriptions do not.
-     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of 0.01 mA sixteen bits
-     * reach 655.35 mA, which a wheel motor may well exceed. All other currents have steps of 0.1 mA and more. The
-     * factor is held as printed.
+     * @note ACP-083 (open): Wheel currents: by number, described by axis. The frame is described as XYZ wheel currents,
+     * its fields are numbered, and names run together although their descriptions do not.
+     * @note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of 0.01 mA sixteen bits reach
+     * 655.35 mA, which a wheel motor may well exceed. All other currents have steps of 0.1 mA and more. The factor is
+     * held as printed.
      */
     uint16_t wheel1_current;
     /**
      * Wheel2Current: bits 128 to 143, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): see Wheel1Current.
-     * @note Note ACP-084 (open): see Wheel1Current.
+     * @note ACP-083 (open): see Wheel1Current.
+     * @note ACP-084 (open): see Wheel1Current.
      */
     uint16_t wheel2_current;
     /**
      * Wheel3Current: bits 144 to 159, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): see Wheel1Current.
-     * @note Note ACP-084 (open): see Wheel1Current.
+     * @note ACP-083 (open): see Wheel1Current.
+     * @note ACP-084 (open): see Wheel1Current.
      */
     uint16_t wheel3_current;
     /**
      * CubeStarCurrent: bits 160 to 175, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-084 (open): see Wheel1Current.
+     * @note ACP-084 (open): see Wheel1Current.
      */
     uint16_t cubestar_current;
     /** Magnetorquer Current: bits 176 to 191, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA. */
     uint16_t magnetorquer_current;
     /**
      * CubeStar MCU temperature: bits 192 to 207, raw -32768 to 32767; physical `raw/100.0`, -327.68 to 327.67 C.
-     * @note Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a degree sign. Degrees
-     * Celsius are meant.
+     * @note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a degree sign. Degrees Celsius
+     * are meant.
      */
     int16_t cubestar_mcu_temperature;
     /**
      * MCU Temperature: bits 208 to 223, raw -32768 to 32767, in C.
-     * @note Note ACP-005 (likely): see CubeStar MCU temperature.
-     * @note Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and hundredths stand side by
-     * side, in one frame even. That the controllers and rate sensors report whole degrees in 16 bits may be a lost
-     * factor.
+     * @note ACP-005 (likely): see CubeStar MCU temperature.
+     * @note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and hundredths stand side by side, in
+     * one frame even. That the controllers and rate sensors report whole degrees in 16 bits may be a lost factor.
      */
     int16_t mcu_temperature;
     /**
      * Magnetometer Temperature: bits 224 to 239, raw -32768 to 32767; physical `raw/10.0`, -3276.8 to 3276.7 C.
-     * @note Note ACP-005 (likely): see CubeStar MCU temperature.
+     * @note ACP-005 (likely): see CubeStar MCU temperature.
      */
     int16_t magnetometer_temperature;
     /**
      * Redundant Magnetometer Temperature: bits 240 to 255, raw -32768 to 32767; physical `raw/10.0`, -3276.8 to 3276.7
      * C.
-     * @note Note ACP-005 (likely): see CubeStar MCU temperature.
+     * @note ACP-005 (likely): see CubeStar MCU temperature.
      */
     int16_t redundant_mag_temperature;
     /**
      * X-Rate Sensor Temperature: bits 256 to 271, raw -32768 to 32767, in C.
-     * @note Note ACP-005 (likely): see CubeStar MCU temperature.
-     * @note Note ACP-085 (open): see MCU Temperature.
+     * @note ACP-005 (likely): see CubeStar MCU temperature.
+     * @note ACP-085 (open): see MCU Temperature.
      */
     int16_t x_rate_sensor_temperature;
     /**
      * Y-Rate Sensor Temperature: bits 272 to 287, raw -32768 to 32767, in C.
-     * @note Note ACP-005 (likely): see CubeStar MCU temperature.
-     * @note Note ACP-085 (open): see MCU Temperature.
+     * @note ACP-005 (likely): see CubeStar MCU temperature.
+     * @note ACP-085 (open): see MCU Temperature.
      */
     int16_t y_rate_sensor_temperature;
     /**
      * Z-Rate Sensor Temperature: bits 288 to 303, raw -32768 to 32767, in C.
-     * @note Note ACP-005 (likely): see CubeStar MCU temperature.
-     * @note Note ACP-085 (open): see MCU Temperature.
+     * @note ACP-005 (likely): see CubeStar MCU temperature.
+     * @note ACP-085 (open): see MCU Temperature.
      */
     int16_t z_rate_sensor_temperature;
 } cubeacp_power_and_temperature_t;
@@ -156,6 +155,34 @@ static inline icd_status_t cubeacp_power_and_temperature_encode(
         cubesense1_3v3_current,
         z_rate_sensor_temperature);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_power_and_temperature_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CubeSense1 3V3 Current", "mA", 0u, 16u, 1u, NULL, 0u},
+        {"CubeSense1 Cam SRAM Current", "mA", 16u, 16u, 1u, NULL, 0u},
+        {"CubeSense2 3V3 Current", "mA", 32u, 16u, 1u, NULL, 0u},
+        {"CubeSense2 Cam SRAM Current", "mA", 48u, 16u, 1u, NULL, 0u},
+        {"CubeControl 3V3 Current", "mA", 64u, 16u, 1u, NULL, 0u},
+        {"CubeControl 5V Current", "mA", 80u, 16u, 1u, NULL, 0u},
+        {"CubeControl Vbat Current", "mA", 96u, 16u, 1u, NULL, 0u},
+        {"Wheel1Current", "mA", 112u, 16u, 1u, NULL, 0u},
+        {"Wheel2Current", "mA", 128u, 16u, 1u, NULL, 0u},
+        {"Wheel3Current", "mA", 144u, 16u, 1u, NULL, 0u},
+        {"CubeStarCurrent", "mA", 160u, 16u, 1u, NULL, 0u},
+        {"Magnetorquer Current", "mA", 176u, 16u, 1u, NULL, 0u},
+        {"CubeStar MCU temperature", "C", 192u, 16u, 1u, NULL, 0u},
+        {"MCU Temperature", "C", 208u, 16u, 1u, NULL, 0u},
+        {"Magnetometer Temperature", "C", 224u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Temperature", "C", 240u, 16u, 1u, NULL, 0u},
+        {"X-Rate Sensor Temperature", "C", 256u, 16u, 1u, NULL, 0u},
+        {"Y-Rate Sensor Temperature", "C", 272u, 16u, 1u, NULL, 0u},
+        {"Z-Rate Sensor Temperature", "C", 288u, 16u, 1u, NULL, 0u},
+    };
+    *count = 19u;
+    return fields;
 }
 
 /** CubeSense1 Current Measurements, as it is repeated from byte 0. */

@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * Quaternion Covariance - Q1 RMS: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-076 (open): Quaternion covariance: an RMS with a sign. The field is a covariance by its frame, an
-     * RMS by its name and signed by its type. Neither quantity, on the diagonal, is negative.
+     * @note ACP-076 (open): Quaternion covariance: an RMS with a sign. The field is a covariance by its frame, an RMS
+     * by its name and signed by its type. Neither quantity, on the diagonal, is negative.
      */
     int16_t q1_rms;
     /**
      * Quaternion Covariance - Q2 RMS: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
+     * @note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
      */
     int16_t q2_rms;
     /**
      * Quaternion Covariance - Q3 RMS: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
+     * @note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
      */
     int16_t q3_rms;
 } cubeacp_quaternion_covariance_t;
@@ -70,6 +70,18 @@ static inline icd_status_t cubeacp_quaternion_covariance_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->q2_rms));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->q3_rms));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_quaternion_covariance_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Quaternion Covariance - Q1 RMS", "", 0u, 16u, 1u, NULL, 0u},
+        {"Quaternion Covariance - Q2 RMS", "", 16u, 16u, 1u, NULL, 0u},
+        {"Quaternion Covariance - Q3 RMS", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Quaternion Covariance - Q1 RMS in thousandths, exact: -32768 to 32767. */

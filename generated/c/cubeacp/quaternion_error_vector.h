@@ -7,8 +7,8 @@
  * @file
  * Quaternion Error Vector: telemetry 163, 6 bytes. Table 119.
  * Bit 39 of the log mask.
- * @note Note ACP-075 (open): Quaternions: the fourth component. Three of four components are sent. The fourth follows
- * up to its sign only, and which component is the scalar is not said.
+ * @note ACP-075 (open): Quaternions: the fourth component. Three of four components are sent. The fourth follows up to
+ * its sign only, and which component is the scalar is not said.
  */
 
 #include "../icdgen.h"
@@ -62,6 +62,18 @@ static inline icd_status_t cubeacp_quaternion_error_vector_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->quaternion_error_q2));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->quaternion_error_q3));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_quaternion_error_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Quaternion Error - Q1", "", 0u, 16u, 1u, NULL, 0u},
+        {"Quaternion Error - Q2", "", 16u, 16u, 1u, NULL, 0u},
+        {"Quaternion Error - Q3", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Quaternion Error - Q1 in millionths, exact: -3276800 to 3276700. */

@@ -8,9 +8,9 @@
  * Rate Sensor Rates: telemetry 155, 6 bytes. Table 111.
  * As measured.
  * Bit 13 of the log mask.
- * @note Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled vectors are in the orbit
- * frame, estimated rates relative to it. Of the measured field, sun, nadir and rate vectors nothing is said; SBC for
- * the body frame is in the list of acronyms and used nowhere.
+ * @note ACP-069 (open): Reference frames of measured vectors are not named. Modelled vectors are in the orbit frame,
+ * estimated rates relative to it. Of the measured field, sun, nadir and rate vectors nothing is said; SBC for the body
+ * frame is in the list of acronyms and used nowhere.
  */
 
 #include "../icdgen.h"
@@ -64,6 +64,18 @@ static inline icd_status_t cubeacp_rate_sensor_rates_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->y_angular_rate));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->z_angular_rate));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_rate_sensor_rates_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"X Angular Rate", "deg/s", 0u, 16u, 1u, NULL, 0u},
+        {"Y Angular Rate", "deg/s", 16u, 16u, 1u, NULL, 0u},
+        {"Z Angular Rate", "deg/s", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** X Angular Rate in thousandths of deg/s, exact: -327680 to 327670. */

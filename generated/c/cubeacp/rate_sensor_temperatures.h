@@ -20,23 +20,22 @@
 typedef struct {
     /**
      * X-Rate Sensor Temperature: bits 0 to 15, raw -32768 to 32767, in C.
-     * @note Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a degree sign. Degrees
-     * Celsius are meant.
-     * @note Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and hundredths stand side by
-     * side, in one frame even. That the controllers and rate sensors report whole degrees in 16 bits may be a lost
-     * factor.
+     * @note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a degree sign. Degrees Celsius
+     * are meant.
+     * @note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and hundredths stand side by side, in
+     * one frame even. That the controllers and rate sensors report whole degrees in 16 bits may be a lost factor.
      */
     int16_t x_rate_sensor_temperature;
     /**
      * Y-Rate Sensor Temperature: bits 16 to 31, raw -32768 to 32767, in C.
-     * @note Note ACP-005 (likely): see X-Rate Sensor Temperature.
-     * @note Note ACP-085 (open): see X-Rate Sensor Temperature.
+     * @note ACP-005 (likely): see X-Rate Sensor Temperature.
+     * @note ACP-085 (open): see X-Rate Sensor Temperature.
      */
     int16_t y_rate_sensor_temperature;
     /**
      * Z-Rate Sensor Temperature: bits 32 to 47, raw -32768 to 32767, in C.
-     * @note Note ACP-005 (likely): see X-Rate Sensor Temperature.
-     * @note Note ACP-085 (open): see X-Rate Sensor Temperature.
+     * @note ACP-005 (likely): see X-Rate Sensor Temperature.
+     * @note ACP-085 (open): see X-Rate Sensor Temperature.
      */
     int16_t z_rate_sensor_temperature;
 } cubeacp_rate_sensor_temperatures_t;
@@ -75,6 +74,18 @@ static inline icd_status_t cubeacp_rate_sensor_temperatures_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->y_rate_sensor_temperature));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->z_rate_sensor_temperature));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_rate_sensor_temperatures_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"X-Rate Sensor Temperature", "C", 0u, 16u, 1u, NULL, 0u},
+        {"Y-Rate Sensor Temperature", "C", 16u, 16u, 1u, NULL, 0u},
+        {"Z-Rate Sensor Temperature", "C", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_RATE_SENSOR_TEMPERATURES_H */

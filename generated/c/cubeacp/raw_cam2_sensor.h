@@ -8,8 +8,8 @@
  * Raw Cam2 Sensor: telemetry 166, 6 bytes. Table 122.
  * What Cam2 captured and detected.
  * Bit 47 of the log mask.
- * @note Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The telecommand begins with Cam1.
- * Frame 194 and the ids 166 and 167 have Cam2 before Cam1.
+ * @note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The telecommand begins with Cam1. Frame
+ * 194 and the ids 166 and 167 have Cam2 before Cam1.
  */
 
 #include "../icdgen.h"
@@ -24,13 +24,13 @@
 typedef struct {
     /**
      * Cam2 centroid X: bits 0 to 15, raw -32768 to 32767. Azimuth angle.
-     * @note Note ACP-078 (open): Camera results: centroid or angle. The names say centroid X and Y, the descriptions
-     * azimuth and elevation angle. Neither pixel nor degree nor a factor is given.
+     * @note ACP-078 (open): Camera results: centroid or angle. The names say centroid X and Y, the descriptions azimuth
+     * and elevation angle. Neither pixel nor degree nor a factor is given.
      */
     int16_t cam2_centroid_x;
     /**
      * Cam2 centroid Y: bits 16 to 31, raw -32768 to 32767. Elevation angle.
-     * @note Note ACP-078 (open): see Cam2 centroid X.
+     * @note ACP-078 (open): see Cam2 centroid X.
      */
     int16_t cam2_centroid_y;
     /** Cam2 Capture status: bits 32 to 39. */
@@ -75,6 +75,19 @@ static inline icd_status_t cubeacp_raw_cam2_sensor_encode(
     buffer[4] = message->cam2_capture_status;
     buffer[5] = message->cam2_detection_result;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_cam2_sensor_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Cam2 centroid X", "", 0u, 16u, 1u, NULL, 0u},
+        {"Cam2 centroid Y", "", 16u, 16u, 1u, NULL, 0u},
+        {"Cam2 Capture status", "", 32u, 8u, 1u, NULL, 0u},
+        {"Cam2 Detection result", "", 40u, 8u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
 }
 
 #endif /* CUBEACP_RAW_CAM2_SENSOR_H */

@@ -20,34 +20,34 @@
 typedef struct {
     /**
      * CSS1: bits 0 to 7, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of the sun angle, without
-     * full scale, offset or what a sensor in the dark reads. The relative scale and the threshold of the configuration
-     * refer to them.
+     * @note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of the sun angle, without full
+     * scale, offset or what a sensor in the dark reads. The relative scale and the threshold of the configuration refer
+     * to them.
      */
     uint8_t css1;
     /**
      * CSS2: bits 8 to 15, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): see CSS1.
+     * @note ACP-080 (open): see CSS1.
      */
     uint8_t css2;
     /**
      * CSS3: bits 16 to 23, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): see CSS1.
+     * @note ACP-080 (open): see CSS1.
      */
     uint8_t css3;
     /**
      * CSS4: bits 24 to 31, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): see CSS1.
+     * @note ACP-080 (open): see CSS1.
      */
     uint8_t css4;
     /**
      * CSS5: bits 32 to 39, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): see CSS1.
+     * @note ACP-080 (open): see CSS1.
      */
     uint8_t css5;
     /**
      * CSS6: bits 40 to 47, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): see CSS1.
+     * @note ACP-080 (open): see CSS1.
      */
     uint8_t css6;
 } cubeacp_raw_css_1_to_6_t;
@@ -92,6 +92,21 @@ static inline icd_status_t cubeacp_raw_css_1_to_6_encode(
     buffer[4] = message->css5;
     buffer[5] = message->css6;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_css_1_to_6_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CSS1", "", 0u, 8u, 1u, NULL, 0u},
+        {"CSS2", "", 8u, 8u, 1u, NULL, 0u},
+        {"CSS3", "", 16u, 8u, 1u, NULL, 0u},
+        {"CSS4", "", 24u, 8u, 1u, NULL, 0u},
+        {"CSS5", "", 32u, 8u, 1u, NULL, 0u},
+        {"CSS6", "", 40u, 8u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
 }
 
 #endif /* CUBEACP_RAW_CSS_1_TO_6_H */

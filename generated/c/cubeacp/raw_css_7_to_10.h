@@ -22,24 +22,24 @@
 typedef struct {
     /**
      * CSS7: bits 0 to 7, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of the sun angle, without
-     * full scale, offset or what a sensor in the dark reads. The relative scale and the threshold of the configuration
-     * refer to them.
+     * @note ACP-080 (open): CSS raw values have no scale. They correspond to the cosine of the sun angle, without full
+     * scale, offset or what a sensor in the dark reads. The relative scale and the threshold of the configuration refer
+     * to them.
      */
     uint8_t css7;
     /**
      * CSS8: bits 8 to 15, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): see CSS7.
+     * @note ACP-080 (open): see CSS7.
      */
     uint8_t css8;
     /**
      * CSS9: bits 16 to 23, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): see CSS7.
+     * @note ACP-080 (open): see CSS7.
      */
     uint8_t css9;
     /**
      * CSS10: bits 24 to 31, raw 0 to 255. Sampled A/D value, follows the cosine of the sun angle.
-     * @note Note ACP-080 (open): see CSS7.
+     * @note ACP-080 (open): see CSS7.
      */
     uint8_t css10;
 } cubeacp_raw_css_7_to_10_t;
@@ -81,6 +81,19 @@ static inline icd_status_t cubeacp_raw_css_7_to_10_encode(
     buffer[3] = message->css10;
     (void)memset(&buffer[4], 0, 2u);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_css_7_to_10_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"CSS7", "", 0u, 8u, 1u, NULL, 0u},
+        {"CSS8", "", 8u, 8u, 1u, NULL, 0u},
+        {"CSS9", "", 16u, 8u, 1u, NULL, 0u},
+        {"CSS10", "", 24u, 8u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
 }
 
 #endif /* CUBEACP_RAW_CSS_7_TO_10_H */

@@ -27,8 +27,8 @@
 typedef struct {
     /**
      * Gps Solution Status: bits 0 to 7.
-     * @note Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands among fields with GPS,
-     * and the sun sensors are Css in the same telecommand.
+     * @note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands among fields with GPS, and the
+     * sun sensors are Css in the same telecommand.
      */
     cubeacp_gps_solution_status_t gps_solution_status;
     /** Number of tracked GPS satellites: bits 8 to 15, raw 0 to 255. */
@@ -46,48 +46,48 @@ typedef struct {
     /**
      * Response Message for GPS log setup: bits 40 to 47, raw 0 to 255. Explained on page 656 of the OEMV615 reference
      * manual.
-     * @note Note ACP-088 (open): GPS response: explained in another manual. The meaning is on page 656 of a reference
-     * manual of the receiver, which is not among the documents named at the front. Other receivers have other manuals.
+     * @note ACP-088 (open): GPS response: explained in another manual. The meaning is on page 656 of a reference manual
+     * of the receiver, which is not among the documents named at the front. Other receivers have other manuals.
      */
     uint8_t response_message_for_gps_log_setup;
     /**
      * GPS Reference Week: bits 48 to 63, raw 0 to 65535.
-     * @note Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full week, ten of
-     * which a receiver sends. A number of roll-overs is a setting, so it is open which of the two this is.
+     * @note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full week, ten of which a
+     * receiver sends. A number of roll-overs is a setting, so it is open which of the two this is.
      */
     uint16_t gps_reference_week;
     /** GPS Time Milliseconds: bits 64 to 95, raw 0 to 4294967295, in ms. */
     uint32_t gps_time_milliseconds;
     /**
      * ECEF Position X: bits 96 to 127, raw -2147483648 to 2147483647, in m.
-     * @note Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16 bits in the state
+     * @note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16 bits in the state
      * frames and 32 bits in the GPS frames and the simulated data, with the same name, description and unit.
      */
     int32_t ecef_position_x;
     /**
      * ECEF Velocity X: bits 128 to 143, raw -32768 to 32767, in m/s.
-     * @note Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity from the receiver has a
-     * step of 1 m/s, that of the propagator 0.25 m/s. A factor may have been lost; none is made up.
+     * @note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity from the receiver has a step
+     * of 1 m/s, that of the propagator 0.25 m/s. A factor may have been lost; none is made up.
      */
     int16_t ecef_velocity_x;
     /**
      * ECEF Position Y: bits 144 to 175, raw -2147483648 to 2147483647, in m.
-     * @note Note ACP-099 (certain): see ECEF Position X.
+     * @note ACP-099 (certain): see ECEF Position X.
      */
     int32_t ecef_position_y;
     /**
      * ECEF Velocity Y: bits 176 to 191, raw -32768 to 32767, in m/s.
-     * @note Note ACP-044 (open): see ECEF Velocity X.
+     * @note ACP-044 (open): see ECEF Velocity X.
      */
     int16_t ecef_velocity_y;
     /**
      * ECEF Position Z: bits 192 to 223, raw -2147483648 to 2147483647, in m.
-     * @note Note ACP-099 (certain): see ECEF Position X.
+     * @note ACP-099 (certain): see ECEF Position X.
      */
     int32_t ecef_position_z;
     /**
      * ECEF Velocity Z: bits 224 to 239, raw -32768 to 32767, in m/s.
-     * @note Note ACP-044 (open): see ECEF Velocity X.
+     * @note ACP-044 (open): see ECEF Velocity X.
      */
     int16_t ecef_velocity_z;
     /** X-pos Standard Deviation: bits 240 to 247, raw 0 to 255; physical `raw*0.1`, 0 to 25.5 m. */
@@ -98,19 +98,19 @@ typedef struct {
     uint8_t z_pos_standard_deviation;
     /**
      * X-vel Standard Deviation: bits 264 to 271, raw 0 to 255, in m/s.
-     * @note Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second. Deviations of the position have
-     * a factor of 0.1, those of the velocity none. A whole 1 m/s is coarse for a GPS velocity, and the limit that is
+     * @note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second. Deviations of the position have a
+     * factor of 0.1, those of the velocity none. A whole 1 m/s is coarse for a GPS velocity, and the limit that is
      * compared with it is set in hundredths.
      */
     uint8_t x_vel_standard_deviation;
     /**
      * Y-vel Standard Deviation: bits 272 to 279, raw 0 to 255, in m/s.
-     * @note Note ACP-043 (open): see X-vel Standard Deviation.
+     * @note ACP-043 (open): see X-vel Standard Deviation.
      */
     uint8_t y_vel_standard_deviation;
     /**
      * Z-vel Standard Deviation: bits 280 to 287, raw 0 to 255, in m/s.
-     * @note Note ACP-043 (open): see X-vel Standard Deviation.
+     * @note ACP-043 (open): see X-vel Standard Deviation.
      */
     uint8_t z_vel_standard_deviation;
 } cubeacp_raw_gps_measurements_t;
@@ -183,6 +183,35 @@ static inline icd_status_t cubeacp_raw_gps_measurements_encode(
     buffer[34] = message->y_vel_standard_deviation;
     buffer[35] = message->z_vel_standard_deviation;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_gps_measurements_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Gps Solution Status", "", 0u, 8u, 1u, NULL, 0u},
+        {"Number of tracked GPS satellites", "", 8u, 8u, 1u, NULL, 0u},
+        {"Number of GPS satellites used in solution", "", 16u, 8u, 1u, NULL, 0u},
+        {"Counter for XYZ Lof from GPS", "", 24u, 8u, 1u, NULL, 0u},
+        {"Counter for RANGE log from GPS", "", 32u, 8u, 1u, NULL, 0u},
+        {"Response Message for GPS log setup", "", 40u, 8u, 1u, NULL, 0u},
+        {"GPS Reference Week", "", 48u, 16u, 1u, NULL, 0u},
+        {"GPS Time Milliseconds", "ms", 64u, 32u, 1u, NULL, 0u},
+        {"ECEF Position X", "m", 96u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity X", "m/s", 128u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Y", "m", 144u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity Y", "m/s", 176u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Z", "m", 192u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity Z", "m/s", 224u, 16u, 1u, NULL, 0u},
+        {"X-pos Standard Deviation", "m", 240u, 8u, 1u, NULL, 0u},
+        {"Y-pos Standard Deviation", "m", 248u, 8u, 1u, NULL, 0u},
+        {"Z-pos Standard Deviation", "m", 256u, 8u, 1u, NULL, 0u},
+        {"X-vel Standard Deviation", "m/s", 264u, 8u, 1u, NULL, 0u},
+        {"Y-vel Standard Deviation", "m/s", 272u, 8u, 1u, NULL, 0u},
+        {"Z-vel Standard Deviation", "m/s", 280u, 8u, 1u, NULL, 0u},
+    };
+    *count = 20u;
+    return fields;
 }
 
 /** Raw GPS Status, as it is repeated from byte 0. */

@@ -21,8 +21,8 @@
 typedef struct {
     /**
      * Gps Solution Status: bits 0 to 7.
-     * @note Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands among fields with GPS,
-     * and the sun sensors are Css in the same telecommand.
+     * @note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands among fields with GPS, and the
+     * sun sensors are Css in the same telecommand.
      */
     cubeacp_gps_solution_status_t gps_solution_status;
     /** Number of tracked GPS satellites: bits 8 to 15, raw 0 to 255. */
@@ -40,8 +40,8 @@ typedef struct {
     /**
      * Response Message for GPS log setup: bits 40 to 47, raw 0 to 255. Explained on page 656 of the OEMV615 reference
      * manual.
-     * @note Note ACP-088 (open): GPS response: explained in another manual. The meaning is on page 656 of a reference
-     * manual of the receiver, which is not among the documents named at the front. Other receivers have other manuals.
+     * @note ACP-088 (open): GPS response: explained in another manual. The meaning is on page 656 of a reference manual
+     * of the receiver, which is not among the documents named at the front. Other receivers have other manuals.
      */
     uint8_t response_message_for_gps_log_setup;
 } cubeacp_raw_gps_status_t;
@@ -86,6 +86,21 @@ static inline icd_status_t cubeacp_raw_gps_status_encode(
     buffer[4] = message->counter_for_range_log_from_gps;
     buffer[5] = message->response_message_for_gps_log_setup;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_gps_status_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Gps Solution Status", "", 0u, 8u, 1u, NULL, 0u},
+        {"Number of tracked GPS satellites", "", 8u, 8u, 1u, NULL, 0u},
+        {"Number of GPS satellites used in solution", "", 16u, 8u, 1u, NULL, 0u},
+        {"Counter for XYZ Lof from GPS", "", 24u, 8u, 1u, NULL, 0u},
+        {"Counter for RANGE log from GPS", "", 32u, 8u, 1u, NULL, 0u},
+        {"Response Message for GPS log setup", "", 40u, 8u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
 }
 
 #endif /* CUBEACP_RAW_GPS_STATUS_H */

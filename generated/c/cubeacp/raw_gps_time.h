@@ -20,8 +20,8 @@
 typedef struct {
     /**
      * GPS Reference Week: bits 0 to 15, raw 0 to 65535.
-     * @note Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full week, ten of
-     * which a receiver sends. A number of roll-overs is a setting, so it is open which of the two this is.
+     * @note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full week, ten of which a
+     * receiver sends. A number of roll-overs is a setting, so it is open which of the two this is.
      */
     uint16_t gps_reference_week;
     /** GPS Time Milliseconds: bits 16 to 47, raw 0 to 4294967295, in ms. */
@@ -60,6 +60,17 @@ static inline icd_status_t cubeacp_raw_gps_time_encode(
     icdgen_store_u16le(&buffer[0], message->gps_reference_week);
     icdgen_store_u32le(&buffer[2], message->gps_time_milliseconds);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_gps_time_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"GPS Reference Week", "", 0u, 16u, 1u, NULL, 0u},
+        {"GPS Time Milliseconds", "ms", 16u, 32u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* CUBEACP_RAW_GPS_TIME_H */

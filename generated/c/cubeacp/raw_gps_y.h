@@ -21,15 +21,15 @@
 typedef struct {
     /**
      * ECEF Position Y: bits 0 to 31, raw -2147483648 to 2147483647, in m.
-     * @note Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name. The three frames are described
-     * as ECI referenced, their fields are ECEF position and velocity. ECEF is what a receiver delivers.
+     * @note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name. The three frames are described as ECI
+     * referenced, their fields are ECEF position and velocity. ECEF is what a receiver delivers.
      */
     int32_t ecef_position_y;
     /**
      * ECEF Velocity Y: bits 32 to 47, raw -32768 to 32767, in m/s.
-     * @note Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity from the receiver has a
-     * step of 1 m/s, that of the propagator 0.25 m/s. A factor may have been lost; none is made up.
-     * @note Note ACP-090 (likely): see ECEF Position Y.
+     * @note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity from the receiver has a step
+     * of 1 m/s, that of the propagator 0.25 m/s. A factor may have been lost; none is made up.
+     * @note ACP-090 (likely): see ECEF Position Y.
      */
     int16_t ecef_velocity_y;
 } cubeacp_raw_gps_y_t;
@@ -66,6 +66,17 @@ static inline icd_status_t cubeacp_raw_gps_y_encode(
     icdgen_store_u32le(&buffer[0], ICDGEN_U32(message->ecef_position_y));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->ecef_velocity_y));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_gps_y_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"ECEF Position Y", "m", 0u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity Y", "m/s", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* CUBEACP_RAW_GPS_Y_H */

@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * RateX: bits 0 to 15, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale. Neither resolution
-     * nor unit of the sampled values is given.
+     * @note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale. Neither resolution nor
+     * unit of the sampled values is given.
      */
     int16_t rate_x;
     /**
      * RateY: bits 16 to 31, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): see RateX.
+     * @note ACP-082 (open): see RateX.
      */
     int16_t rate_y;
     /**
      * RateZ: bits 32 to 47, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): see RateX.
+     * @note ACP-082 (open): see RateX.
      */
     int16_t rate_z;
 } cubeacp_raw_rate_sensor_t;
@@ -70,6 +70,18 @@ static inline icd_status_t cubeacp_raw_rate_sensor_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->rate_y));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->rate_z));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_rate_sensor_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"RateX", "", 0u, 16u, 1u, NULL, 0u},
+        {"RateY", "", 16u, 16u, 1u, NULL, 0u},
+        {"RateZ", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_RAW_RATE_SENSOR_H */

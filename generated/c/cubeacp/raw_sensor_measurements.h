@@ -8,8 +8,8 @@
  * Raw Sensor Measurements: telemetry 194, 34 bytes. Table 153.
  * Repeats Raw Cam2 Sensor from byte 0. Repeats Raw Cam1 Sensor from byte 6. Repeats Raw CSS 1 to 6 from byte 12.
  * Repeats Raw CSS 7 to 10 from byte 18. Repeats Raw Magnetometer from byte 22. Repeats Raw Rate Sensor from byte 28.
- * @note Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The telecommand begins with Cam1.
- * Frame 194 and the ids 166 and 167 have Cam2 before Cam1.
+ * @note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The telecommand begins with Cam1. Frame
+ * 194 and the ids 166 and 167 have Cam2 before Cam1.
  */
 
 #include "../icdgen.h"
@@ -30,13 +30,13 @@
 typedef struct {
     /**
      * Cam2 centroid X: bits 0 to 15, raw -32768 to 32767. Azimuth angle.
-     * @note Note ACP-078 (open): Camera results: centroid or angle. The names say centroid X and Y, the descriptions
-     * azimuth and elevation angle. Neither pixel nor degree nor a factor is given.
+     * @note ACP-078 (open): Camera results: centroid or angle. The names say centroid X and Y, the descriptions azimuth
+     * and elevation angle. Neither pixel nor degree nor a factor is given.
      */
     int16_t cam2_centroid_x;
     /**
      * Cam2 centroid Y: bits 16 to 31, raw -32768 to 32767. Elevation angle.
-     * @note Note ACP-078 (open): see Cam2 centroid X.
+     * @note ACP-078 (open): see Cam2 centroid X.
      */
     int16_t cam2_centroid_y;
     /** Cam2 Capture status: bits 32 to 39. */
@@ -45,12 +45,12 @@ typedef struct {
     cubeacp_detect_result_t cam2_detection_result;
     /**
      * Cam1 centroid X: bits 48 to 63, raw -32768 to 32767. Azimuth angle.
-     * @note Note ACP-078 (open): see Cam2 centroid X.
+     * @note ACP-078 (open): see Cam2 centroid X.
      */
     int16_t cam1_centroid_x;
     /**
      * Cam1 centroid Y: bits 64 to 79, raw -32768 to 32767. Elevation angle.
-     * @note Note ACP-078 (open): see Cam2 centroid X.
+     * @note ACP-078 (open): see Cam2 centroid X.
      */
     int16_t cam1_centroid_y;
     /** Cam1 Capture status: bits 80 to 87. */
@@ -82,33 +82,33 @@ typedef struct {
      * @note Erratum ACP-105 (certain): Raw Sensor Measurements repeats four of six bytes of one part. Frame 194 holds
      * the frame of the sensors 7 to 10 without its last two bytes: the magnetometer begins where they would stand. The
      * whole has 34 bytes, its parts have 36.
-     * @note Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale. Neither resolution
-     * nor unit of the sampled values is given.
+     * @note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale. Neither resolution nor
+     * unit of the sampled values is given.
      */
     int16_t mag_x;
     /**
      * MagY: bits 192 to 207, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): see MagX.
+     * @note ACP-082 (open): see MagX.
      */
     int16_t mag_y;
     /**
      * MagZ: bits 208 to 223, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): see MagX.
+     * @note ACP-082 (open): see MagX.
      */
     int16_t mag_z;
     /**
      * RateX: bits 224 to 239, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): see MagX.
+     * @note ACP-082 (open): see MagX.
      */
     int16_t rate_x;
     /**
      * RateY: bits 240 to 255, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): see MagX.
+     * @note ACP-082 (open): see MagX.
      */
     int16_t rate_y;
     /**
      * RateZ: bits 256 to 271, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): see MagX.
+     * @note ACP-082 (open): see MagX.
      */
     int16_t rate_z;
 } cubeacp_raw_sensor_measurements_t;
@@ -167,6 +167,39 @@ static inline icd_status_t cubeacp_raw_sensor_measurements_encode(
     icdgen_store_u16le(&buffer[30], ICDGEN_U16(message->rate_y));
     icdgen_store_u16le(&buffer[32], ICDGEN_U16(message->rate_z));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_sensor_measurements_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Cam2 centroid X", "", 0u, 16u, 1u, NULL, 0u},
+        {"Cam2 centroid Y", "", 16u, 16u, 1u, NULL, 0u},
+        {"Cam2 Capture status", "", 32u, 8u, 1u, NULL, 0u},
+        {"Cam2 Detection result", "", 40u, 8u, 1u, NULL, 0u},
+        {"Cam1 centroid X", "", 48u, 16u, 1u, NULL, 0u},
+        {"Cam1 centroid Y", "", 64u, 16u, 1u, NULL, 0u},
+        {"Cam1 Capture status", "", 80u, 8u, 1u, NULL, 0u},
+        {"Cam1 Detection result", "", 88u, 8u, 1u, NULL, 0u},
+        {"CSS1", "", 96u, 8u, 1u, NULL, 0u},
+        {"CSS2", "", 104u, 8u, 1u, NULL, 0u},
+        {"CSS3", "", 112u, 8u, 1u, NULL, 0u},
+        {"CSS4", "", 120u, 8u, 1u, NULL, 0u},
+        {"CSS5", "", 128u, 8u, 1u, NULL, 0u},
+        {"CSS6", "", 136u, 8u, 1u, NULL, 0u},
+        {"CSS7", "", 144u, 8u, 1u, NULL, 0u},
+        {"CSS8", "", 152u, 8u, 1u, NULL, 0u},
+        {"CSS9", "", 160u, 8u, 1u, NULL, 0u},
+        {"CSS10", "", 168u, 8u, 1u, NULL, 0u},
+        {"MagX", "", 176u, 16u, 1u, NULL, 0u},
+        {"MagY", "", 192u, 16u, 1u, NULL, 0u},
+        {"MagZ", "", 208u, 16u, 1u, NULL, 0u},
+        {"RateX", "", 224u, 16u, 1u, NULL, 0u},
+        {"RateY", "", 240u, 16u, 1u, NULL, 0u},
+        {"RateZ", "", 256u, 16u, 1u, NULL, 0u},
+    };
+    *count = 24u;
+    return fields;
 }
 
 /** Raw Cam2 Sensor, as it is repeated from byte 0. */

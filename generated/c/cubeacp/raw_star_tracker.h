@@ -33,30 +33,30 @@
 typedef struct {
     /**
      * Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
-     * @note Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel value. What is
-     * counted stands in place of a unit; noise repeats the name. They are kept as units of counts.
+     * @note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel value. What is counted
+     * stands in place of a unit; noise repeats the name. They are kept as units of counts.
      */
     uint8_t number_of_stars_detected;
     /**
      * Star image noise: bits 8 to 15, raw 0 to 255, in noise.
-     * @note Note ACP-093 (certain): see Number of stars detected.
+     * @note ACP-093 (certain): see Number of stars detected.
      */
     uint8_t star_image_noise;
     /**
      * Invalid Stars: bits 16 to 23, raw 0 to 255, in Invalid stars. How many of the detected stars are invalid.
-     * @note Note ACP-093 (certain): see Number of stars detected.
+     * @note ACP-093 (certain): see Number of stars detected.
      */
     uint8_t invalid_stars;
     /**
      * Number of stars identified: bits 24 to 31, raw 0 to 255, in stars.
-     * @note Note ACP-093 (certain): see Number of stars detected.
+     * @note ACP-093 (certain): see Number of stars detected.
      */
     uint8_t number_of_stars_identified;
     /** Identification mode: bits 32 to 39. */
     cubeacp_star_id_mode_val_t identification_mode;
     /**
      * Image dark value: bits 40 to 47, raw 0 to 255, in 8-bit pixel value. Mean of the centre line of the image.
-     * @note Note ACP-093 (certain): see Number of stars detected.
+     * @note ACP-093 (certain): see Number of stars detected.
      */
     uint8_t image_dark_value;
     /** Image Capture Success: bit 48. */
@@ -67,8 +67,8 @@ typedef struct {
     bool identification_success;
     /**
      * AttitudeSuccess: bit 51.
-     * @note Note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags before it have blanks, as
-     * its description has.
+     * @note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags before it have blanks, as its
+     * description has.
      */
     bool attitude_success;
     /** Processing Time Error: bit 52. */
@@ -81,8 +81,7 @@ typedef struct {
     bool comms_error;
     /**
      * Sample Period: bits 56 to 71, raw 0 to 65535.
-     * @note Note ACP-113 (open): Sample period of the star tracker has no unit. Other times of the star tracker are in
-     * ms.
+     * @note ACP-113 (open): Sample period of the star tracker has no unit. Other times of the star tracker are in ms.
      */
     uint16_t sample_period;
     /**
@@ -102,18 +101,18 @@ typedef struct {
     uint8_t star_3_confidence;
     /**
      * Magnitude Star 1: bits 96 to 111, raw 0 to 65535. Instrument magnitude.
-     * @note Note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16 bits without a factor can
-     * be neither fractional nor negative.
+     * @note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16 bits without a factor can be
+     * neither fractional nor negative.
      */
     uint16_t magnitude_star_1;
     /**
      * Magnitude Star 2: bits 112 to 127, raw 0 to 65535. Instrument magnitude.
-     * @note Note ACP-092 (open): see Magnitude Star 1.
+     * @note ACP-092 (open): see Magnitude Star 1.
      */
     uint16_t magnitude_star_2;
     /**
      * Magnitude Star 3: bits 128 to 143, raw 0 to 65535. Instrument magnitude.
-     * @note Note ACP-092 (open): see Magnitude Star 1.
+     * @note ACP-092 (open): see Magnitude Star 1.
      */
     uint16_t magnitude_star_3;
     /** Catalogue Star 1: bits 144 to 159, raw 0 to 65535. Number in the star catalogue. */
@@ -143,26 +142,26 @@ typedef struct {
     /**
      * x-Axis rate: bits 336 to 351, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Estimated by
      * CubeStar, about its own X axis.
-     * @note Note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given without a unit. The other
-     * rates are in deg/s; rad/s would fit the range as well.
+     * @note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given without a unit. The other rates
+     * are in deg/s; rad/s would fit the range as well.
      */
     int16_t x_axis_rate;
     /**
      * y-Axis rate: bits 352 to 367, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Estimated by
      * CubeStar, about its own Y axis.
-     * @note Note ACP-111 (open): see x-Axis rate.
+     * @note ACP-111 (open): see x-Axis rate.
      */
     int16_t y_axis_rate;
     /**
      * z-Axis rate: bits 368 to 383, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Estimated by
      * CubeStar, about its own Z axis.
-     * @note Note ACP-111 (open): see x-Axis rate.
+     * @note ACP-111 (open): see x-Axis rate.
      */
     int16_t z_axis_rate;
     /**
      * Q0: bits 384 to 399, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Of the attitude estimated by
      * CubeStar, described as Q1.
-     * @note Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names and descriptions count
+     * @note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names and descriptions count
      * differently. Q1 to Q3 agree with the other quaternions; if Q0 were the scalar, the third vector component would
      * be missing.
      */
@@ -170,13 +169,13 @@ typedef struct {
     /**
      * Q1: bits 400 to 415, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Of the attitude estimated by
      * CubeStar, described as Q2.
-     * @note Note ACP-112 (open): see Q0.
+     * @note ACP-112 (open): see Q0.
      */
     int16_t q1;
     /**
      * Q2: bits 416 to 431, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Of the attitude estimated by
      * CubeStar, described as Q3.
-     * @note Note ACP-112 (open): see Q0.
+     * @note ACP-112 (open): see Q0.
      */
     int16_t q2;
 } cubeacp_raw_star_tracker_t;
@@ -254,6 +253,54 @@ static inline icd_status_t cubeacp_raw_star_tracker_encode(
     buffer[11] = message->star_3_confidence;
     ICDGEN_WRITE_ROW_LE(cubeacp_raw_star_tracker_t, message, &buffer[12], 21u, magnitude_star_1, q2);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_raw_star_tracker_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Number of stars detected", "stars", 0u, 8u, 1u, NULL, 0u},
+        {"Star image noise", "noise", 8u, 8u, 1u, NULL, 0u},
+        {"Invalid Stars", "Invalid stars", 16u, 8u, 1u, NULL, 0u},
+        {"Number of stars identified", "stars", 24u, 8u, 1u, NULL, 0u},
+        {"Identification mode", "", 32u, 8u, 1u, NULL, 0u},
+        {"Image dark value", "8-bit pixel value", 40u, 8u, 1u, NULL, 0u},
+        {"Image Capture Success", "", 48u, 1u, 1u, NULL, 0u},
+        {"Detection Success", "", 49u, 1u, 1u, NULL, 0u},
+        {"Identification Success", "", 50u, 1u, 1u, NULL, 0u},
+        {"AttitudeSuccess", "", 51u, 1u, 1u, NULL, 0u},
+        {"Processing Time Error", "", 52u, 1u, 1u, NULL, 0u},
+        {"Tracking Module Enabled", "", 53u, 1u, 1u, NULL, 0u},
+        {"Prediction Enabled", "", 54u, 1u, 1u, NULL, 0u},
+        {"Comms error", "", 55u, 1u, 1u, NULL, 0u},
+        {"Sample Period", "", 56u, 16u, 1u, NULL, 0u},
+        {"Star 1 confidence", "%", 72u, 8u, 1u, NULL, 0u},
+        {"Star 2 confidence", "%", 80u, 8u, 1u, NULL, 0u},
+        {"Star 3 confidence", "%", 88u, 8u, 1u, NULL, 0u},
+        {"Magnitude Star 1", "", 96u, 16u, 1u, NULL, 0u},
+        {"Magnitude Star 2", "", 112u, 16u, 1u, NULL, 0u},
+        {"Magnitude Star 3", "", 128u, 16u, 1u, NULL, 0u},
+        {"Catalogue Star 1", "", 144u, 16u, 1u, NULL, 0u},
+        {"Centroid X Star 1", "", 160u, 16u, 1u, NULL, 0u},
+        {"Centroid Y Star 1", "", 176u, 16u, 1u, NULL, 0u},
+        {"Catalogue Star 2", "", 192u, 16u, 1u, NULL, 0u},
+        {"Centroid X Star 2", "", 208u, 16u, 1u, NULL, 0u},
+        {"Centroid Y Star 2", "", 224u, 16u, 1u, NULL, 0u},
+        {"Catalogue Star 3", "", 240u, 16u, 1u, NULL, 0u},
+        {"Centroid X Star 3", "", 256u, 16u, 1u, NULL, 0u},
+        {"Centroid Y Star 3", "", 272u, 16u, 1u, NULL, 0u},
+        {"Capture", "ms", 288u, 16u, 1u, NULL, 0u},
+        {"Detection", "ms", 304u, 16u, 1u, NULL, 0u},
+        {"Identification", "ms", 320u, 16u, 1u, NULL, 0u},
+        {"x-Axis rate", "", 336u, 16u, 1u, NULL, 0u},
+        {"y-Axis rate", "", 352u, 16u, 1u, NULL, 0u},
+        {"z-Axis rate", "", 368u, 16u, 1u, NULL, 0u},
+        {"Q0", "", 384u, 16u, 1u, NULL, 0u},
+        {"Q1", "", 400u, 16u, 1u, NULL, 0u},
+        {"Q2", "", 416u, 16u, 1u, NULL, 0u},
+    };
+    *count = 39u;
+    return fields;
 }
 
 /** Star Performance1, as it is repeated from byte 0. */

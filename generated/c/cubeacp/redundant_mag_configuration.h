@@ -7,7 +7,7 @@
  * @file
  * Redundant Magnetometer Configuration: configuration, set by telecommand 36, got by telemetry 205, 30 bytes. Table
  * 191\.
- * @note Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for one; redundant,
+ * @note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for one; redundant,
  * secondary and 2nd for the other.
  */
 
@@ -25,39 +25,39 @@ typedef struct {
     /**
      * Redundant Magnetometer Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`,
      * -327.68 to 327.67 deg.
-     * @note Note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need a sequence of axes and
-     * a direction. None is given.
+     * @note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need a sequence of axes and a
+     * direction. None is given.
      */
     int16_t mounting_alpha;
     /**
      * Redundant Magnetometer Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
      * -327.68 to 327.67 deg.
-     * @note Note ACP-157 (open): see Redundant Magnetometer Mounting Transform Alpha Angle.
+     * @note ACP-157 (open): see Redundant Magnetometer Mounting Transform Alpha Angle.
      */
     int16_t mounting_beta;
     /**
      * Redundant Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
      * -327.68 to 327.67 deg.
-     * @note Note ACP-157 (open): see Redundant Magnetometer Mounting Transform Alpha Angle.
+     * @note ACP-157 (open): see Redundant Magnetometer Mounting Transform Alpha Angle.
      */
     int16_t mounting_gamma;
     /**
      * Redundant Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Note ACP-155 (open): Magnetometer offsets have no unit. Channel offsets have a factor and no unit. The
-     * field itself is in uT; the sensitivity that would convert has no unit either.
+     * @note ACP-155 (open): Magnetometer offsets have no unit. Channel offsets have a factor and no unit. The field
+     * itself is in uT; the sensitivity that would convert has no unit either.
      */
     int16_t channel_1_offset;
     /**
      * Redundant Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Note ACP-155 (open): see Redundant Magnetometer Channel 1 Offset.
+     * @note ACP-155 (open): see Redundant Magnetometer Channel 1 Offset.
      */
     int16_t channel_2_offset;
     /**
      * Redundant Magnetometer Channel 3 Offset: bits 80 to 95, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Note ACP-155 (open): see Redundant Magnetometer Channel 1 Offset.
+     * @note ACP-155 (open): see Redundant Magnetometer Channel 1 Offset.
      */
     int16_t channel_3_offset;
     /**
@@ -149,6 +149,30 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_encode(
         mounting_alpha,
         sensitivity_s32);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_redundant_mag_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Redundant Magnetometer Mounting Transform Alpha Angle", "deg", 0u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Mounting Transform Beta Angle", "deg", 16u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Mounting Transform Gamma Angle", "deg", 32u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Channel 1 Offset", "", 48u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Channel 2 Offset", "", 64u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Channel 3 Offset", "", 80u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S11", "", 96u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S22", "", 112u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S33", "", 128u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S12", "", 144u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S13", "", 160u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S21", "", 176u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S23", "", 192u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S31", "", 208u, 16u, 1u, NULL, 0u},
+        {"Redundant Magnetometer Sensitivity Matrix S32", "", 224u, 16u, 1u, NULL, 0u},
+    };
+    *count = 15u;
+    return fields;
 }
 
 /** Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */

@@ -62,6 +62,18 @@ static inline icd_status_t cubeacp_satellite_position_eci_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_satellite_position_eci_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"X position", "km", 0u, 16u, 1u, NULL, 0u},
+        {"Y position", "km", 16u, 16u, 1u, NULL, 0u},
+        {"Z position", "km", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 /** X position in m, exact: -8192000 to 8191750. */
 static inline int32_t cubeacp_satellite_position_eci_x_position_m(const cubeacp_satellite_position_eci_t *message)
 {

@@ -23,14 +23,14 @@ typedef struct {
     int16_t latitude;
     /**
      * Longitude: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-     * @note Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The datum is missing in one
-     * of three rows; the frame is called LLH by name and WGS-84 frame by description.
+     * @note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The datum is missing in one of
+     * three rows; the frame is called LLH by name and WGS-84 frame by description.
      */
     int16_t longitude;
     /**
      * Altitude: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
-     * @note Note ACP-067 (open): Position and altitude do not reach equally far. The inertial position fits orbits up
-     * to 1800 km, the altitude of 16 bits ends at 655.35 km. Above that it wraps or sticks; which is not said.
+     * @note ACP-067 (open): Position and altitude do not reach equally far. The inertial position fits orbits up to
+     * 1800 km, the altitude of 16 bits ends at 655.35 km. Above that it wraps or sticks; which is not said.
      */
     uint16_t altitude;
 } cubeacp_satellite_position_llh_t;
@@ -69,6 +69,18 @@ static inline icd_status_t cubeacp_satellite_position_llh_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->longitude));
     icdgen_store_u16le(&buffer[4], message->altitude);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_satellite_position_llh_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Latitude", "deg", 0u, 16u, 1u, NULL, 0u},
+        {"Longitude", "deg", 16u, 16u, 1u, NULL, 0u},
+        {"Altitude", "km", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Latitude in thousandths of deg, exact: -327680 to 327670. */

@@ -7,7 +7,7 @@
  * @file
  * Save Configuration: telecommand 63, 0 bytes. Table 92.
  * Keeps the current configuration in flash.
- * @note Note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS configuration, the orbit
+ * @note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS configuration, the orbit
  * parameters and the system configuration. Telecommands save the current configuration and the orbit parameters; which
  * the first covers is not said.
  */
@@ -55,6 +55,13 @@ static inline icd_status_t cubeacp_save_configuration_encode(
     (void)message;
     (void)buffer;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_save_configuration_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
 }
 
 #endif /* CUBEACP_SAVE_CONFIGURATION_H */

@@ -7,7 +7,7 @@
  * @file
  * Save Image: telecommand 80, 2 bytes. Table 94.
  * Takes a picture with a CubeSense or the CubeStar camera and saves it to the SD card.
- * @note Note ACP-055 (certain): Save Image saves before it captures. The description has the steps in the wrong order.
+ * @note ACP-055 (certain): Save Image saves before it captures. The description has the steps in the wrong order.
  */
 
 #include "../icdgen.h"
@@ -58,6 +58,17 @@ static inline icd_status_t cubeacp_save_image_encode(
     buffer[0] = message->camera_select;
     buffer[1] = message->image_size;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_save_image_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Camera Select", "", 0u, 8u, 1u, NULL, 0u},
+        {"Image Size", "", 8u, 8u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* CUBEACP_SAVE_IMAGE_H */

@@ -7,9 +7,9 @@
  * @file
  * SD Log2 Configuration: configuration, set by telecommand 105, got by telemetry 236, 13 bytes. Table 212.
  * Which frames go into log 2, how often, and to which card.
- * @note Note ACP-185 (certain): Log1 is LOG1 in its description. Names have Log1 and Log2, descriptions LOG1 and LOG2.
- * @note Note ACP-186 (open): A log that is reconfigured while it runs. The mask in the file header is that of the
- * start. Whether a new selection starts a new file, and which counter it gets, is not said.
+ * @note ACP-185 (certain): Log1 is LOG1 in its description. Names have Log1 and Log2, descriptions LOG1 and LOG2.
+ * @note ACP-186 (open): A log that is reconfigured while it runs. The mask in the file header is that of the start.
+ * Whether a new selection starts a new file, and which counter it gets, is not said.
  */
 
 #include "../icdgen.h"
@@ -28,14 +28,14 @@
 typedef struct {
     /**
      * Log Selection: bytes 0 to 9. Mask of up to 80 telemetry frames.
-     * @note Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned. Seventeen bits of the mask have
-     * no frame: 2, 5, 6 and 66 to 79. What a log with one of them set holds is not said.
+     * @note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned. Seventeen bits of the mask have no
+     * frame: 2, 5, 6 and 66 to 79. What a log with one of them set holds is not said.
      */
     uint8_t log_selection[10];
     /**
      * Log Period: bits 80 to 95, raw 0 to 65535. 0: logging disabled.
-     * @note Note ACP-183 (open): Log period has no unit. Zero switches logging off; seconds or iterations of the loop
-     * are both possible, and equal only while the loop runs at 1 Hz.
+     * @note ACP-183 (open): Log period has no unit. Zero switches logging off; seconds or iterations of the loop are
+     * both possible, and equal only while the loop runs at 1 Hz.
      */
     uint16_t log_period;
     /** Log Destination: bits 96 to 103. */
@@ -76,6 +76,18 @@ static inline icd_status_t cubeacp_sd_log2_configuration_encode(
     icdgen_store_u16le(&buffer[10], message->log_period);
     buffer[12] = message->log_destination;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_sd_log2_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Log Selection", "", 0u, 80u, 1u, NULL, 0u},
+        {"Log Period", "", 80u, 16u, 1u, NULL, 0u},
+        {"Log Destination", "", 96u, 8u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_SD_LOG2_CONFIGURATION_H */

@@ -7,10 +7,10 @@
  * @file
  * Secondary Magnetometer Raw Measurements: telemetry 215, 6 bytes. Table 163.
  * Bit 58 of the log mask.
- * @note Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for one; redundant,
+ * @note ACP-051 (certain): Magnetometers have four names for two. Main, primary and none stand for one; redundant,
  * secondary and 2nd for the other.
- * @note Note ACP-118 (likely): Secondary magnetometer: fixed or selected. The frame is named for the secondary
- * magnetometer, with the field names of the primary one. A setting selects which magnetometer, sampled how, it shows.
+ * @note ACP-118 (likely): Secondary magnetometer: fixed or selected. The frame is named for the secondary magnetometer,
+ * with the field names of the primary one. A setting selects which magnetometer, sampled how, it shows.
  */
 
 #include "../icdgen.h"
@@ -24,18 +24,18 @@
 typedef struct {
     /**
      * MagX: bits 0 to 15, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale. Neither resolution
-     * nor unit of the sampled values is given.
+     * @note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale. Neither resolution nor
+     * unit of the sampled values is given.
      */
     int16_t mag_x;
     /**
      * MagY: bits 16 to 31, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): see MagX.
+     * @note ACP-082 (open): see MagX.
      */
     int16_t mag_y;
     /**
      * MagZ: bits 32 to 47, raw -32768 to 32767. Sampled A/D value.
-     * @note Note ACP-082 (open): see MagX.
+     * @note ACP-082 (open): see MagX.
      */
     int16_t mag_z;
 } cubeacp_secondary_magnetometer_raw_measurements_t;
@@ -75,6 +75,18 @@ static inline icd_status_t cubeacp_secondary_magnetometer_raw_measurements_encod
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->mag_y));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->mag_z));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_secondary_magnetometer_raw_measurements_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"MagX", "", 0u, 16u, 1u, NULL, 0u},
+        {"MagY", "", 16u, 16u, 1u, NULL, 0u},
+        {"MagZ", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_H */

@@ -21,8 +21,8 @@
 typedef struct {
     /**
      * Enabled: bits 0 to 7. While off, the control program leaves the ADCS I2C bus alone.
-     * @note Note ACP-017 (certain): A run mode called Enabled. The parameter is an enumeration of four modes, its name
-     * that of one of them. The frames call it ADCS Run Mode.
+     * @note ACP-017 (certain): A run mode called Enabled. The parameter is an enumeration of four modes, its name that
+     * of one of them. The frames call it ADCS Run Mode.
      */
     cubeacp_adcs_run_mode_t enabled;
 } cubeacp_set_adcs_run_mode_t;
@@ -57,6 +57,16 @@ static inline icd_status_t cubeacp_set_adcs_run_mode_encode(
     }
     buffer[0] = message->enabled;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_adcs_run_mode_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Enabled", "", 0u, 8u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
 }
 
 #endif /* CUBEACP_SET_ADCS_RUN_MODE_H */

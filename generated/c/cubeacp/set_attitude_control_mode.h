@@ -25,10 +25,10 @@ typedef struct {
     /**
      * Timeout: bits 8 to 23, raw 0 to 65535, in s. The mode returns to None when it runs out. 65535 (0xFFFF): no
      * timeout.
-     * @note Note ACP-022 (open): Timeout of a control mode: 0. 0xFFFF is for ever; what 0 does is not said. No frame
-     * returns the time left.
-     * @note Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode falls back,
-     * when the control mode is None. The member with value 0 is called No control.
+     * @note ACP-022 (open): Timeout of a control mode: 0. 0xFFFF is for ever; what 0 does is not said. No frame returns
+     * the time left.
+     * @note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode falls back, when
+     * the control mode is None. The member with value 0 is called No control.
      */
     uint16_t timeout;
 } cubeacp_set_attitude_control_mode_t;
@@ -65,6 +65,17 @@ static inline icd_status_t cubeacp_set_attitude_control_mode_encode(
     buffer[0] = message->control_mode;
     icdgen_store_u16le(&buffer[1], message->timeout);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_attitude_control_mode_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Control Mode", "", 0u, 8u, 1u, NULL, 0u},
+        {"Timeout", "s", 8u, 16u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* CUBEACP_SET_ATTITUDE_CONTROL_MODE_H */

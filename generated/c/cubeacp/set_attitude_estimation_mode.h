@@ -54,4 +54,14 @@ static inline icd_status_t cubeacp_set_attitude_estimation_mode_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_attitude_estimation_mode_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Attitude Estimation Mode", "", 0u, 8u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
+}
+
 #endif /* CUBEACP_SET_ATTITUDE_ESTIMATION_MODE_H */

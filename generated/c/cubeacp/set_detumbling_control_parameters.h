@@ -7,8 +7,8 @@
  * @file
  * Set Detumbling Control Parameters: configuration, set by telecommand 38, got by telemetry 208, 14 bytes. Table 195.
  * Gains and references of the detumbling mode.
- * @note Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have
- * neutral names, but for eight. Names and identifiers are held as printed.
+ * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
+ * names, but for eight. Names and identifiers are held as printed.
  */
 
 #include "../icdgen.h"
@@ -20,31 +20,31 @@
 /** Bytes of a frame, without the id. */
 #define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_LENGTH 14u
 /** Reference spin rate in deg/s: must be below this. */
-#define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_SPIN_RATE_DEG_PER_S_BELOW 0
+#define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_SPIN_RATE_DEG_PER_S_BELOW 0.0
 
 /** Raw values. */
 typedef struct {
     /**
      * Detumbling Spin Gain: bits 0 to 31, 32-bit float. Ks.
-     * @note Note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the control laws
-     * are in another document.
+     * @note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the control laws are in
+     * another document.
      */
     float detumbling_spin_gain;
     /**
      * Detumbling Damping Gain: bits 32 to 63, 32-bit float. Kd.
-     * @note Note ACP-163 (open): see Detumbling Spin Gain.
+     * @note ACP-163 (open): see Detumbling Spin Gain.
      */
     float detumbling_damping_gain;
     /**
      * Reference spin rate: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s. wy-ref.
-     * Must be below 0 deg/s.
-     * @note Note ACP-162 (certain): Limits of a sign in words only. Two references must always be smaller than 0; the
-     * types allow the opposite, and what the program does with it is not said.
+     * Must be below 0 deg/s, which setters do not check.
+     * @note ACP-162 (certain): Limits of a sign in words only. Two references must always be smaller than 0; the types
+     * allow the opposite, and what the program does with it is not said.
      */
     int16_t spin_rate;
     /**
      * Fast BDot Detumbling Gain: bits 80 to 111, 32-bit float. Kdf.
-     * @note Note ACP-163 (open): see Detumbling Spin Gain.
+     * @note ACP-163 (open): see Detumbling Spin Gain.
      */
     float fast_bdot_detumbling_gain;
 } cubeacp_set_detumbling_control_parameters_t;
@@ -87,6 +87,22 @@ static inline icd_status_t cubeacp_set_detumbling_control_parameters_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_detumbling_control_parameters_fields(size_t *count)
+{
+    static const icd_limit_t limits[] = {
+        {ICD_LIMIT_BELOW, 0.0},
+    };
+    static const icd_field_t fields[] = {
+        {"Detumbling Spin Gain", "", 0u, 32u, 1u, NULL, 0u},
+        {"Detumbling Damping Gain", "", 32u, 32u, 1u, NULL, 0u},
+        {"Reference spin rate", "deg/s", 64u, 16u, 1u, &limits[0], 1u},
+        {"Fast BDot Detumbling Gain", "", 80u, 32u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
+}
+
 /** Reference spin rate in thousandths of deg/s, exact: -32768 to 32767. */
 static inline int32_t cubeacp_set_detumbling_control_parameters_spin_rate_mdeg_per_s(
     const cubeacp_set_detumbling_control_parameters_t *message)
@@ -108,7 +124,7 @@ static inline icd_status_t cubeacp_set_detumbling_control_parameters_set_spin_ra
 
 #ifndef ICDGEN_NO_DOUBLE
 
-/** Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s. */
+/** Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s, which setters do not check. */
 static inline double cubeacp_set_detumbling_control_parameters_spin_rate_deg_per_s(
     const cubeacp_set_detumbling_control_parameters_t *message)
 {

@@ -6,8 +6,8 @@
 /**
  * @file
  * Set Magnetorquer Configuration: configuration, set by telecommand 21, got by telemetry 136, 3 bytes. Table 179.
- * @note Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have
- * neutral names, but for eight. Names and identifiers are held as printed.
+ * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
+ * names, but for eight. Names and identifiers are held as printed.
  */
 
 #include "../icdgen.h"
@@ -24,19 +24,19 @@
 typedef struct {
     /**
      * Magnetorquer 1 Configuration: bits 0 to 7.
-     * @note Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output. Each axis is said to need a
+     * @note ACP-103 (open): Configuration flag: outputs per axis, or axes per output. Each axis is said to need a
      * torquer output 1, 2 or 3. The configuration works the other way round and gives an axis to each torquer, or Not
      * Used.
      */
     cubeacp_axis_select_t magnetorquer_1_configuration;
     /**
      * Magnetorquer 2 Configuration: bits 8 to 15.
-     * @note Note ACP-103 (open): see Magnetorquer 1 Configuration.
+     * @note ACP-103 (open): see Magnetorquer 1 Configuration.
      */
     cubeacp_axis_select_t magnetorquer_2_configuration;
     /**
      * Magnetorquer 3 Configuration: bits 16 to 23.
-     * @note Note ACP-103 (open): see Magnetorquer 1 Configuration.
+     * @note ACP-103 (open): see Magnetorquer 1 Configuration.
      */
     cubeacp_axis_select_t magnetorquer_3_configuration;
 } cubeacp_set_magnetorquer_configuration_t;
@@ -75,6 +75,18 @@ static inline icd_status_t cubeacp_set_magnetorquer_configuration_encode(
     buffer[1] = message->magnetorquer_2_configuration;
     buffer[2] = message->magnetorquer_3_configuration;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_magnetorquer_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Magnetorquer 1 Configuration", "", 0u, 8u, 1u, NULL, 0u},
+        {"Magnetorquer 2 Configuration", "", 8u, 8u, 1u, NULL, 0u},
+        {"Magnetorquer 3 Configuration", "", 16u, 8u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_SET_MAGNETORQUER_CONFIGURATION_H */

@@ -7,8 +7,8 @@
  * @file
  * Set Magnetorquer Output: telecommand 16, 6 bytes. Table 81.
  * Only valid while the control mode is None.
- * @note Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode falls back, when
- * the control mode is None. The member with value 0 is called No control.
+ * @note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode falls back, when the
+ * control mode is None. The member with value 0 is called No control.
  */
 
 #include "../icdgen.h"
@@ -23,24 +23,24 @@ typedef struct {
     /**
      * Commanded X Magnetorquer duty cycle: bits 0 to 15, raw -32768 to 32767; physical `raw = value*1000.0`, -32.768 to
      * 32.767.
-     * @note Note ACP-030 (certain): Formulas are written in two directions. Two telecommands give the raw value as a
+     * @note ACP-030 (certain): Formulas are written in two directions. Two telecommands give the raw value as a
      * multiple of the physical one, everything else the physical value from the raw one. Both are held as printed.
-     * @note Note ACP-031 (likely): Duty cycle: unit and range are not given. The factor of 1000 suggests a fraction of
-     * one, so that raw values run from -1000 to 1000. The type allows 32 times that.
+     * @note ACP-031 (likely): Duty cycle: unit and range are not given. The factor of 1000 suggests a fraction of one,
+     * so that raw values run from -1000 to 1000. The type allows 32 times that.
      */
     int16_t x_duty_cycle;
     /**
      * Commanded Y Magnetorquer duty cycle: bits 16 to 31, raw -32768 to 32767; physical `raw = value*1000.0`, -32.768
      * to 32.767.
-     * @note Note ACP-030 (certain): see Commanded X Magnetorquer duty cycle.
-     * @note Note ACP-031 (likely): see Commanded X Magnetorquer duty cycle.
+     * @note ACP-030 (certain): see Commanded X Magnetorquer duty cycle.
+     * @note ACP-031 (likely): see Commanded X Magnetorquer duty cycle.
      */
     int16_t y_duty_cycle;
     /**
      * Commanded Z Magnetorquer duty cycle: bits 32 to 47, raw -32768 to 32767; physical `raw = value*1000.0`, -32.768
      * to 32.767.
-     * @note Note ACP-030 (certain): see Commanded X Magnetorquer duty cycle.
-     * @note Note ACP-031 (likely): see Commanded X Magnetorquer duty cycle.
+     * @note ACP-030 (certain): see Commanded X Magnetorquer duty cycle.
+     * @note ACP-031 (likely): see Commanded X Magnetorquer duty cycle.
      */
     int16_t z_duty_cycle;
 } cubeacp_set_magnetorquer_output_t;
@@ -79,6 +79,18 @@ static inline icd_status_t cubeacp_set_magnetorquer_output_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->y_duty_cycle));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->z_duty_cycle));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_magnetorquer_output_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Commanded X Magnetorquer duty cycle", "", 0u, 16u, 1u, NULL, 0u},
+        {"Commanded Y Magnetorquer duty cycle", "", 16u, 16u, 1u, NULL, 0u},
+        {"Commanded Z Magnetorquer duty cycle", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Commanded X Magnetorquer duty cycle in thousandths, exact: -32768 to 32767. */

@@ -21,9 +21,9 @@
 typedef struct {
     /**
      * Magnetometer Mode: bits 0 to 7. The magnetometer that estimation and control use.
-     * @note Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a configuration message
-     * set the same mode. Which wins after a restart, and whether the telecommand changes what the configuration
-     * returns, is not said.
+     * @note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a configuration message set
+     * the same mode. Which wins after a restart, and whether the telecommand changes what the configuration returns, is
+     * not said.
      */
     cubeacp_mag_mode_val_t magnetometer_mode;
 } cubeacp_set_mode_of_magnetometer_operation_t;
@@ -59,6 +59,16 @@ static inline icd_status_t cubeacp_set_mode_of_magnetometer_operation_encode(
     }
     buffer[0] = message->magnetometer_mode;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_mode_of_magnetometer_operation_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Magnetometer Mode", "", 0u, 8u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
 }
 
 #endif /* CUBEACP_SET_MODE_OF_MAGNETOMETER_OPERATION_H */

@@ -6,9 +6,9 @@
 /**
  * @file
  * Set Rate Gyro Configuration: configuration, set by telecommand 23, got by telemetry 138, 10 bytes. Table 182.
- * @note Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have
- * neutral names, but for eight. Names and identifiers are held as printed.
- * @note Note ACP-131 (certain): Gyro, rate sensor and MEMS. One sensor has three names, two of them in one message.
+ * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
+ * names, but for eight. Names and identifiers are held as printed.
+ * @note ACP-131 (certain): Gyro, rate sensor and MEMS. One sensor has three names, two of them in one message.
  */
 
 #include "../icdgen.h"
@@ -31,24 +31,24 @@ typedef struct {
     cubeacp_axis_select_t gyro3_configuration;
     /**
      * X-Rate Sensor Offset: bits 24 to 39, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * @note Note ACP-132 (open): Rate sensor offset and estimated gyro bias. Whether the offset is added or subtracted,
-     * and hence whether the estimated bias can be copied into it, is not said. Both have the same factor.
+     * @note ACP-132 (open): Rate sensor offset and estimated gyro bias. Whether the offset is added or subtracted, and
+     * hence whether the estimated bias can be copied into it, is not said. Both have the same factor.
      */
     int16_t x_rate_sensor_offset;
     /**
      * Y-Rate Sensor Offset: bits 40 to 55, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * @note Note ACP-132 (open): see X-Rate Sensor Offset.
+     * @note ACP-132 (open): see X-Rate Sensor Offset.
      */
     int16_t y_rate_sensor_offset;
     /**
      * Z-Rate Sensor Offset: bits 56 to 71, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * @note Note ACP-132 (open): see X-Rate Sensor Offset.
+     * @note ACP-132 (open): see X-Rate Sensor Offset.
      */
     int16_t z_rate_sensor_offset;
     /**
      * RateSensorMult: bits 72 to 79, raw 0 to 255. Factor on the rate sensor measurements.
-     * @note Note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8 bits; whether it is a
-     * whole factor, and of which quantity, is not said.
+     * @note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8 bits; whether it is a whole
+     * factor, and of which quantity, is not said.
      */
     uint8_t rate_sensor_mult;
 } cubeacp_set_rate_gyro_configuration_t;
@@ -95,6 +95,22 @@ static inline icd_status_t cubeacp_set_rate_gyro_configuration_encode(
     icdgen_store_u16le(&buffer[7], ICDGEN_U16(message->z_rate_sensor_offset));
     buffer[9] = message->rate_sensor_mult;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_rate_gyro_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Gyro1 Configuration", "", 0u, 8u, 1u, NULL, 0u},
+        {"Gyro2 Configuration", "", 8u, 8u, 1u, NULL, 0u},
+        {"Gyro3 Configuration", "", 16u, 8u, 1u, NULL, 0u},
+        {"X-Rate Sensor Offset", "deg/s", 24u, 16u, 1u, NULL, 0u},
+        {"Y-Rate Sensor Offset", "deg/s", 40u, 16u, 1u, NULL, 0u},
+        {"Z-Rate Sensor Offset", "deg/s", 56u, 16u, 1u, NULL, 0u},
+        {"RateSensorMult", "", 72u, 8u, 1u, NULL, 0u},
+    };
+    *count = 7u;
+    return fields;
 }
 
 /** X-Rate Sensor Offset in thousandths of deg/s, exact: -32768 to 32767. */

@@ -8,8 +8,8 @@
  * Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, got by telemetry 217, 13 bytes. Table
  * 197\.
  * Gains and reference of the reaction-wheel mode.
- * @note Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have
- * neutral names, but for eight. Names and identifiers are held as printed.
+ * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
+ * names, but for eight. Names and identifiers are held as printed.
  */
 
 #include "../icdgen.h"
@@ -26,28 +26,27 @@
 typedef struct {
     /**
      * RWheel Proportional Gain: bits 0 to 31, 32-bit float. Kp2.
-     * @note Note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the control laws
-     * are in another document.
+     * @note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the control laws are in
+     * another document.
      */
     float rwheel_proportional_gain;
     /**
      * RWheel Derivative Gain: bits 32 to 63, 32-bit float. Kd2.
-     * @note Note ACP-163 (open): see RWheel Proportional Gain.
+     * @note ACP-163 (open): see RWheel Proportional Gain.
      */
     float rwheel_derivative_gain;
     /**
      * Y-Wheel Bias Momentum: bits 64 to 95, 32-bit float, in Nms. H-bias.
-     * @note Note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels. The description promises gains
-     * and a reference value for the reaction wheels; the reference is a bias of the Y-wheel.
+     * @note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels. The description promises gains and
+     * a reference value for the reaction wheels; the reference is a bias of the Y-wheel.
      */
     float y_wheel_bias_momentum;
     /**
      * Sun-pointing Facet: bits 96 to 102. Body axis that is turned towards the sun.
-     * @note Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration serves actuators,
-     * sensors and facets. A facet that points to the sun or to a target as Not Used is allowed by its table and not
-     * explained.
-     * @note Note ACP-177 (open): Sun-pointing facet and special control selection. Facets can be chosen by a setting,
-     * and sun pointing with Z or Y by the system configuration. Which one counts is not said.
+     * @note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration serves actuators, sensors
+     * and facets. A facet that points to the sun or to a target as Not Used is allowed by its table and not explained.
+     * @note ACP-177 (open): Sun-pointing facet and special control selection. Facets can be chosen by a setting, and
+     * sun pointing with Z or Y by the system configuration. Which one counts is not said.
      */
     cubeacp_axis_select_t sun_pointing_facet;
     /**
@@ -112,6 +111,20 @@ static inline icd_status_t cubeacp_set_reaction_wheel_control_parameters_encode(
     icdgen_store_u32le(&buffer[8], icdgen_bits_f32(&message->y_wheel_bias_momentum));
     buffer[12] = ICDGEN_U8(message->sun_pointing_facet | (message->control_transition_on_wheel_error << 7));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_reaction_wheel_control_parameters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"RWheel Proportional Gain", "", 0u, 32u, 1u, NULL, 0u},
+        {"RWheel Derivative Gain", "", 32u, 32u, 1u, NULL, 0u},
+        {"Y-Wheel Bias Momentum", "Nms", 64u, 32u, 1u, NULL, 0u},
+        {"Sun-pointing Facet", "", 96u, 7u, 1u, NULL, 0u},
+        {"Automatic Control Transition due to Wheel Errors", "", 103u, 1u, 1u, NULL, 0u},
+    };
+    *count = 5u;
+    return fields;
 }
 
 #endif /* CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_H */

@@ -7,10 +7,10 @@
  * @file
  * Set Star Tracker Configuration: configuration, set by telecommand 37, got by telemetry 202, 53 bytes. Table 188.
  * Of CubeStar.
- * @note Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0
- * and ignored.
- * @note Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have
- * neutral names, but for eight. Names and identifiers are held as printed.
+ * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
+ * ignored.
+ * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
+ * names, but for eight. Names and identifiers are held as printed.
  */
 
 #include "../icdgen.h"
@@ -27,55 +27,55 @@ typedef struct {
     /**
      * StarTracker Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need a sequence of axes and
-     * a direction. None is given.
+     * @note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need a sequence of axes and a
+     * direction. None is given.
      */
     int16_t mounting_alpha;
     /**
      * StarTracker Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Note ACP-157 (open): see StarTracker Mounting Transform Alpha Angle.
+     * @note ACP-157 (open): see StarTracker Mounting Transform Alpha Angle.
      */
     int16_t mounting_beta;
     /**
      * StarTracker Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Note ACP-157 (open): see StarTracker Mounting Transform Alpha Angle.
+     * @note ACP-157 (open): see StarTracker Mounting Transform Alpha Angle.
      */
     int16_t mounting_gamma;
     /**
      * StarTracker exposure time: bits 48 to 63, raw 0 to 65535. Register value.
-     * @note Note ACP-145 (open): Exposure and gain are register values. Neither the register nor its scale is given, so
+     * @note ACP-145 (open): Exposure and gain are register values. Neither the register nor its scale is given, so
      * times and gains cannot be told from them.
-     * @note Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking. Three spellings
-     * stand in one message, and one description is a variable name.
+     * @note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking. Three spellings stand in
+     * one message, and one description is a variable name.
      */
     uint16_t star_tracker_exposure_time;
     /**
      * StarTracker analog gain: bits 64 to 79, raw 0 to 65535. Register value.
-     * @note Note ACP-145 (open): see StarTracker exposure time.
+     * @note ACP-145 (open): see StarTracker exposure time.
      */
     uint16_t star_tracker_analog_gain;
     /**
      * StarTracker detection threshold: bits 80 to 87, raw 0 to 255.
-     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description. Names are repeated or a
-     * noun is missing, as in maximum of stars.
+     * @note ACP-146 (open): Thresholds and counts of the star tracker have no description. Names are repeated or a noun
+     * is missing, as in maximum of stars.
      */
     uint8_t star_tracker_detection_threshold;
     /**
      * StarTracker star threshold: bits 88 to 95, raw 0 to 255.
-     * @note Note ACP-146 (open): see StarTracker detection threshold.
+     * @note ACP-146 (open): see StarTracker detection threshold.
      */
     uint8_t star_tracker_star_threshold;
     /**
      * Maximum Star Matched: bits 96 to 103, raw 0 to 255. Most stars that are matched.
-     * @note Note ACP-146 (open): see StarTracker detection threshold.
+     * @note ACP-146 (open): see StarTracker detection threshold.
      */
     uint8_t maximum_star_matched;
     /**
      * Detection Timeout duration: bits 104 to 119, raw 0 to 65535.
-     * @note Note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in milliseconds; registers
-     * and pixels stand in between.
+     * @note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in milliseconds; registers and
+     * pixels stand in between.
      */
     uint16_t detection_timeout_duration;
     /** Maximum Star Pixel: bits 120 to 127, raw 0 to 255. Most pixels of a star. */
@@ -85,15 +85,15 @@ typedef struct {
     /**
      * Star Tracker Error Margin: bits 136 to 143, raw 0 to 255; physical `raw*0.01`, 0 to 2.55 %. Of the star
      * identification.
-     * @note Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit % and a factor of 0.01
-     * give steps of 0.01 % in 8 bits. If the factor already makes a fraction, as in the margins that follow without a
-     * unit, the range is 255 %.
+     * @note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit % and a factor of 0.01 give
+     * steps of 0.01 % in 8 bits. If the factor already makes a fraction, as in the margins that follow without a unit,
+     * the range is 255 %.
      */
     uint8_t error_margin;
     /**
      * Star Tracker Delay Time: bits 144 to 159, raw 0 to 65535, in ms.
      * @note Erratum ACP-140 (certain): milliseconds is ms. The unit is spelt out in one field.
-     * @note Note ACP-147 (certain): see StarTracker exposure time.
+     * @note ACP-147 (certain): see StarTracker exposure time.
      */
     uint16_t star_tracker_delay_time;
     /**
@@ -111,53 +111,53 @@ typedef struct {
     float star_tracker_focal_length;
     /**
      * K1 radial distortion coefficient: bits 256 to 287, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain. It is kept as a plain
+     * @note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain. It is kept as a plain
      * factor; which lens model and which normalisation they belong to is not said.
      */
     float k1_radial_distortion_coefficient;
     /**
      * K2 radial distortion coefficient: bits 288 to 319, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): see K1 radial distortion coefficient.
+     * @note ACP-144 (certain): see K1 radial distortion coefficient.
      */
     float k2_radial_distortion_coefficient;
     /**
      * P1 tangential distortion coefficient: bits 320 to 351, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): see K1 radial distortion coefficient.
+     * @note ACP-144 (certain): see K1 radial distortion coefficient.
      */
     float p1_tangential_distortion_coefficient;
     /**
      * P2 tangential distortion coefficient: bits 352 to 383, 32-bit float, in gain.
-     * @note Note ACP-144 (certain): see K1 radial distortion coefficient.
+     * @note ACP-144 (certain): see K1 radial distortion coefficient.
      */
     float p2_tangential_distortion_coefficient;
     /**
      * Star tracking window width: bits 384 to 391, raw 0 to 255.
-     * @note Note ACP-146 (open): see StarTracker detection threshold.
-     * @note Note ACP-147 (certain): see StarTracker exposure time.
+     * @note ACP-146 (open): see StarTracker detection threshold.
+     * @note ACP-147 (certain): see StarTracker exposure time.
      */
     uint8_t star_tracking_window_width;
     /**
      * Star Tracking Margin: bits 392 to 399, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
-     * @note Note ACP-143 (open): Margins and search width have no unit. Factors are given, units are not; pixels,
-     * fractions and degrees are all possible.
-     * @note Note ACP-147 (certain): see StarTracker exposure time.
+     * @note ACP-143 (open): Margins and search width have no unit. Factors are given, units are not; pixels, fractions
+     * and degrees are all possible.
+     * @note ACP-147 (certain): see StarTracker exposure time.
      */
     uint8_t tracking_margin;
     /**
      * Star Validation Margin: bits 400 to 407, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
-     * @note Note ACP-143 (open): see Star Tracking Margin.
+     * @note ACP-143 (open): see Star Tracking Margin.
      */
     uint8_t validation_margin;
     /** Star Tracking Module Enable: bit 408. */
     bool star_tracking_module_enable;
     /**
      * Star Tracking Location Prediction Enable: bit 409.
-     * @note Note ACP-147 (certain): see StarTracker exposure time.
+     * @note ACP-147 (certain): see StarTracker exposure time.
      */
     bool star_tracking_location_prediction_enable;
     /**
      * Star Tracking Search Width: bits 416 to 423, raw 0 to 255; physical `raw/5.0`, 0 to 51.
-     * @note Note ACP-143 (open): see Star Tracking Margin.
+     * @note ACP-143 (open): see Star Tracking Margin.
      */
     uint8_t search_width;
 } cubeacp_set_star_tracker_configuration_t;
@@ -243,6 +243,41 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_encode(
         (message->star_tracking_location_prediction_enable << 1));
     buffer[52] = message->search_width;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_star_tracker_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"StarTracker Mounting Transform Alpha Angle", "deg", 0u, 16u, 1u, NULL, 0u},
+        {"StarTracker Mounting Transform Beta Angle", "deg", 16u, 16u, 1u, NULL, 0u},
+        {"StarTracker Mounting Transform Gamma Angle", "deg", 32u, 16u, 1u, NULL, 0u},
+        {"StarTracker exposure time", "", 48u, 16u, 1u, NULL, 0u},
+        {"StarTracker analog gain", "", 64u, 16u, 1u, NULL, 0u},
+        {"StarTracker detection threshold", "", 80u, 8u, 1u, NULL, 0u},
+        {"StarTracker star threshold", "", 88u, 8u, 1u, NULL, 0u},
+        {"Maximum Star Matched", "", 96u, 8u, 1u, NULL, 0u},
+        {"Detection Timeout duration", "", 104u, 16u, 1u, NULL, 0u},
+        {"Maximum Star Pixel", "", 120u, 8u, 1u, NULL, 0u},
+        {"Minimum Star Pixel", "", 128u, 8u, 1u, NULL, 0u},
+        {"Star Tracker Error Margin", "%", 136u, 8u, 1u, NULL, 0u},
+        {"Star Tracker Delay Time", "ms", 144u, 16u, 1u, NULL, 0u},
+        {"Star Tracker Centroid X", "pixels", 160u, 32u, 1u, NULL, 0u},
+        {"Star Tracker Centroid Y", "pixels", 192u, 32u, 1u, NULL, 0u},
+        {"Star Tracker Focal Length", "mm", 224u, 32u, 1u, NULL, 0u},
+        {"K1 radial distortion coefficient", "gain", 256u, 32u, 1u, NULL, 0u},
+        {"K2 radial distortion coefficient", "gain", 288u, 32u, 1u, NULL, 0u},
+        {"P1 tangential distortion coefficient", "gain", 320u, 32u, 1u, NULL, 0u},
+        {"P2 tangential distortion coefficient", "gain", 352u, 32u, 1u, NULL, 0u},
+        {"Star tracking window width", "", 384u, 8u, 1u, NULL, 0u},
+        {"Star Tracking Margin", "", 392u, 8u, 1u, NULL, 0u},
+        {"Star Validation Margin", "", 400u, 8u, 1u, NULL, 0u},
+        {"Star Tracking Module Enable", "", 408u, 1u, 1u, NULL, 0u},
+        {"Star Tracking Location Prediction Enable", "", 409u, 1u, 1u, NULL, 0u},
+        {"Star Tracking Search Width", "", 416u, 8u, 1u, NULL, 0u},
+    };
+    *count = 26u;
+    return fields;
 }
 
 /** StarTracker Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */

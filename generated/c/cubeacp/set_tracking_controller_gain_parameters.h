@@ -8,8 +8,8 @@
  * Set Tracking Controller Gain Parameters: configuration, set by telecommand 54, got by telemetry 221, 13 bytes. Table
  * 198\.
  * Gains of the tracking mode.
- * @note Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have
- * neutral names, but for eight. Names and identifiers are held as printed.
+ * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
+ * names, but for eight. Names and identifiers are held as printed.
  */
 
 #include "../icdgen.h"
@@ -26,25 +26,24 @@
 typedef struct {
     /**
      * Tracking Proportional Gain: bits 0 to 31, 32-bit float. Kp3.
-     * @note Note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the control laws
-     * are in another document.
+     * @note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the control laws are in
+     * another document.
      */
     float tracking_proportional_gain;
     /**
      * Tracking Derivative Gain: bits 32 to 63, 32-bit float. Kd3.
-     * @note Note ACP-163 (open): see Tracking Proportional Gain.
+     * @note ACP-163 (open): see Tracking Proportional Gain.
      */
     float tracking_derivative_gain;
     /**
      * Tracking Integral Gain: bits 64 to 95, 32-bit float. Ki3.
-     * @note Note ACP-163 (open): see Tracking Proportional Gain.
+     * @note ACP-163 (open): see Tracking Proportional Gain.
      */
     float tracking_integral_gain;
     /**
      * Target-tracking Facet: bits 96 to 103. Body axis that is pointed at the target.
-     * @note Note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration serves actuators,
-     * sensors and facets. A facet that points to the sun or to a target as Not Used is allowed by its table and not
-     * explained.
+     * @note ACP-126 (open): AxisSelect is used where Not Used is no answer. The enumeration serves actuators, sensors
+     * and facets. A facet that points to the sun or to a target as Not Used is allowed by its table and not explained.
      */
     cubeacp_axis_select_t target_tracking_facet;
 } cubeacp_set_tracking_controller_gain_parameters_t;
@@ -86,6 +85,19 @@ static inline icd_status_t cubeacp_set_tracking_controller_gain_parameters_encod
     icdgen_store_u32le(&buffer[8], icdgen_bits_f32(&message->tracking_integral_gain));
     buffer[12] = message->target_tracking_facet;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_tracking_controller_gain_parameters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Tracking Proportional Gain", "", 0u, 32u, 1u, NULL, 0u},
+        {"Tracking Derivative Gain", "", 32u, 32u, 1u, NULL, 0u},
+        {"Tracking Integral Gain", "", 64u, 32u, 1u, NULL, 0u},
+        {"Target-tracking Facet", "", 96u, 8u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
 }
 
 #endif /* CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_H */

@@ -6,8 +6,8 @@
 /**
  * @file
  * Set Wheel Configuration: configuration, set by telecommand 22, got by telemetry 137, 4 bytes. Table 181.
- * @note Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have
- * neutral names, but for eight. Names and identifiers are held as printed.
+ * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
+ * names, but for eight. Names and identifiers are held as printed.
  */
 
 #include "../icdgen.h"
@@ -24,26 +24,26 @@
 typedef struct {
     /**
      * RW1 Configuration: bits 0 to 7.
-     * @note Note ACP-129 (open): Reaction wheels are RW1 and RW-X. Numbers in one message, axes in the other. The two
-     * agree only after the wheel configuration has been applied.
+     * @note ACP-129 (open): Reaction wheels are RW1 and RW-X. Numbers in one message, axes in the other. The two agree
+     * only after the wheel configuration has been applied.
      */
     cubeacp_axis_select_t rw1_configuration;
     /**
      * RW2 Configuration: bits 8 to 15.
-     * @note Note ACP-129 (open): see RW1 Configuration.
+     * @note ACP-129 (open): see RW1 Configuration.
      */
     cubeacp_axis_select_t rw2_configuration;
     /**
      * RW3 Configuration: bits 16 to 23.
-     * @note Note ACP-129 (open): see RW1 Configuration.
+     * @note ACP-129 (open): see RW1 Configuration.
      */
     cubeacp_axis_select_t rw3_configuration;
     /**
      * RW4 Configuration: bits 24 to 31. Wheel 4 or the momentum wheel.
-     * @note Note ACP-127 (open): Four wheels can be configured, three are reported. RW4 has a configuration. No state,
+     * @note ACP-127 (open): Four wheels can be configured, three are reported. RW4 has a configuration. No state,
      * speed, current, error flag or power switch exists for it, and speeds are by axis while currents are by number.
-     * @note Note ACP-128 (open): RW4 or Momentum wheel. One field is for the fourth wheel or for a momentum wheel; how
-     * the program tells them apart is not said, perhaps by its type.
+     * @note ACP-128 (open): RW4 or Momentum wheel. One field is for the fourth wheel or for a momentum wheel; how the
+     * program tells them apart is not said, perhaps by its type.
      */
     cubeacp_axis_select_t rw4_configuration;
 } cubeacp_set_wheel_configuration_t;
@@ -84,6 +84,19 @@ static inline icd_status_t cubeacp_set_wheel_configuration_encode(
     buffer[2] = message->rw3_configuration;
     buffer[3] = message->rw4_configuration;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_wheel_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"RW1 Configuration", "", 0u, 8u, 1u, NULL, 0u},
+        {"RW2 Configuration", "", 8u, 8u, 1u, NULL, 0u},
+        {"RW3 Configuration", "", 16u, 8u, 1u, NULL, 0u},
+        {"RW4 Configuration", "", 24u, 8u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
 }
 
 #endif /* CUBEACP_SET_WHEEL_CONFIGURATION_H */

@@ -7,8 +7,8 @@
  * @file
  * Set Wheel Speed: telecommand 17, 6 bytes. Table 82.
  * Only valid while the control mode is None.
- * @note Note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode falls back, when
- * the control mode is None. The member with value 0 is called No control.
+ * @note ACP-023 (certain): Control mode None does not exist. Telecommands are valid, and the mode falls back, when the
+ * control mode is None. The member with value 0 is called No control.
  */
 
 #include "../icdgen.h"
@@ -62,6 +62,18 @@ static inline icd_status_t cubeacp_set_wheel_speed_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->commanded_y_speed));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->commanded_z_speed));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_wheel_speed_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Commanded X speed", "rpm", 0u, 16u, 1u, NULL, 0u},
+        {"Commanded Y speed", "rpm", 16u, 16u, 1u, NULL, 0u},
+        {"Commanded Z speed", "rpm", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_SET_WHEEL_SPEED_H */

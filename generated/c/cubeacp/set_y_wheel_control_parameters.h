@@ -7,8 +7,8 @@
  * @file
  * Set Y-Wheel Control Parameters: configuration, set by telecommand 39, got by telemetry 209, 20 bytes. Table 196.
  * Gains and reference of the Y-wheel mode.
- * @note Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have
- * neutral names, but for eight. Names and identifiers are held as printed.
+ * @note ACP-125 (certain): Eight messages are named Set and can be read. Messages with a set and a get id have neutral
+ * names, but for eight. Names and identifiers are held as printed.
  */
 
 #include "../icdgen.h"
@@ -20,38 +20,39 @@
 /** Bytes of a frame, without the id. */
 #define CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_LENGTH 20u
 /** Reference Wheel Momentum in Nms: must be below this. */
-#define CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_REFERENCE_WHEEL_MOMENTUM_BELOW 0
+#define CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_REFERENCE_WHEEL_MOMENTUM_BELOW 0.0
 
 /** Raw values. */
 typedef struct {
     /**
      * Y-Momentum Control Gain: bits 0 to 31, 32-bit float. Kh.
-     * @note Note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the control laws
-     * are in another document.
-     * @note Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel. The message is for the Y-wheel, its gains are
-     * for Y-Momentum and Y-momentum, capital and small.
+     * @note ACP-163 (open): Gains have no units. Controller gains are floats without units, and the control laws are in
+     * another document.
+     * @note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel. The message is for the Y-wheel, its gains are for
+     * Y-Momentum and Y-momentum, capital and small.
      */
     float y_momentum_control_gain;
     /**
      * Y-momentum Nutation Damping Gain: bits 32 to 63, 32-bit float. Kn.
-     * @note Note ACP-163 (open): see Y-Momentum Control Gain.
-     * @note Note ACP-164 (certain): see Y-Momentum Control Gain.
+     * @note ACP-163 (open): see Y-Momentum Control Gain.
+     * @note ACP-164 (certain): see Y-Momentum Control Gain.
      */
     float y_momentum_nutation_damping_gain;
     /**
      * Y-momentum Proportional Gain: bits 64 to 95, 32-bit float. Kp1.
-     * @note Note ACP-163 (open): see Y-Momentum Control Gain.
+     * @note ACP-163 (open): see Y-Momentum Control Gain.
      */
     float y_momentum_proportional_gain;
     /**
      * Y-momentum Derivative Gain: bits 96 to 127, 32-bit float. Kd1.
-     * @note Note ACP-163 (open): see Y-Momentum Control Gain.
+     * @note ACP-163 (open): see Y-Momentum Control Gain.
      */
     float y_momentum_derivative_gain;
     /**
-     * Reference Wheel Momentum: bits 128 to 159, 32-bit float, in Nms. H-ref. Must be below 0 Nms.
-     * @note Note ACP-162 (certain): Limits of a sign in words only. Two references must always be smaller than 0; the
-     * types allow the opposite, and what the program does with it is not said.
+     * Reference Wheel Momentum: bits 128 to 159, 32-bit float, in Nms. H-ref. Must be below 0 Nms, which setters do not
+     * check.
+     * @note ACP-162 (certain): Limits of a sign in words only. Two references must always be smaller than 0; the types
+     * allow the opposite, and what the program does with it is not said.
      */
     float reference_wheel_momentum;
 } cubeacp_set_y_wheel_control_parameters_t;
@@ -94,6 +95,23 @@ static inline icd_status_t cubeacp_set_y_wheel_control_parameters_encode(
     icdgen_store_u32le(&buffer[12], icdgen_bits_f32(&message->y_momentum_derivative_gain));
     icdgen_store_u32le(&buffer[16], icdgen_bits_f32(&message->reference_wheel_momentum));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_set_y_wheel_control_parameters_fields(size_t *count)
+{
+    static const icd_limit_t limits[] = {
+        {ICD_LIMIT_BELOW, 0.0},
+    };
+    static const icd_field_t fields[] = {
+        {"Y-Momentum Control Gain", "", 0u, 32u, 1u, NULL, 0u},
+        {"Y-momentum Nutation Damping Gain", "", 32u, 32u, 1u, NULL, 0u},
+        {"Y-momentum Proportional Gain", "", 64u, 32u, 1u, NULL, 0u},
+        {"Y-momentum Derivative Gain", "", 96u, 32u, 1u, NULL, 0u},
+        {"Reference Wheel Momentum", "Nms", 128u, 32u, 1u, &limits[0], 1u},
+    };
+    *count = 5u;
+    return fields;
 }
 
 #endif /* CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_H */

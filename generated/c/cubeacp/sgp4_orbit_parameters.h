@@ -29,8 +29,8 @@ typedef struct {
     double argument_of_perigee;
     /**
      * B-Star drag term: bits 256 to 319, 64-bit float.
-     * @note Note ACP-161 (open): B-Star has no unit. The drag term of two-line elements is per earth radius; the table
-     * has none.
+     * @note ACP-161 (open): B-Star has no unit. The drag term of two-line elements is per earth radius; the table has
+     * none.
      */
     double b_star_drag_term;
     /** Mean Motion: bits 320 to 383, 64-bit float, in orbits/day. */
@@ -39,8 +39,8 @@ typedef struct {
     double mean_anomaly;
     /**
      * Epoch: bits 448 to 511, 64-bit float, in year.day. Year and day in one number.
-     * @note Note ACP-160 (open): Epoch: year.day. The unit is a format. Two or four digits of the year, and whether day
-     * 1 is the first of January, are left open; as a fraction of a year it would be something else.
+     * @note ACP-160 (open): Epoch: year.day. The unit is a format. Two or four digits of the year, and whether day 1 is
+     * the first of January, are left open; as a fraction of a year it would be something else.
      */
     double epoch;
 } cubeacp_sgp4_orbit_parameters_t;
@@ -75,6 +75,23 @@ static inline icd_status_t cubeacp_sgp4_orbit_parameters_encode(
     }
     ICDGEN_WRITE_ROW_LE(cubeacp_sgp4_orbit_parameters_t, message, &buffer[0], 8u, inclination, epoch);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_sgp4_orbit_parameters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Inclination", "deg", 0u, 64u, 1u, NULL, 0u},
+        {"Eccentricity", "", 64u, 64u, 1u, NULL, 0u},
+        {"Right-ascension of the Ascending Node", "deg", 128u, 64u, 1u, NULL, 0u},
+        {"Argument of Perigee", "deg", 192u, 64u, 1u, NULL, 0u},
+        {"B-Star drag term", "", 256u, 64u, 1u, NULL, 0u},
+        {"Mean Motion", "orbits/day", 320u, 64u, 1u, NULL, 0u},
+        {"Mean Anomaly", "deg", 384u, 64u, 1u, NULL, 0u},
+        {"Epoch", "year.day", 448u, 64u, 1u, NULL, 0u},
+    };
+    *count = 8u;
+    return fields;
 }
 
 #endif /* CUBEACP_SGP4_ORBIT_PARAMETERS_H */

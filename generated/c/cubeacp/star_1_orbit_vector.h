@@ -20,20 +20,20 @@
 typedef struct {
     /**
      * Star1OX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the orbit frame.
-     * @note Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of
-     * which it is one component; names abbreviate body and orbit to a letter.
+     * @note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of which it
+     * is one component; names abbreviate body and orbit to a letter.
      */
     int16_t star1_orbit_x;
     /**
      * Star1OY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the orbit
      * frame.
-     * @note Note ACP-091 (certain): see Star1OX.
+     * @note ACP-091 (certain): see Star1OX.
      */
     int16_t star1_orbit_y;
     /**
      * Star1OZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the orbit
      * frame.
-     * @note Note ACP-091 (certain): see Star1OX.
+     * @note ACP-091 (certain): see Star1OX.
      */
     int16_t star1_orbit_z;
 } cubeacp_star_1_orbit_vector_t;
@@ -72,6 +72,18 @@ static inline icd_status_t cubeacp_star_1_orbit_vector_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->star1_orbit_y));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->star1_orbit_z));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_1_orbit_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Star1OX", "", 0u, 16u, 1u, NULL, 0u},
+        {"Star1OY", "", 16u, 16u, 1u, NULL, 0u},
+        {"Star1OZ", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Star1OX in millionths, exact: -3276800 to 3276700. */

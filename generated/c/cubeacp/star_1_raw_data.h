@@ -21,19 +21,19 @@
 typedef struct {
     /**
      * Catalogue Star 1: bits 0 to 15, raw 0 to 65535. Number in the star catalogue.
-     * @note Note ACP-117 (open): Catalogue number or catalogue index. The frames are described with an index, their
-     * fields with a number of a catalogue that is not named.
+     * @note ACP-117 (open): Catalogue number or catalogue index. The frames are described with an index, their fields
+     * with a number of a catalogue that is not named.
      */
     uint16_t catalogue_star_1;
     /**
      * Centroid X Star 1: bits 16 to 31, raw -32768 to 32767.
-     * @note Note ACP-116 (open): Star centroids have no scale. Signed 16-bit centroids without pixel, angle or factor;
-     * the configuration has the image centre as a float in pixels.
+     * @note ACP-116 (open): Star centroids have no scale. Signed 16-bit centroids without pixel, angle or factor; the
+     * configuration has the image centre as a float in pixels.
      */
     int16_t centroid_x_star_1;
     /**
      * Centroid Y Star 1: bits 32 to 47, raw -32768 to 32767.
-     * @note Note ACP-116 (open): see Centroid X Star 1.
+     * @note ACP-116 (open): see Centroid X Star 1.
      */
     int16_t centroid_y_star_1;
 } cubeacp_star_1_raw_data_t;
@@ -72,6 +72,18 @@ static inline icd_status_t cubeacp_star_1_raw_data_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->centroid_x_star_1));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->centroid_y_star_1));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_1_raw_data_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Catalogue Star 1", "", 0u, 16u, 1u, NULL, 0u},
+        {"Centroid X Star 1", "", 16u, 16u, 1u, NULL, 0u},
+        {"Centroid Y Star 1", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_STAR_1_RAW_DATA_H */

@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * Star2BX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the body frame.
-     * @note Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of
-     * which it is one component; names abbreviate body and orbit to a letter.
+     * @note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of which it
+     * is one component; names abbreviate body and orbit to a letter.
      */
     int16_t star2_body_x;
     /**
      * Star2BY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the body frame.
-     * @note Note ACP-091 (certain): see Star2BX.
+     * @note ACP-091 (certain): see Star2BX.
      */
     int16_t star2_body_y;
     /**
      * Star2BZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the body frame.
-     * @note Note ACP-091 (certain): see Star2BX.
+     * @note ACP-091 (certain): see Star2BX.
      */
     int16_t star2_body_z;
 } cubeacp_star_2_body_vector_t;
@@ -70,6 +70,18 @@ static inline icd_status_t cubeacp_star_2_body_vector_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->star2_body_y));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->star2_body_z));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_2_body_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Star2BX", "", 0u, 16u, 1u, NULL, 0u},
+        {"Star2BY", "", 16u, 16u, 1u, NULL, 0u},
+        {"Star2BZ", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Star2BX in millionths, exact: -3276800 to 3276700. */

@@ -20,20 +20,20 @@
 typedef struct {
     /**
      * Star2OX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the orbit frame.
-     * @note Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of
-     * which it is one component; names abbreviate body and orbit to a letter.
+     * @note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of which it
+     * is one component; names abbreviate body and orbit to a letter.
      */
     int16_t star2_orbit_x;
     /**
      * Star2OY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the orbit
      * frame.
-     * @note Note ACP-091 (certain): see Star2OX.
+     * @note ACP-091 (certain): see Star2OX.
      */
     int16_t star2_orbit_y;
     /**
      * Star2OZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the orbit
      * frame.
-     * @note Note ACP-091 (certain): see Star2OX.
+     * @note ACP-091 (certain): see Star2OX.
      */
     int16_t star2_orbit_z;
 } cubeacp_star_2_orbit_vector_t;
@@ -72,6 +72,18 @@ static inline icd_status_t cubeacp_star_2_orbit_vector_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->star2_orbit_y));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->star2_orbit_z));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_2_orbit_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Star2OX", "", 0u, 16u, 1u, NULL, 0u},
+        {"Star2OY", "", 16u, 16u, 1u, NULL, 0u},
+        {"Star2OZ", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Star2OX in millionths, exact: -3276800 to 3276700. */

@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * Star3BX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the body frame.
-     * @note Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of
-     * which it is one component; names abbreviate body and orbit to a letter.
+     * @note ACP-091 (certain): Star vectors: X-vector is a component. Each field is described as a vector, of which it
+     * is one component; names abbreviate body and orbit to a letter.
      */
     int16_t star3_body_x;
     /**
      * Star3BY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the body frame.
-     * @note Note ACP-091 (certain): see Star3BX.
+     * @note ACP-091 (certain): see Star3BX.
      */
     int16_t star3_body_y;
     /**
      * Star3BZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767. Vector in the body frame.
-     * @note Note ACP-091 (certain): see Star3BX.
+     * @note ACP-091 (certain): see Star3BX.
      */
     int16_t star3_body_z;
 } cubeacp_star_3_body_vector_t;
@@ -70,6 +70,18 @@ static inline icd_status_t cubeacp_star_3_body_vector_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->star3_body_y));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->star3_body_z));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_3_body_vector_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Star3BX", "", 0u, 16u, 1u, NULL, 0u},
+        {"Star3BY", "", 16u, 16u, 1u, NULL, 0u},
+        {"Star3BZ", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Star3BX in millionths, exact: -3276800 to 3276700. */

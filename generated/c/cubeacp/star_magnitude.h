@@ -21,18 +21,18 @@
 typedef struct {
     /**
      * Magnitude Star 1: bits 0 to 15, raw 0 to 65535. Instrument magnitude.
-     * @note Note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16 bits without a factor can
-     * be neither fractional nor negative.
+     * @note ACP-092 (open): Star magnitudes have no scale. An instrument magnitude of 16 bits without a factor can be
+     * neither fractional nor negative.
      */
     uint16_t magnitude_star_1;
     /**
      * Magnitude Star 2: bits 16 to 31, raw 0 to 65535. Instrument magnitude.
-     * @note Note ACP-092 (open): see Magnitude Star 1.
+     * @note ACP-092 (open): see Magnitude Star 1.
      */
     uint16_t magnitude_star_2;
     /**
      * Magnitude Star 3: bits 32 to 47, raw 0 to 65535. Instrument magnitude.
-     * @note Note ACP-092 (open): see Magnitude Star 1.
+     * @note ACP-092 (open): see Magnitude Star 1.
      */
     uint16_t magnitude_star_3;
 } cubeacp_star_magnitude_t;
@@ -71,6 +71,18 @@ static inline icd_status_t cubeacp_star_magnitude_encode(
     icdgen_store_u16le(&buffer[2], message->magnitude_star_2);
     icdgen_store_u16le(&buffer[4], message->magnitude_star_3);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_magnitude_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Magnitude Star 1", "", 0u, 16u, 1u, NULL, 0u},
+        {"Magnitude Star 2", "", 16u, 16u, 1u, NULL, 0u},
+        {"Magnitude Star 3", "", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_STAR_MAGNITUDE_H */

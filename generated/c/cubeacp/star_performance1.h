@@ -8,7 +8,7 @@
  * Star Performance1: telemetry 188, 6 bytes. Table 146.
  * Quality of the star measurement, frame 1.
  * Bit 52 of the log mask.
- * @note Note ACP-096 (certain): Star Performance2 has the description of Star Performance1. Both are described as
+ * @note ACP-096 (certain): Star Performance2 has the description of Star Performance1. Both are described as
  * performance parameters of the star measurement; the second holds flags, a period and confidences.
  */
 
@@ -24,30 +24,30 @@
 typedef struct {
     /**
      * Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
-     * @note Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel value. What is
-     * counted stands in place of a unit; noise repeats the name. They are kept as units of counts.
+     * @note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel value. What is counted
+     * stands in place of a unit; noise repeats the name. They are kept as units of counts.
      */
     uint8_t number_of_stars_detected;
     /**
      * Star image noise: bits 8 to 15, raw 0 to 255, in noise.
-     * @note Note ACP-093 (certain): see Number of stars detected.
+     * @note ACP-093 (certain): see Number of stars detected.
      */
     uint8_t star_image_noise;
     /**
      * Invalid Stars: bits 16 to 23, raw 0 to 255, in Invalid stars. How many of the detected stars are invalid.
-     * @note Note ACP-093 (certain): see Number of stars detected.
+     * @note ACP-093 (certain): see Number of stars detected.
      */
     uint8_t invalid_stars;
     /**
      * Number of stars identified: bits 24 to 31, raw 0 to 255, in stars.
-     * @note Note ACP-093 (certain): see Number of stars detected.
+     * @note ACP-093 (certain): see Number of stars detected.
      */
     uint8_t number_of_stars_identified;
     /** Identification mode: bits 32 to 39. */
     cubeacp_star_id_mode_val_t identification_mode;
     /**
      * Image dark value: bits 40 to 47, raw 0 to 255, in 8-bit pixel value. Mean of the centre line of the image.
-     * @note Note ACP-093 (certain): see Number of stars detected.
+     * @note ACP-093 (certain): see Number of stars detected.
      */
     uint8_t image_dark_value;
 } cubeacp_star_performance1_t;
@@ -92,6 +92,21 @@ static inline icd_status_t cubeacp_star_performance1_encode(
     buffer[4] = message->identification_mode;
     buffer[5] = message->image_dark_value;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_performance1_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Number of stars detected", "stars", 0u, 8u, 1u, NULL, 0u},
+        {"Star image noise", "noise", 8u, 8u, 1u, NULL, 0u},
+        {"Invalid Stars", "Invalid stars", 16u, 8u, 1u, NULL, 0u},
+        {"Number of stars identified", "stars", 24u, 8u, 1u, NULL, 0u},
+        {"Identification mode", "", 32u, 8u, 1u, NULL, 0u},
+        {"Image dark value", "8-bit pixel value", 40u, 8u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
 }
 
 #endif /* CUBEACP_STAR_PERFORMANCE1_H */

@@ -8,7 +8,7 @@
  * Star Performance2: telemetry 231, 6 bytes. Table 174.
  * Quality of the star measurement, frame 2.
  * Bit 64 of the log mask.
- * @note Note ACP-096 (certain): Star Performance2 has the description of Star Performance1. Both are described as
+ * @note ACP-096 (certain): Star Performance2 has the description of Star Performance1. Both are described as
  * performance parameters of the star measurement; the second holds flags, a period and confidences.
  */
 
@@ -29,8 +29,8 @@ typedef struct {
     bool identification_success;
     /**
      * AttitudeSuccess: bit 3.
-     * @note Note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags before it have blanks, as
-     * its description has.
+     * @note ACP-115 (certain): AttitudeSuccess is written in one piece. The three flags before it have blanks, as its
+     * description has.
      */
     bool attitude_success;
     /** Processing Time Error: bit 4. */
@@ -43,8 +43,7 @@ typedef struct {
     bool comms_error;
     /**
      * Sample Period: bits 8 to 23, raw 0 to 65535.
-     * @note Note ACP-113 (open): Sample period of the star tracker has no unit. Other times of the star tracker are in
-     * ms.
+     * @note ACP-113 (open): Sample period of the star tracker has no unit. Other times of the star tracker are in ms.
      */
     uint16_t sample_period;
     /**
@@ -123,6 +122,27 @@ static inline icd_status_t cubeacp_star_performance2_encode(
     buffer[4] = message->star_2_confidence;
     buffer[5] = message->star_3_confidence;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_performance2_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Image Capture Success", "", 0u, 1u, 1u, NULL, 0u},
+        {"Detection Success", "", 1u, 1u, 1u, NULL, 0u},
+        {"Identification Success", "", 2u, 1u, 1u, NULL, 0u},
+        {"AttitudeSuccess", "", 3u, 1u, 1u, NULL, 0u},
+        {"Processing Time Error", "", 4u, 1u, 1u, NULL, 0u},
+        {"Tracking Module Enabled", "", 5u, 1u, 1u, NULL, 0u},
+        {"Prediction Enabled", "", 6u, 1u, 1u, NULL, 0u},
+        {"Comms error", "", 7u, 1u, 1u, NULL, 0u},
+        {"Sample Period", "", 8u, 16u, 1u, NULL, 0u},
+        {"Star 1 confidence", "%", 24u, 8u, 1u, NULL, 0u},
+        {"Star 2 confidence", "%", 32u, 8u, 1u, NULL, 0u},
+        {"Star 3 confidence", "%", 40u, 8u, 1u, NULL, 0u},
+    };
+    *count = 12u;
+    return fields;
 }
 
 #endif /* CUBEACP_STAR_PERFORMANCE2_H */

@@ -63,4 +63,16 @@ static inline icd_status_t cubeacp_star_timing_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_star_timing_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Capture", "ms", 0u, 16u, 1u, NULL, 0u},
+        {"Detection", "ms", 16u, 16u, 1u, NULL, 0u},
+        {"Identification", "ms", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_STAR_TIMING_H */

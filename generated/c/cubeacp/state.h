@@ -7,8 +7,8 @@
  * @file
  * CubeACP State: telemetry 135, 1 byte. Table 101.
  * Errors in loading settings from flash and in using the SD card.
- * @note Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0
- * and ignored.
+ * @note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor explained. They are written 0 and
+ * ignored.
  */
 
 #include "../icdgen.h"
@@ -22,19 +22,19 @@
 typedef struct {
     /**
      * ADCS Config Load Error: bit 0. Reading it from flash failed.
-     * @note Note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS configuration, the
-     * orbit parameters and the system configuration. Telecommands save the current configuration and the orbit
-     * parameters; which the first covers is not said.
+     * @note ACP-054 (open): Two saves for three stored sets. Loading can fail for the ADCS configuration, the orbit
+     * parameters and the system configuration. Telecommands save the current configuration and the orbit parameters;
+     * which the first covers is not said.
      */
     bool adcs_config_load_error;
     /**
      * Orbit Parameter Load Error: bit 1. Reading them from flash failed.
-     * @note Note ACP-054 (open): see ADCS Config Load Error.
+     * @note ACP-054 (open): see ADCS Config Load Error.
      */
     bool orbit_parameter_load_error;
     /**
      * System Configuration Load Error: bit 2. Reading it from flash failed.
-     * @note Note ACP-054 (open): see ADCS Config Load Error.
+     * @note ACP-054 (open): see ADCS Config Load Error.
      */
     bool system_configuration_load_error;
     /** SD card initialisation error: bit 3. */
@@ -91,6 +91,21 @@ static inline icd_status_t cubeacp_state_encode(
         sd_card_initialisation_error);
     buffer[0] = ICDGEN_U8(flags_0 | (message->sd_card_read_error << 4) | (message->sd_card_write_error << 5));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_state_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"ADCS Config Load Error", "", 0u, 1u, 1u, NULL, 0u},
+        {"Orbit Parameter Load Error", "", 1u, 1u, 1u, NULL, 0u},
+        {"System Configuration Load Error", "", 2u, 1u, 1u, NULL, 0u},
+        {"SD card initialisation error", "", 3u, 1u, 1u, NULL, 0u},
+        {"SD card read error", "", 4u, 1u, 1u, NULL, 0u},
+        {"SD card write error", "", 5u, 1u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
 }
 
 #endif /* CUBEACP_STATE_H */

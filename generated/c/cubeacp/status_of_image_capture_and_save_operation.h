@@ -6,8 +6,8 @@
 /**
  * @file
  * Status of Image Capture and Save Operation: telemetry 233, 2 bytes. Table 176.
- * @note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request
- * sent to the wrong program is taken for another one.
+ * @note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader. A telecommand or request sent
+ * to the wrong program is taken for another one.
  */
 
 #include "../icdgen.h"
@@ -24,8 +24,8 @@ typedef struct {
     uint8_t percentage_complete;
     /**
      * Status: bits 8 to 15.
-     * @note Note ACP-124 (open): Image status: no value for busy or done. The status of the operation lists errors
-     * only, so No Error stands for not started, running and finished.
+     * @note ACP-124 (open): Image status: no value for busy or done. The status of the operation lists errors only, so
+     * No Error stands for not started, running and finished.
      */
     cubeacp_im_save_status_t status;
 } cubeacp_status_of_image_capture_and_save_operation_t;
@@ -63,6 +63,17 @@ static inline icd_status_t cubeacp_status_of_image_capture_and_save_operation_en
     buffer[0] = message->percentage_complete;
     buffer[1] = message->status;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_status_of_image_capture_and_save_operation_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Percentage Complete", "%", 0u, 8u, 1u, NULL, 0u},
+        {"Status", "", 8u, 8u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_H */

@@ -23,20 +23,20 @@
 typedef struct {
     /**
      * Geocentric longitude of target: bits 0 to 31, 32-bit float, in deg.
-     * @note Note ACP-138 (open): Target is geocentric, position is geodetic. The target is given by geocentric latitude
-     * and altitude, the satellite by WGS-84 ones; and longitude comes first here, latitude there. What a geocentric
+     * @note ACP-138 (open): Target is geocentric, position is geodetic. The target is given by geocentric latitude and
+     * altitude, the satellite by WGS-84 ones; and longitude comes first here, latitude there. What a geocentric
      * altitude is measured from is not said.
      */
     float geocentric_longitude_of_target;
     /**
      * Geocentric latitude of target: bits 32 to 63, 32-bit float, in deg.
-     * @note Note ACP-138 (open): see Geocentric longitude of target.
+     * @note ACP-138 (open): see Geocentric longitude of target.
      */
     float geocentric_latitude_of_target;
     /**
      * Geocentric altitude of target: bits 64 to 95, 32-bit float, in m.
      * @note Erratum ACP-139 (certain): meter is m. The unit is spelt out in one field.
-     * @note Note ACP-138 (open): see Geocentric longitude of target.
+     * @note ACP-138 (open): see Geocentric longitude of target.
      */
     float geocentric_altitude_of_target;
 } cubeacp_tracking_controller_target_reference_t;
@@ -76,6 +76,18 @@ static inline icd_status_t cubeacp_tracking_controller_target_reference_encode(
     icdgen_store_u32le(&buffer[4], icdgen_bits_f32(&message->geocentric_latitude_of_target));
     icdgen_store_u32le(&buffer[8], icdgen_bits_f32(&message->geocentric_altitude_of_target));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_tracking_controller_target_reference_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Geocentric longitude of target", "deg", 0u, 32u, 1u, NULL, 0u},
+        {"Geocentric latitude of target", "deg", 32u, 32u, 1u, NULL, 0u},
+        {"Geocentric altitude of target", "m", 64u, 32u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_H */

@@ -54,4 +54,11 @@ static inline icd_status_t cubeacp_trigger_adcs_loop_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_trigger_adcs_loop_fields(size_t *count)
+{
+    *count = 0u;
+    return NULL;
+}
+
 #endif /* CUBEACP_TRIGGER_ADCS_LOOP_H */

@@ -7,7 +7,7 @@
  * @file
  * Trigger ADCS Loop with Simulated Sensor Data: telecommand 19, 127 bytes. Table 84.
  * Runs the control loop once on the given measurements. Only valid while ADCS Run Mode is Triggered.
- * @note Note ACP-032 (open): Simulated data are accepted while triggered, not while simulating. The telecommand with
+ * @note ACP-032 (open): Simulated data are accepted while triggered, not while simulating. The telecommand with
  * simulated measurements is valid only in mode Triggered, and there is a mode Simulation that no other text mentions.
  * The sentence was probably taken over from the telecommand before it.
  */
@@ -26,318 +26,317 @@ typedef struct {
     uint32_t unix_time;
     /**
      * Css Raw 1: bits 32 to 47, raw 0 to 65535.
-     * @note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8. The raw values of the
-     * coarse sun sensors are twice as wide as in the frames that report them. Whether more than 255 may be sent is not
-     * said.
+     * @note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8. The raw values of the coarse sun
+     * sensors are twice as wide as in the frames that report them. Whether more than 255 may be sent is not said.
      */
     uint16_t css_raw_1;
     /**
      * Css Raw 2: bits 48 to 63, raw 0 to 65535.
-     * @note Note ACP-033 (open): see Css Raw 1.
+     * @note ACP-033 (open): see Css Raw 1.
      */
     uint16_t css_raw_2;
     /**
      * Css Raw 3: bits 64 to 79, raw 0 to 65535.
-     * @note Note ACP-033 (open): see Css Raw 1.
+     * @note ACP-033 (open): see Css Raw 1.
      */
     uint16_t css_raw_3;
     /**
      * Css Raw 4: bits 80 to 95, raw 0 to 65535.
-     * @note Note ACP-033 (open): see Css Raw 1.
+     * @note ACP-033 (open): see Css Raw 1.
      */
     uint16_t css_raw_4;
     /**
      * Css Raw 5: bits 96 to 111, raw 0 to 65535.
-     * @note Note ACP-033 (open): see Css Raw 1.
+     * @note ACP-033 (open): see Css Raw 1.
      */
     uint16_t css_raw_5;
     /**
      * Css Raw 6: bits 112 to 127, raw 0 to 65535.
-     * @note Note ACP-033 (open): see Css Raw 1.
+     * @note ACP-033 (open): see Css Raw 1.
      */
     uint16_t css_raw_6;
     /**
      * Css Raw 7: bits 128 to 143, raw 0 to 65535.
-     * @note Note ACP-033 (open): see Css Raw 1.
+     * @note ACP-033 (open): see Css Raw 1.
      */
     uint16_t css_raw_7;
     /**
      * Css Raw 8: bits 144 to 159, raw 0 to 65535.
-     * @note Note ACP-033 (open): see Css Raw 1.
+     * @note ACP-033 (open): see Css Raw 1.
      */
     uint16_t css_raw_8;
     /**
      * Css Raw 9: bits 160 to 175, raw 0 to 65535.
-     * @note Note ACP-033 (open): see Css Raw 1.
+     * @note ACP-033 (open): see Css Raw 1.
      */
     uint16_t css_raw_9;
     /**
      * Css Raw 10: bits 176 to 191, raw 0 to 65535.
-     * @note Note ACP-033 (open): see Css Raw 1.
+     * @note ACP-033 (open): see Css Raw 1.
      */
     uint16_t css_raw_10;
     /**
      * Cam1 Raw X: bits 192 to 207, raw -32768 to 32767. Raw angle.
-     * @note Note ACP-036 (open): Simulated data: raw camera angles. They are called raw angles here, centroids by name
-     * and azimuth and elevation by description in the frames. No scale is given in any.
-     * @note Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The telecommand begins with
-     * Cam1. Frame 194 and the ids 166 and 167 have Cam2 before Cam1.
+     * @note ACP-036 (open): Simulated data: raw camera angles. They are called raw angles here, centroids by name and
+     * azimuth and elevation by description in the frames. No scale is given in any.
+     * @note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first. The telecommand begins with Cam1.
+     * Frame 194 and the ids 166 and 167 have Cam2 before Cam1.
      */
     int16_t cam1_raw_x;
     /**
      * Cam1 Raw Y: bits 208 to 223, raw -32768 to 32767. Raw angle.
-     * @note Note ACP-036 (open): see Cam1 Raw X.
+     * @note ACP-036 (open): see Cam1 Raw X.
      */
     int16_t cam1_raw_y;
     /**
      * Cam1 Busy: bits 224 to 231, raw 0 to 255. Capture status.
-     * @note Note ACP-035 (likely): Simulated data: camera results are plain numbers. Capture status and detection
-     * result are unsigned integers here and enumerations in the frames. The first is called Busy although it is a
-     * status of six values.
+     * @note ACP-035 (likely): Simulated data: camera results are plain numbers. Capture status and detection result are
+     * unsigned integers here and enumerations in the frames. The first is called Busy although it is a status of six
+     * values.
      */
     uint8_t cam1_busy;
     /**
      * Cam1 Result: bits 232 to 239, raw 0 to 255. Detection result.
-     * @note Note ACP-035 (likely): see Cam1 Busy.
+     * @note ACP-035 (likely): see Cam1 Busy.
      */
     uint8_t cam1_result;
     /**
      * Cam2 Raw X: bits 240 to 255, raw -32768 to 32767. Raw angle.
-     * @note Note ACP-036 (open): see Cam1 Raw X.
-     * @note Note ACP-038 (certain): see Cam1 Raw X.
+     * @note ACP-036 (open): see Cam1 Raw X.
+     * @note ACP-038 (certain): see Cam1 Raw X.
      */
     int16_t cam2_raw_x;
     /**
      * Cam2 Raw Y: bits 256 to 271, raw -32768 to 32767. Raw angle.
-     * @note Note ACP-036 (open): see Cam1 Raw X.
+     * @note ACP-036 (open): see Cam1 Raw X.
      */
     int16_t cam2_raw_y;
     /**
      * Cam2 Busy: bits 272 to 279, raw 0 to 255. Capture status.
-     * @note Note ACP-035 (likely): see Cam1 Busy.
+     * @note ACP-035 (likely): see Cam1 Busy.
      */
     uint8_t cam2_busy;
     /**
      * Cam2 Result: bits 280 to 287, raw 0 to 255. Detection result.
-     * @note Note ACP-035 (likely): see Cam1 Busy.
+     * @note ACP-035 (likely): see Cam1 Busy.
      */
     uint8_t cam2_result;
     /**
      * Mag Raw X: bits 288 to 303, raw -32768 to 32767.
-     * @note Note ACP-041 (open): Simulated data: the second magnetometer is missing. One magnetometer can be simulated,
-     * and nothing says which one it stands for when the modes select another.
+     * @note ACP-041 (open): Simulated data: the second magnetometer is missing. One magnetometer can be simulated, and
+     * nothing says which one it stands for when the modes select another.
      */
     int16_t mag_raw_x;
     /**
      * Mag Raw Y: bits 304 to 319, raw -32768 to 32767.
-     * @note Note ACP-041 (open): see Mag Raw X.
+     * @note ACP-041 (open): see Mag Raw X.
      */
     int16_t mag_raw_y;
     /**
      * Mag Raw Z: bits 320 to 335, raw -32768 to 32767.
-     * @note Note ACP-041 (open): see Mag Raw X.
+     * @note ACP-041 (open): see Mag Raw X.
      */
     int16_t mag_raw_z;
     /**
      * Rate Raw X: bits 336 to 367, raw -2147483648 to 2147483647.
-     * @note Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16. The raw rates are twice as wide
-     * as in the frames that report them, without a scale in either.
+     * @note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16. The raw rates are twice as wide as in
+     * the frames that report them, without a scale in either.
      */
     int32_t rate_raw_x;
     /**
      * Rate Raw Y: bits 368 to 399, raw -2147483648 to 2147483647.
-     * @note Note ACP-034 (open): see Rate Raw X.
+     * @note ACP-034 (open): see Rate Raw X.
      */
     int32_t rate_raw_y;
     /**
      * Rate Raw Z: bits 400 to 431, raw -2147483648 to 2147483647.
-     * @note Note ACP-034 (open): see Rate Raw X.
+     * @note ACP-034 (open): see Rate Raw X.
      */
     int32_t rate_raw_z;
     /**
      * Wheel Raw X: bits 432 to 447, raw -32768 to 32767, in rpm.
-     * @note Note ACP-040 (open): Simulated data: raw wheel speeds in rpm. The wheel speed is called raw and has a unit;
-     * the frame with the same unit is among the calibrated measurements.
+     * @note ACP-040 (open): Simulated data: raw wheel speeds in rpm. The wheel speed is called raw and has a unit; the
+     * frame with the same unit is among the calibrated measurements.
      */
     int16_t wheel_raw_x;
     /**
      * Wheel Raw Y: bits 448 to 463, raw -32768 to 32767, in rpm.
-     * @note Note ACP-040 (open): see Wheel Raw X.
+     * @note ACP-040 (open): see Wheel Raw X.
      */
     int16_t wheel_raw_y;
     /**
      * Wheel Raw Z: bits 464 to 479, raw -32768 to 32767, in rpm.
-     * @note Note ACP-040 (open): see Wheel Raw X.
+     * @note ACP-040 (open): see Wheel Raw X.
      */
     int16_t wheel_raw_z;
     /**
      * Star1CameraX: bits 480 to 495, raw -32768 to 32767. Vector in the camera frame.
-     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames. Star vectors have a
-     * factor in telemetry and none here, and are in camera and inertial instead of body and orbit axes.
+     * @note ACP-037 (open): Simulated data: star vectors without a formula, in other frames. Star vectors have a factor
+     * in telemetry and none here, and are in camera and inertial instead of body and orbit axes.
      */
     int16_t star1_camera_x;
     /**
      * Star1CameraY: bits 496 to 511, raw -32768 to 32767. Vector in the camera frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star1_camera_y;
     /**
      * Star1CameraZ: bits 512 to 527, raw -32768 to 32767. Vector in the camera frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star1_camera_z;
     /**
      * Star1InertialX: bits 528 to 543, raw -32768 to 32767. Vector in the inertial frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star1_inertial_x;
     /**
      * Star1InertialY: bits 544 to 559, raw -32768 to 32767. Vector in the inertial frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star1_inertial_y;
     /**
      * Star1InertialZ: bits 560 to 575, raw -32768 to 32767. Vector in the inertial frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star1_inertial_z;
     /**
      * Star2CameraX: bits 576 to 591, raw -32768 to 32767. Vector in the camera frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star2_camera_x;
     /**
      * Star2CameraY: bits 592 to 607, raw -32768 to 32767. Vector in the camera frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star2_camera_y;
     /**
      * Star2CameraZ: bits 608 to 623, raw -32768 to 32767. Vector in the camera frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star2_camera_z;
     /**
      * Star2InertialX: bits 624 to 639, raw -32768 to 32767. Vector in the inertial frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star2_inertial_x;
     /**
      * Star2InertialY: bits 640 to 655, raw -32768 to 32767. Vector in the inertial frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star2_inertial_y;
     /**
      * Star2InertialZ: bits 656 to 671, raw -32768 to 32767. Vector in the inertial frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star2_inertial_z;
     /**
      * Star3CameraX: bits 672 to 687, raw -32768 to 32767. Vector in the camera frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star3_camera_x;
     /**
      * Star3CameraY: bits 688 to 703, raw -32768 to 32767. Vector in the camera frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star3_camera_y;
     /**
      * Star3CameraZ: bits 704 to 719, raw -32768 to 32767. Vector in the camera frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star3_camera_z;
     /**
      * Star3InertialX: bits 720 to 735, raw -32768 to 32767. Vector in the inertial frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star3_inertial_x;
     /**
      * Star3InertialY: bits 736 to 751, raw -32768 to 32767. Vector in the inertial frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star3_inertial_y;
     /**
      * Star3InertialZ: bits 752 to 767, raw -32768 to 32767. Vector in the inertial frame.
-     * @note Note ACP-037 (open): see Star1CameraX.
+     * @note ACP-037 (open): see Star1CameraX.
      */
     int16_t star3_inertial_z;
     /**
      * Gps Solution Status: bits 768 to 775.
-     * @note Note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands among fields with GPS,
-     * and the sun sensors are Css in the same telecommand.
+     * @note ACP-042 (certain): GPS is spelt Gps in one field. Gps Solution Status stands among fields with GPS, and the
+     * sun sensors are Css in the same telecommand.
      */
     cubeacp_gps_solution_status_t gps_solution_status;
     /**
      * GPS Reference Week: bits 776 to 791, raw 0 to 65535.
-     * @note Note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full week, ten of
-     * which a receiver sends. A number of roll-overs is a setting, so it is open which of the two this is.
+     * @note ACP-089 (open): GPS week: with or without roll-overs. Sixteen bits can hold the full week, ten of which a
+     * receiver sends. A number of roll-overs is a setting, so it is open which of the two this is.
      */
     uint16_t gps_reference_week;
     /** GPS Time Milliseconds: bits 792 to 823, raw 0 to 4294967295, in ms. */
     uint32_t gps_time_milliseconds;
     /**
      * ECEF Position X: bits 824 to 855, raw -2147483648 to 2147483647, in m.
-     * @note Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16 bits in the state
+     * @note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z have 16 bits in the state
      * frames and 32 bits in the GPS frames and the simulated data, with the same name, description and unit.
      */
     int32_t ecef_position_x;
     /**
      * ECEF Velocity X: bits 856 to 871, raw -32768 to 32767, in m/s.
-     * @note Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity from the receiver has a
-     * step of 1 m/s, that of the propagator 0.25 m/s. A factor may have been lost; none is made up.
+     * @note ACP-044 (open): GPS velocity: 16 bits of whole metres a second. The velocity from the receiver has a step
+     * of 1 m/s, that of the propagator 0.25 m/s. A factor may have been lost; none is made up.
      */
     int16_t ecef_velocity_x;
     /**
      * ECEF Position Y: bits 872 to 903, raw -2147483648 to 2147483647, in m.
-     * @note Note ACP-099 (certain): see ECEF Position X.
+     * @note ACP-099 (certain): see ECEF Position X.
      */
     int32_t ecef_position_y;
     /**
      * ECEF Velocity Y: bits 904 to 919, raw -32768 to 32767, in m/s.
-     * @note Note ACP-044 (open): see ECEF Velocity X.
+     * @note ACP-044 (open): see ECEF Velocity X.
      */
     int16_t ecef_velocity_y;
     /**
      * ECEF Position Z: bits 920 to 951, raw -2147483648 to 2147483647, in m.
-     * @note Note ACP-099 (certain): see ECEF Position X.
+     * @note ACP-099 (certain): see ECEF Position X.
      */
     int32_t ecef_position_z;
     /**
      * ECEF Velocity Z: bits 952 to 967, raw -32768 to 32767, in m/s.
-     * @note Note ACP-044 (open): see ECEF Velocity X.
+     * @note ACP-044 (open): see ECEF Velocity X.
      */
     int16_t ecef_velocity_z;
     /**
      * X-pos Standard Deviation: bits 968 to 975, raw 0 to 255; physical `raw = value*10.0`, 0 to 25.5 m.
-     * @note Note ACP-030 (certain): Formulas are written in two directions. Two telecommands give the raw value as a
+     * @note ACP-030 (certain): Formulas are written in two directions. Two telecommands give the raw value as a
      * multiple of the physical one, everything else the physical value from the raw one. Both are held as printed.
      */
     uint8_t x_pos_standard_deviation;
     /**
      * Y-pos Standard Deviation: bits 976 to 983, raw 0 to 255; physical `raw = value*10.0`, 0 to 25.5 m.
-     * @note Note ACP-030 (certain): see X-pos Standard Deviation.
+     * @note ACP-030 (certain): see X-pos Standard Deviation.
      */
     uint8_t y_pos_standard_deviation;
     /**
      * Z-pos Standard Deviation: bits 984 to 991, raw 0 to 255; physical `raw = value*10.0`, 0 to 25.5 m.
-     * @note Note ACP-030 (certain): see X-pos Standard Deviation.
+     * @note ACP-030 (certain): see X-pos Standard Deviation.
      */
     uint8_t z_pos_standard_deviation;
     /**
      * X-vel Standard Deviation: bits 992 to 999, raw 0 to 255, in m/s.
-     * @note Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second. Deviations of the position have
-     * a factor of 0.1, those of the velocity none. A whole 1 m/s is coarse for a GPS velocity, and the limit that is
+     * @note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second. Deviations of the position have a
+     * factor of 0.1, those of the velocity none. A whole 1 m/s is coarse for a GPS velocity, and the limit that is
      * compared with it is set in hundredths.
      */
     uint8_t x_vel_standard_deviation;
     /**
      * Y-vel Standard Deviation: bits 1000 to 1007, raw 0 to 255, in m/s.
-     * @note Note ACP-043 (open): see X-vel Standard Deviation.
+     * @note ACP-043 (open): see X-vel Standard Deviation.
      */
     uint8_t y_vel_standard_deviation;
     /**
      * Z-vel Standard Deviation: bits 1008 to 1015, raw 0 to 255, in m/s.
-     * @note Note ACP-043 (open): see X-vel Standard Deviation.
+     * @note ACP-043 (open): see X-vel Standard Deviation.
      */
     uint8_t z_vel_standard_deviation;
 } cubeacp_trigger_simulated_loop_t;
@@ -430,6 +429,76 @@ static inline icd_status_t cubeacp_trigger_simulated_loop_encode(
     buffer[125] = message->y_vel_standard_deviation;
     buffer[126] = message->z_vel_standard_deviation;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_trigger_simulated_loop_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Unix Time", "s", 0u, 32u, 1u, NULL, 0u},
+        {"Css Raw 1", "", 32u, 16u, 1u, NULL, 0u},
+        {"Css Raw 2", "", 48u, 16u, 1u, NULL, 0u},
+        {"Css Raw 3", "", 64u, 16u, 1u, NULL, 0u},
+        {"Css Raw 4", "", 80u, 16u, 1u, NULL, 0u},
+        {"Css Raw 5", "", 96u, 16u, 1u, NULL, 0u},
+        {"Css Raw 6", "", 112u, 16u, 1u, NULL, 0u},
+        {"Css Raw 7", "", 128u, 16u, 1u, NULL, 0u},
+        {"Css Raw 8", "", 144u, 16u, 1u, NULL, 0u},
+        {"Css Raw 9", "", 160u, 16u, 1u, NULL, 0u},
+        {"Css Raw 10", "", 176u, 16u, 1u, NULL, 0u},
+        {"Cam1 Raw X", "", 192u, 16u, 1u, NULL, 0u},
+        {"Cam1 Raw Y", "", 208u, 16u, 1u, NULL, 0u},
+        {"Cam1 Busy", "", 224u, 8u, 1u, NULL, 0u},
+        {"Cam1 Result", "", 232u, 8u, 1u, NULL, 0u},
+        {"Cam2 Raw X", "", 240u, 16u, 1u, NULL, 0u},
+        {"Cam2 Raw Y", "", 256u, 16u, 1u, NULL, 0u},
+        {"Cam2 Busy", "", 272u, 8u, 1u, NULL, 0u},
+        {"Cam2 Result", "", 280u, 8u, 1u, NULL, 0u},
+        {"Mag Raw X", "", 288u, 16u, 1u, NULL, 0u},
+        {"Mag Raw Y", "", 304u, 16u, 1u, NULL, 0u},
+        {"Mag Raw Z", "", 320u, 16u, 1u, NULL, 0u},
+        {"Rate Raw X", "", 336u, 32u, 1u, NULL, 0u},
+        {"Rate Raw Y", "", 368u, 32u, 1u, NULL, 0u},
+        {"Rate Raw Z", "", 400u, 32u, 1u, NULL, 0u},
+        {"Wheel Raw X", "rpm", 432u, 16u, 1u, NULL, 0u},
+        {"Wheel Raw Y", "rpm", 448u, 16u, 1u, NULL, 0u},
+        {"Wheel Raw Z", "rpm", 464u, 16u, 1u, NULL, 0u},
+        {"Star1CameraX", "", 480u, 16u, 1u, NULL, 0u},
+        {"Star1CameraY", "", 496u, 16u, 1u, NULL, 0u},
+        {"Star1CameraZ", "", 512u, 16u, 1u, NULL, 0u},
+        {"Star1InertialX", "", 528u, 16u, 1u, NULL, 0u},
+        {"Star1InertialY", "", 544u, 16u, 1u, NULL, 0u},
+        {"Star1InertialZ", "", 560u, 16u, 1u, NULL, 0u},
+        {"Star2CameraX", "", 576u, 16u, 1u, NULL, 0u},
+        {"Star2CameraY", "", 592u, 16u, 1u, NULL, 0u},
+        {"Star2CameraZ", "", 608u, 16u, 1u, NULL, 0u},
+        {"Star2InertialX", "", 624u, 16u, 1u, NULL, 0u},
+        {"Star2InertialY", "", 640u, 16u, 1u, NULL, 0u},
+        {"Star2InertialZ", "", 656u, 16u, 1u, NULL, 0u},
+        {"Star3CameraX", "", 672u, 16u, 1u, NULL, 0u},
+        {"Star3CameraY", "", 688u, 16u, 1u, NULL, 0u},
+        {"Star3CameraZ", "", 704u, 16u, 1u, NULL, 0u},
+        {"Star3InertialX", "", 720u, 16u, 1u, NULL, 0u},
+        {"Star3InertialY", "", 736u, 16u, 1u, NULL, 0u},
+        {"Star3InertialZ", "", 752u, 16u, 1u, NULL, 0u},
+        {"Gps Solution Status", "", 768u, 8u, 1u, NULL, 0u},
+        {"GPS Reference Week", "", 776u, 16u, 1u, NULL, 0u},
+        {"GPS Time Milliseconds", "ms", 792u, 32u, 1u, NULL, 0u},
+        {"ECEF Position X", "m", 824u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity X", "m/s", 856u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Y", "m", 872u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity Y", "m/s", 904u, 16u, 1u, NULL, 0u},
+        {"ECEF Position Z", "m", 920u, 32u, 1u, NULL, 0u},
+        {"ECEF Velocity Z", "m/s", 952u, 16u, 1u, NULL, 0u},
+        {"X-pos Standard Deviation", "m", 968u, 8u, 1u, NULL, 0u},
+        {"Y-pos Standard Deviation", "m", 976u, 8u, 1u, NULL, 0u},
+        {"Z-pos Standard Deviation", "m", 984u, 8u, 1u, NULL, 0u},
+        {"X-vel Standard Deviation", "m/s", 992u, 8u, 1u, NULL, 0u},
+        {"Y-vel Standard Deviation", "m/s", 1000u, 8u, 1u, NULL, 0u},
+        {"Z-vel Standard Deviation", "m/s", 1008u, 8u, 1u, NULL, 0u},
+    };
+    *count = 61u;
+    return fields;
 }
 
 /** X-pos Standard Deviation in mm, exact: 0 to 25500. */

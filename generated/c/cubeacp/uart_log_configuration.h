@@ -24,14 +24,14 @@
 typedef struct {
     /**
      * Log Selection: bytes 0 to 9. Mask of up to 80 telemetry frames.
-     * @note Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned. Seventeen bits of the mask have
-     * no frame: 2, 5, 6 and 66 to 79. What a log with one of them set holds is not said.
+     * @note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned. Seventeen bits of the mask have no
+     * frame: 2, 5, 6 and 66 to 79. What a log with one of them set holds is not said.
      */
     uint8_t log_selection[10];
     /**
      * Log Period: bits 80 to 95, raw 0 to 65535. 0: logging disabled.
-     * @note Note ACP-183 (open): Log period has no unit. Zero switches logging off; seconds or iterations of the loop
-     * are both possible, and equal only while the loop runs at 1 Hz.
+     * @note ACP-183 (open): Log period has no unit. Zero switches logging off; seconds or iterations of the loop are
+     * both possible, and equal only while the loop runs at 1 Hz.
      */
     uint16_t log_period;
 } cubeacp_uart_log_configuration_t;
@@ -68,6 +68,17 @@ static inline icd_status_t cubeacp_uart_log_configuration_encode(
     (void)memcpy(&buffer[0], message->log_selection, 10u);
     icdgen_store_u16le(&buffer[10], message->log_period);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_uart_log_configuration_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Log Selection", "", 0u, 80u, 1u, NULL, 0u},
+        {"Log Period", "", 80u, 16u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* CUBEACP_UART_LOG_CONFIGURATION_H */

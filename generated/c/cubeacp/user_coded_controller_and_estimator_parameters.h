@@ -22,13 +22,13 @@
 typedef struct {
     /**
      * User Coded Controller Settings: bytes 0 to 47.
-     * @note Note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes without types; what they
-     * hold depends on code that the user supplies.
+     * @note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes without types; what they hold
+     * depends on code that the user supplies.
      */
     uint8_t user_coded_controller_settings[48];
     /**
      * User Coded Estimator Settings: bytes 48 to 95.
-     * @note Note ACP-178 (open): see User Coded Controller Settings.
+     * @note ACP-178 (open): see User Coded Controller Settings.
      */
     uint8_t user_coded_estimator_settings[48];
 } cubeacp_user_coded_controller_and_estimator_parameters_t;
@@ -66,6 +66,17 @@ static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameter
     (void)memcpy(&buffer[0], message->user_coded_controller_settings, 48u);
     (void)memcpy(&buffer[48], message->user_coded_estimator_settings, 48u);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_user_coded_controller_and_estimator_parameters_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"User Coded Controller Settings", "", 0u, 384u, 1u, NULL, 0u},
+        {"User Coded Estimator Settings", "", 384u, 384u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_H */

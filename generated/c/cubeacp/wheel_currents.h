@@ -21,23 +21,23 @@
 typedef struct {
     /**
      * Wheel1Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): Wheel currents: by number, described by axis. The frame is described as XYZ wheel
-     * currents, its fields are numbered, and names run together although their descriptions do not.
-     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of 0.01 mA sixteen bits
-     * reach 655.35 mA, which a wheel motor may well exceed. All other currents have steps of 0.1 mA and more. The
-     * factor is held as printed.
+     * @note ACP-083 (open): Wheel currents: by number, described by axis. The frame is described as XYZ wheel currents,
+     * its fields are numbered, and names run together although their descriptions do not.
+     * @note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of 0.01 mA sixteen bits reach
+     * 655.35 mA, which a wheel motor may well exceed. All other currents have steps of 0.1 mA and more. The factor is
+     * held as printed.
      */
     uint16_t wheel1_current;
     /**
      * Wheel2Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): see Wheel1Current.
-     * @note Note ACP-084 (open): see Wheel1Current.
+     * @note ACP-083 (open): see Wheel1Current.
+     * @note ACP-084 (open): see Wheel1Current.
      */
     uint16_t wheel2_current;
     /**
      * Wheel3Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * @note Note ACP-083 (open): see Wheel1Current.
-     * @note Note ACP-084 (open): see Wheel1Current.
+     * @note ACP-083 (open): see Wheel1Current.
+     * @note ACP-084 (open): see Wheel1Current.
      */
     uint16_t wheel3_current;
 } cubeacp_wheel_currents_t;
@@ -76,6 +76,18 @@ static inline icd_status_t cubeacp_wheel_currents_encode(
     icdgen_store_u16le(&buffer[2], message->wheel2_current);
     icdgen_store_u16le(&buffer[4], message->wheel3_current);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_wheel_currents_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Wheel1Current", "mA", 0u, 16u, 1u, NULL, 0u},
+        {"Wheel2Current", "mA", 16u, 16u, 1u, NULL, 0u},
+        {"Wheel3Current", "mA", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 /** Wheel1Current in uA, exact: 0 to 655350. */

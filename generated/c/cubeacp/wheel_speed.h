@@ -63,4 +63,16 @@ static inline icd_status_t cubeacp_wheel_speed_encode(
     return ICD_OK;
 }
 
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_wheel_speed_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"X Wheel Speed", "rpm", 0u, 16u, 1u, NULL, 0u},
+        {"Y Wheel Speed", "rpm", 16u, 16u, 1u, NULL, 0u},
+        {"Z Wheel Speed", "rpm", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
+}
+
 #endif /* CUBEACP_WHEEL_SPEED_H */

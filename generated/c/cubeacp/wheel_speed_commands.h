@@ -20,18 +20,18 @@
 typedef struct {
     /**
      * Commanded X Wheel Speed: bits 0 to 15, raw -32768 to 32767, in rpm.
-     * @note Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds. The descriptions are those of
-     * the measured speeds; the names tell the difference. The telecommand names them again in another way.
+     * @note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds. The descriptions are those of the
+     * measured speeds; the names tell the difference. The telecommand names them again in another way.
      */
     int16_t commanded_x_wheel_speed;
     /**
      * Commanded Y Wheel Speed: bits 16 to 31, raw -32768 to 32767, in rpm.
-     * @note Note ACP-072 (certain): see Commanded X Wheel Speed.
+     * @note ACP-072 (certain): see Commanded X Wheel Speed.
      */
     int16_t commanded_y_wheel_speed;
     /**
      * Commanded Z Wheel Speed: bits 32 to 47, raw -32768 to 32767, in rpm.
-     * @note Note ACP-072 (certain): see Commanded X Wheel Speed.
+     * @note ACP-072 (certain): see Commanded X Wheel Speed.
      */
     int16_t commanded_z_wheel_speed;
 } cubeacp_wheel_speed_commands_t;
@@ -70,6 +70,18 @@ static inline icd_status_t cubeacp_wheel_speed_commands_encode(
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->commanded_y_wheel_speed));
     icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->commanded_z_wheel_speed));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubeacp_wheel_speed_commands_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Commanded X Wheel Speed", "rpm", 0u, 16u, 1u, NULL, 0u},
+        {"Commanded Y Wheel Speed", "rpm", 16u, 16u, 1u, NULL, 0u},
+        {"Commanded Z Wheel Speed", "rpm", 32u, 16u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEACP_WHEEL_SPEED_COMMANDS_H */

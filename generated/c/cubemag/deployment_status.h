@@ -7,11 +7,10 @@
  * @file
  * Deployment Status: telemetry 190, 5 bytes. Table 61.
  * Only for the CubeMag of type Deploy.
- * @note Note MAG-011 (open): Deployment Status: how to tell the type, and what other types answer. The frame applies to
- * the deployable CubeMag only. Nothing in the excerpt tells the types apart, or says whether the others refuse the
- * request.
- * @note Note MAG-015 (open): Deployment Status and measurements end in unexplained bits. Three bits of the status and
- * seven of each measurement are not described. They are held as reserved.
+ * @note MAG-011 (open): Deployment Status: how to tell the type, and what other types answer. The frame applies to the
+ * deployable CubeMag only. Nothing in the excerpt tells the types apart, or says whether the others refuse the request.
+ * @note MAG-015 (open): Deployment Status and measurements end in unexplained bits. Three bits of the status and seven
+ * of each measurement are not described. They are held as reserved.
  */
 
 #include "../icdgen.h"
@@ -25,36 +24,36 @@
 typedef struct {
     /**
      * Burn Current: bits 0 to 31, raw 0 to 4294967295, in mA. Through the burn wire.
-     * @note Note MAG-012 (open): Burn Current: 32 bits of whole milliamperes. An unsigned integer of 32 bits in mA
-     * reaches 4.3 million amperes. A float, as in the other measurements of the node, or a scale that was lost would be
-     * more plausible; nothing is converted.
+     * @note MAG-012 (open): Burn Current: 32 bits of whole milliamperes. An unsigned integer of 32 bits in mA reaches
+     * 4.3 million amperes. A float, as in the other measurements of the node, or a scale that was lost would be more
+     * plausible; nothing is converted.
      */
     uint32_t burn_current;
     /**
      * Deployment Pin State: bit 32. Pin that detects the deployment.
-     * @note Note MAG-013 (open): Polarity of the deployment pins is not given. Whether a set bit means deployed, a high
+     * @note MAG-013 (open): Polarity of the deployment pins is not given. Whether a set bit means deployed, a high
      * level or an active burn wire is not said.
      */
     bool deployment_pin_state;
     /**
      * Burn Pin State: bit 33. Pin that enables the burn wire.
-     * @note Note MAG-013 (open): see Deployment Pin State.
+     * @note MAG-013 (open): see Deployment Pin State.
      */
     bool burn_pin_state;
     /**
      * Burn UnderCurrent: bit 34. Too little current through the burn wire.
-     * @note Note MAG-014 (open): Limits of the burn current and the configured time-out. Under- and overcurrent have no
+     * @note MAG-014 (open): Limits of the burn current and the configured time-out. Under- and overcurrent have no
      * limits, and the time-out is called configured without a message that configures it.
      */
     bool burn_under_current;
     /**
      * Burn OverCurrent: bit 35. Too much current through the burn wire.
-     * @note Note MAG-014 (open): see Burn UnderCurrent.
+     * @note MAG-014 (open): see Burn UnderCurrent.
      */
     bool burn_over_current;
     /**
      * Deployment Timeout: bit 36. No deployment was detected within the configured time.
-     * @note Note MAG-014 (open): see Burn UnderCurrent.
+     * @note MAG-014 (open): see Burn UnderCurrent.
      */
     bool deployment_timeout;
 } cubemag_deployment_status_t;
@@ -106,6 +105,21 @@ static inline icd_status_t cubemag_deployment_status_encode(
         burn_over_current);
     buffer[4] = ICDGEN_U8(flags_4 | (message->deployment_timeout << 4));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubemag_deployment_status_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Burn Current", "mA", 0u, 32u, 1u, NULL, 0u},
+        {"Deployment Pin State", "", 32u, 1u, 1u, NULL, 0u},
+        {"Burn Pin State", "", 33u, 1u, 1u, NULL, 0u},
+        {"Burn UnderCurrent", "", 34u, 1u, 1u, NULL, 0u},
+        {"Burn OverCurrent", "", 35u, 1u, 1u, NULL, 0u},
+        {"Deployment Timeout", "", 36u, 1u, 1u, NULL, 0u},
+    };
+    *count = 6u;
+    return fields;
 }
 
 #endif /* CUBEMAG_DEPLOYMENT_STATUS_H */

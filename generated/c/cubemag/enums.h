@@ -13,7 +13,7 @@
 
 /**
  * MagState: an enumeration. Table 58. State of the CubeMag service.
- * @note Note MAG-008 (open): MagState has no deployed state. The service can be armed, deploying, idle or in error. A
+ * @note MAG-008 (open): MagState has no deployed state. The service can be armed, deploying, idle or in error. A
  * deployed boom shows as idle at best, and what a unit without a boom reports is not said.
  */
 typedef uint8_t cubemag_mag_state_t;
@@ -48,8 +48,8 @@ static inline const char *cubemag_mag_state_name(cubemag_mag_state_t value)
 
 /**
  * MntState: an enumeration. Table 59. State of a magnetometer service.
- * @note Note MAG-009 (open): MntState: Mnt is not explained. The states belong to the magnetometers by the table that
- * uses them; Mnt stands nowhere else.
+ * @note MAG-009 (open): MntState: Mnt is not explained. The states belong to the magnetometers by the table that uses
+ * them; Mnt stands nowhere else.
  */
 typedef uint8_t cubemag_mnt_state_t;
 
@@ -62,13 +62,13 @@ enum {
     CUBEMAG_MNT_STATE_IDLE = 2,
     /**
      * Auto (3). Sampling automatically.
-     * @note Note MAG-010 (open): MntState: Auto and Sample. Both mean sampling; when a single sample is taken, and how
+     * @note MAG-010 (open): MntState: Auto and Sample. Both mean sampling; when a single sample is taken, and how
      * automatic sampling is started, is not in the excerpt.
      */
     CUBEMAG_MNT_STATE_AUTO = 3,
     /**
      * Sample (4).
-     * @note Note MAG-010 (open): see Auto.
+     * @note MAG-010 (open): see Auto.
      */
     CUBEMAG_MNT_STATE_SAMPLE = 4,
     /** Error (5). */

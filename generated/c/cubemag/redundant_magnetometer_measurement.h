@@ -6,8 +6,8 @@
 /**
  * @file
  * Redundant Magnetometer Measurement: telemetry 193, 13 bytes. Table 64.
- * @note Note MAG-015 (open): Deployment Status and measurements end in unexplained bits. Three bits of the status and
- * seven of each measurement are not described. They are held as reserved.
+ * @note MAG-015 (open): Deployment Status and measurements end in unexplained bits. Three bits of the status and seven
+ * of each measurement are not described. They are held as reserved.
  */
 
 #include "../icdgen.h"
@@ -21,25 +21,25 @@
 typedef struct {
     /**
      * X_axis: bits 0 to 31, 32-bit float, in nT.
-     * @note Note MAG-016 (likely): FLOAT is not defined. IEEE 754 of 32 bits, least significant byte first, is held.
-     * @note Note MAG-017 (open): Axes of the measurements are not defined. Whether they are those of the sensor, of the
+     * @note MAG-016 (likely): FLOAT is not defined. IEEE 754 of 32 bits, least significant byte first, is held.
+     * @note MAG-017 (open): Axes of the measurements are not defined. Whether they are those of the sensor, of the
      * deployed boom or of the satellite is not said. The names carry an underscore that no other name has.
-     * @note Note MAG-018 (certain): nT here, uT there. The node measures in nT as a float, the control program reports
-     * the same field in uT with a step of 0.01. A reader who mixes them is wrong by a factor of 1000.
+     * @note MAG-018 (certain): nT here, uT there. The node measures in nT as a float, the control program reports the
+     * same field in uT with a step of 0.01. A reader who mixes them is wrong by a factor of 1000.
      */
     float x_axis;
     /**
      * Y_axis: bits 32 to 63, 32-bit float, in nT.
-     * @note Note MAG-016 (likely): see X_axis.
-     * @note Note MAG-017 (open): see X_axis.
-     * @note Note MAG-018 (certain): see X_axis.
+     * @note MAG-016 (likely): see X_axis.
+     * @note MAG-017 (open): see X_axis.
+     * @note MAG-018 (certain): see X_axis.
      */
     float y_axis;
     /**
      * Z_axis: bits 64 to 95, 32-bit float, in nT.
-     * @note Note MAG-016 (likely): see X_axis.
-     * @note Note MAG-017 (open): see X_axis.
-     * @note Note MAG-018 (certain): see X_axis.
+     * @note MAG-016 (likely): see X_axis.
+     * @note MAG-017 (open): see X_axis.
+     * @note MAG-018 (certain): see X_axis.
      */
     float z_axis;
     /** Data Valid: bit 96. */
@@ -83,6 +83,19 @@ static inline icd_status_t cubemag_redundant_magnetometer_measurement_encode(
     icdgen_store_u32le(&buffer[8], icdgen_bits_f32(&message->z_axis));
     buffer[12] = ICDGEN_U8(message->data_valid);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubemag_redundant_magnetometer_measurement_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"X_axis", "nT", 0u, 32u, 1u, NULL, 0u},
+        {"Y_axis", "nT", 32u, 32u, 1u, NULL, 0u},
+        {"Z_axis", "nT", 64u, 32u, 1u, NULL, 0u},
+        {"Data Valid", "", 96u, 1u, 1u, NULL, 0u},
+    };
+    *count = 4u;
+    return fields;
 }
 
 #endif /* CUBEMAG_REDUNDANT_MAGNETOMETER_MEASUREMENT_H */

@@ -7,8 +7,8 @@
  * @file
  * State: telemetry 188, 3 bytes. Table 57.
  * States of all services.
- * @note Note MAG-004 (certain): Number 57 is used twice in the addendum. Both parts have a Table 57, State here and
- * Motor Power there. They come from two documents, and the source does not say where one ends.
+ * @note MAG-004 (certain): Number 57 is used twice in the addendum. Both parts have a Table 57, State here and Motor
+ * Power there. They come from two documents, and the source does not say where one ends.
  */
 
 #include "../icdgen.h"
@@ -23,18 +23,18 @@
 typedef struct {
     /**
      * MagSvc State: bits 0 to 7. Of the CubeMag service.
-     * @note Note MAG-007 (certain): State: names are cut short in three ways. MagSvc, Primary Mag and Red Mag stand for
+     * @note MAG-007 (certain): State: names are cut short in three ways. MagSvc, Primary Mag and Red Mag stand for
      * service, primary and redundant magnetometer; the measurement frames spell redundant out.
      */
     cubemag_mag_state_t mag_svc_state;
     /**
      * Primary Mag State: bits 8 to 15. Of the primary magnetometer.
-     * @note Note MAG-007 (certain): see MagSvc State.
+     * @note MAG-007 (certain): see MagSvc State.
      */
     cubemag_mnt_state_t primary_mag_state;
     /**
      * Red Mag State: bits 16 to 23. Of the redundant magnetometer.
-     * @note Note MAG-007 (certain): see MagSvc State.
+     * @note MAG-007 (certain): see MagSvc State.
      */
     cubemag_mnt_state_t red_mag_state;
 } cubemag_state_t;
@@ -73,6 +73,18 @@ static inline icd_status_t cubemag_state_encode(
     buffer[1] = message->primary_mag_state;
     buffer[2] = message->red_mag_state;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubemag_state_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"MagSvc State", "", 0u, 8u, 1u, NULL, 0u},
+        {"Primary Mag State", "", 8u, 8u, 1u, NULL, 0u},
+        {"Red Mag State", "", 16u, 8u, 1u, NULL, 0u},
+    };
+    *count = 3u;
+    return fields;
 }
 
 #endif /* CUBEMAG_STATE_H */

@@ -23,8 +23,8 @@ enum {
     CUBEWHEEL_WHEEL_ERROR_STATE_HALL_SENSOR_ENCODER_MISMATCH = 2,
     /**
      * Speed Not Reached Timeout (3). The speed asked for was not reached in time.
-     * @note Note WHL-011 (open): Speed Not Reached Timeout: the time allowed is not given. The period is called
-     * allocated; neither a figure nor a message that sets it is in the excerpt.
+     * @note WHL-011 (open): Speed Not Reached Timeout: the time allowed is not given. The period is called allocated;
+     * neither a figure nor a message that sets it is in the excerpt.
      */
     CUBEWHEEL_WHEEL_ERROR_STATE_SPEED_NOT_REACHED_TIMEOUT = 3
 };

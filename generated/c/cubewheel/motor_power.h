@@ -7,12 +7,12 @@
  * @file
  * Motor Power: telemetry 197, 1 byte. Table 57.
  * Whether the motor is switched on.
- * @note Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag. Tables 47, 48, 56 and 57
+ * @note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag. Tables 47, 48, 56 and 57
  * exist in the manual with other contents, 57 also in the first part of the addendum.
- * @note Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word. The frame tells whether
- * the motor is on; its text switches it, and its field is a power switch that is switched.
- * @note Note WHL-016 (open): Motor Power: seven bits are not described. One bit of the byte is explained; the others
- * are held as reserved.
+ * @note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word. The frame tells whether the
+ * motor is on; its text switches it, and its field is a power switch that is switched.
+ * @note WHL-016 (open): Motor Power: seven bits are not described. One bit of the byte is explained; the others are
+ * held as reserved.
  */
 
 #include "../icdgen.h"
@@ -26,7 +26,7 @@
 typedef struct {
     /**
      * Motor Power Switch: bit 0.
-     * @note Note WHL-015 (likely): see Motor Power.
+     * @note WHL-015 (likely): see Motor Power.
      */
     bool motor_power_switch;
 } cubewheel_motor_power_t;
@@ -61,6 +61,16 @@ static inline icd_status_t cubewheel_motor_power_encode(
     }
     buffer[0] = ICDGEN_U8(message->motor_power_switch);
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubewheel_motor_power_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Motor Power Switch", "", 0u, 1u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
 }
 
 #endif /* CUBEWHEEL_MOTOR_POWER_H */

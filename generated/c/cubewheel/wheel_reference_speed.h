@@ -7,12 +7,12 @@
  * @file
  * Wheel Reference Speed: telemetry 196, 4 bytes. Table 56.
  * Speed that the momentum wheel is set to.
- * @note Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag. Tables 47, 48, 56 and 57
+ * @note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag. Tables 47, 48, 56 and 57
  * exist in the manual with other contents, 57 also in the first part of the addendum.
- * @note Note WHL-012 (likely): Wheel Reference Speed is described as a telecommand. The frame returns the reference,
- * its description sets it. The text was taken over from the telecommand of the same data.
- * @note Note WHL-013 (open): Momentum wheel in one place, wheel in the others. The description of the reference speed
- * has a momentum wheel, all other texts a wheel. CubeACP has three wheels and a fourth or momentum wheel.
+ * @note WHL-012 (likely): Wheel Reference Speed is described as a telecommand. The frame returns the reference, its
+ * description sets it. The text was taken over from the telecommand of the same data.
+ * @note WHL-013 (open): Momentum wheel in one place, wheel in the others. The description of the reference speed has a
+ * momentum wheel, all other texts a wheel. CubeACP has three wheels and a fourth or momentum wheel.
  */
 
 #include "../icdgen.h"
@@ -28,9 +28,9 @@ typedef struct {
      * Reference Speed: bits 0 to 31, 32-bit float, in rpm.
      * @note Erratum WHL-007 (certain): RPM is rpm. The unit is printed in capitals here and in small letters in the
      * manual; once it stands in the description as well. Held in small letters.
-     * @note Note WHL-009 (likely): FLOAT is not defined. IEEE 754 of 32 bits, least significant byte first, is held.
-     * @note Note WHL-014 (open): Reference speed and reference torque: which one is in force. A wheel follows a speed
-     * or a torque. How to tell which of the two references is active is not in the excerpt.
+     * @note WHL-009 (likely): FLOAT is not defined. IEEE 754 of 32 bits, least significant byte first, is held.
+     * @note WHL-014 (open): Reference speed and reference torque: which one is in force. A wheel follows a speed or a
+     * torque. How to tell which of the two references is active is not in the excerpt.
      */
     float reference_speed;
 } cubewheel_wheel_reference_speed_t;
@@ -65,6 +65,16 @@ static inline icd_status_t cubewheel_wheel_reference_speed_encode(
     }
     icdgen_store_u32le(&buffer[0], icdgen_bits_f32(&message->reference_speed));
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubewheel_wheel_reference_speed_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Reference Speed", "rpm", 0u, 32u, 1u, NULL, 0u},
+    };
+    *count = 1u;
+    return fields;
 }
 
 #endif /* CUBEWHEEL_WHEEL_REFERENCE_SPEED_H */

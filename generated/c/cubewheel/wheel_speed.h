@@ -6,7 +6,7 @@
 /**
  * @file
  * Wheel Speed: telemetry 188, 5 bytes. Table 47.
- * @note Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag. Tables 47, 48, 56 and 57
+ * @note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag. Tables 47, 48, 56 and 57
  * exist in the manual with other contents, 57 also in the first part of the addendum.
  */
 
@@ -24,15 +24,15 @@ typedef struct {
      * Wheel Speed: bits 0 to 31, 32-bit float, in rpm.
      * @note Erratum WHL-007 (certain): RPM is rpm. The unit is printed in capitals here and in small letters in the
      * manual; once it stands in the description as well. Held in small letters.
-     * @note Note WHL-008 (open): Wheel speed: the positive direction is not given. Neither the node nor CubeACP, which
-     * has the speed as a whole number of 16 bits, says which direction counts as positive.
-     * @note Note WHL-009 (likely): FLOAT is not defined. IEEE 754 of 32 bits, least significant byte first, is held.
+     * @note WHL-008 (open): Wheel speed: the positive direction is not given. Neither the node nor CubeACP, which has
+     * the speed as a whole number of 16 bits, says which direction counts as positive.
+     * @note WHL-009 (likely): FLOAT is not defined. IEEE 754 of 32 bits, least significant byte first, is held.
      */
     float wheel_speed;
     /**
      * Wheel Error State: bits 32 to 39.
-     * @note Note WHL-010 (open): Wheel Error State: data that are valid are an error state. The value 0 says that all
-     * is well under the name of an error. Only one condition can be shown at a time; which wins is not said.
+     * @note WHL-010 (open): Wheel Error State: data that are valid are an error state. The value 0 says that all is
+     * well under the name of an error. Only one condition can be shown at a time; which wins is not said.
      */
     cubewheel_wheel_error_state_t wheel_error_state;
 } cubewheel_wheel_speed_t;
@@ -69,6 +69,17 @@ static inline icd_status_t cubewheel_wheel_speed_encode(
     icdgen_store_u32le(&buffer[0], icdgen_bits_f32(&message->wheel_speed));
     buffer[4] = message->wheel_error_state;
     return ICD_OK;
+}
+
+/** What the ICD says of the fields, in its order; `count` becomes how many there are. */
+static inline const icd_field_t *cubewheel_wheel_speed_fields(size_t *count)
+{
+    static const icd_field_t fields[] = {
+        {"Wheel Speed", "rpm", 0u, 32u, 1u, NULL, 0u},
+        {"Wheel Error State", "", 32u, 8u, 1u, NULL, 0u},
+    };
+    *count = 2u;
+    return fields;
 }
 
 #endif /* CUBEWHEEL_WHEEL_SPEED_H */

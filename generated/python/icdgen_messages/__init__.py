@@ -15,6 +15,22 @@ from ._errors import LengthError as LengthError
 from ._errors import RangeError as RangeError
 from ._errors import UnknownIdError as UnknownIdError
 
+__all__ = [
+    "FieldInfo",
+    "IcdError",
+    "LengthError",
+    "Message",
+    "NODES",
+    "OpenEnum",
+    "RangeError",
+    "UnknownIdError",
+    "bootloader",
+    "common",
+    "cubeacp",
+    "cubemag",
+    "cubewheel",
+]
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from . import bootloader as bootloader
@@ -51,4 +67,4 @@ if not TYPE_CHECKING:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
     def __dir__():
-        return sorted({*globals(), *NODES, *_HOMES})
+        return sorted({*globals(), *__all__})

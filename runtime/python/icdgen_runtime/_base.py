@@ -141,7 +141,7 @@ class Message(metaclass=MessageType):
 
         @classmethod  # pyright: ignore[reportArgumentType]
         def from_physical(cls: Callable[P, M], *args: P.args, **values: P.kwargs) -> M:
-            """From physical values, raw ones where there is no scale or text.
+            """From physical values, raw ones where there is no scale or text; those of views are not looked at.
 
             Raises `RangeError`, and `TypeError` for a raw value that has a physical one.
             """
@@ -151,7 +151,7 @@ class Message(metaclass=MessageType):
 
         @classmethod
         def from_physical(cls, /, **values):
-            """From physical values, raw ones where there is no scale or text.
+            """From physical values, raw ones where there is no scale or text; those of views are not looked at.
 
             Raises `RangeError`, and `TypeError` for a raw value that has a physical one.
             """
@@ -160,6 +160,9 @@ class Message(metaclass=MessageType):
                     raise TypeError(
                         f"from_physical takes {info.physical}, not {info.attribute}"
                     )
+            for info in cls.VIEWS:  # they follow from the fields
+                values.pop(info.attribute, None)
+                values.pop(info.physical, None)
             return cls(**values)
 
     @classmethod

@@ -99,6 +99,15 @@ class FieldInfo:
             return is_signed(self.enum)
         return self.type == "int"
 
+    def allows(self, value: float) -> bool:
+        """Whether a physical value (a raw one if there is no scale) keeps the limits; NaN keeps none."""
+        return (
+            (self.minimum is None or value >= self.minimum)
+            and (self.above is None or value > self.above)
+            and (self.maximum is None or value <= self.maximum)
+            and (self.below is None or value < self.below)
+        )
+
     @property
     def raw_range(self) -> tuple[int, int]:
         """The smallest and the largest raw value of a field that holds integers."""

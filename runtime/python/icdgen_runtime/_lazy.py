@@ -61,10 +61,7 @@ else:
 def attribute(
     module: dict[str, _lazy.Any], homes: dict[str, str], name: str
 ) -> _lazy.Any:
-    """The class ``name`` of the node ``module``, from the file that ``homes`` gives; ``__all__``: the names of all."""
-    if name == "__all__":  # `from node import *` asks for it
-        public = {one for one in module if not one.startswith("_")}
-        return sorted((public | {*homes}) - {"annotations", "TYPE_CHECKING"})
+    """The class ``name`` of the node ``module``, from the file that ``homes`` gives."""
     if name not in homes:
         raise AttributeError(f"module {module['__name__']!r} has no attribute {name!r}")
     home = import_module(homes[name], module["__name__"])

@@ -13,6 +13,7 @@ from icdgen import codec
 from icdgen.backends.c import physical
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.parts import part_name
+from icdgen.backends.c.text import literal
 from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.links import links_of
 from icdgen.describe.parts import parts_of
@@ -55,6 +56,7 @@ def _message(message: MessageDescription) -> dict[str, Any]:
         "beyond": beyond,
         "rows": [_row(message, row, wholes) for row in (rows if wholes else rows[:2])],
         "parts": list(_parts(message)),
+        "fields": [literal(field.model.name) for field in message.members],
     }
 
 

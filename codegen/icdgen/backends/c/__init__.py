@@ -7,12 +7,12 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from icdgen.backends import Identifier
-from icdgen.backends.c import accessors, bits, constants, decoding, encoding, names, parts, types
+from icdgen.backends.c import accessors, bits, constants, decoding, encoding, fields, names, parts, types
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
 from icdgen.backends.c.statement import call, head, like
-from icdgen.backends.c.text import comment, described, literal, noted, prose
+from icdgen.backends.c.text import FILE, comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, text_comment, words
@@ -77,7 +77,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
     enums = ("enums.h" if folder == message.node.name else f"../{folder}/enums.h" for folder in folders)
     about = message.comment
     return {
-        "about": comment(["@file", about.head, *about.rest, *noted(about)]),
+        "about": comment([FILE, about.head, *about.rest, *noted(about)]),
         "includes": ["../icdgen_wide.h" if message.has_wide_steps else "../icdgen.h", *enums, *parts.headers(message)],
         "constants": constants.of_fields(message),
         "initial": constants.initial(message),
@@ -91,6 +91,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "whole_accessors": accessors.whole_accessors(message),
         "accessors": accessors.accessors(message),
         "parts": parts.parts(message),
+        "known": fields.fields(message),
     }
 
 
@@ -110,7 +111,7 @@ def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
 
     return {
         "node": node.name,
-        "about": comment(["@file", f"{words(node.model.title)}: how its messages travel."]),
+        "about": comment([FILE, f"{words(node.model.title)}: how its messages travel."]),
         "sizes": links.sizes(link),
         "tables": links.tables(link),
     }
@@ -125,7 +126,7 @@ def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
     headers = sorted({*(f"../{name}.h" for name in node.model.includes), *(f"{one.name}.h" for one in node.messages)})
     return {
         "node": node.name,
-        "about": comment(["@file", f"{words(node.model.title)}: a client that takes its messages only."]),
+        "about": comment([FILE, f"{words(node.model.title)}: a client that takes its messages only."]),
         "includes": ["link.h", *headers],
         "buses": [bus for bus, is_known in buses if is_known],
         "telecommands": [(one, one.telecommand_id_name) for one in node.telecommands],
@@ -139,6 +140,6 @@ def _node(node: NodeDescription) -> dict[str, object]:
     headers += [f"{node.name}/{message.name}.h" for message in node.messages]
     headers += [f"{node.name}/link.h", f"{node.name}/client.h"] if node.is_linked else []
     return {
-        "about": comment(["@file", f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),
+        "about": comment([FILE, f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),
         "includes": ["icdgen.h", *headers],
     }

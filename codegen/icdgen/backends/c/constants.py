@@ -24,6 +24,8 @@ def _value(one: Constant, field: FieldDescription) -> str:
     if isinstance(one.value, int) and one.key in ("const", "special") and not field.storage.signed:
         return mask(one.value, field.storage.bits)
     text = exact_text(one.value)
+    if not one.is_raw and text.lstrip("-").isdigit():
+        text += ".0"  # a physical value is a double
     return f"({text})" if one.value < 0 and one.key not in ("const", "special") else text
 
 

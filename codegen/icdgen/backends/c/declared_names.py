@@ -80,7 +80,7 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     yield message.identifier(FILES, f"{message.node.name}/{message.name}.h")
     for end in ("h", "length", *(id.name for id in message.ids)):
         yield message.identifier(FILE, names.constant(message, end))
-    for end in ("t", "init", "decode", "encode", *(("misfit",) if message.is_narrow else ())):
+    for end in ("t", "init", "decode", "encode", "fields", *(("misfit",) if message.is_narrow else ())):
         yield message.identifier(FILE, f"{stem}_{end}")
     for part in parts_of(message):
         yield message.identifier(FILE, f"{stem}_{part_name(part.message)}")

@@ -14,6 +14,7 @@ from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
 _MOST_PACKETS = 256
+_CRC = f"/* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, table */\n{STEP * 2}"
 
 
 class Table(NamedTuple):
@@ -72,13 +73,16 @@ class _Tables:
         telecommands, telemetry = _short(link.telecommands), _short(link.telemetry)
         codes = link.error_codes
         rows = [
-            Row(self.array("nodes", "char *const", (f'"{name}"' for name in known.owners))),
+            Row(self.array("nodes", "char *const", (f'"{name}"' for name in known.owners)), "whose messages"),
             Row(f"{len(known.owners)}u", "how many"),
             Row(boolean(known.little), "byte order: little"),
             Row(boolean(known.node.bit_order == "msb0"), "bit 0 is the most significant one"),
             Row(f"{known.telemetry_ids.first}u, {known.telemetry_ids.last}u", "ids of telemetry"),
-            Row(self.array("telecommands", "icd_message_t", map(self.telecommand, telecommands))),
-            Row(self.array("telemetry", "icd_message_t", (_message(one, "0u") for one in telemetry))),
+            Row(self.array("telecommands", "icd_message_t", map(self.telecommand, telecommands)), "what can be sent"),
+            Row(
+                self.array("telemetry", "icd_message_t", (_message(one, "0u") for one in telemetry)),
+                "what can be requested",
+            ),
             Row(f"{len(telecommands)}u, {len(telemetry)}u", "how many"),
             Row(
                 f"{known.longest_telecommand}u, {known.longest_reply}u, {known.longest}u",
@@ -87,28 +91,31 @@ class _Tables:
             Row(f"{known.longest_data}u", "longest without id and checksum"),
             Row(or_none(known.node.node_type), "node type"),
             Row(or_none(known.node.interface_version), "interface version"),
-            Row(f"{{{self.values('client', known.client)}}}"),
+            Row(
+                f"{{{self.values('client', known.client)}}}", "ms for a reply, retries, ms between polls, ms of polling"
+            ),
             Row(
                 self.array(
                     "errors", "icd_error_code_t", (f"{{ICD_REASON_{key.upper()}, {code}u}}" for key, code in codes)
-                )
+                ),
+                "error codes",
             ),
             Row(f"{len(codes)}u, {known.errors.get('none', 0)}u", "how many; no error"),
-            Row(self.part("framing", known.framing, "uart.framing")),
-            Row(self.part("acknowledge", known.acknowledge, "uart.acknowledge")),
+            Row(self.part("framing", known.framing, "uart.framing"), "framing of the UART"),
+            Row(self.part("acknowledge", known.acknowledge, "uart.acknowledge"), "acknowledges on the UART"),
             Row(or_none(known.i2c_address), "I2C address"),
             Row(or_none(known.boot_ms), "boot time in ms"),
-            Row(self.named_step("polled", link.polled)),
-            Row(self.can()),
-            Row(self.checksum()),
-            Row(self.crc16()),
-            Row(self.log_mask()),
-            Row(self.part("log_file", known.log_file, "telemetry_log")),
-            Row(self.part("log_message", known.mask and known.log_message, "unsolicited_log")),
-            Row(self.time()),
-            Row(self.index()),
-            Row(self.hole_map()),
-            Row(self.files()),
+            Row(self.named_step("polled", link.polled), "what is polled for an acknowledge"),
+            Row(self.can(), "CAN"),
+            Row(self.checksum(), "checksums of messages"),
+            Row(self.crc16(), "CRC of files"),
+            Row(self.log_mask(), "mask of logs"),
+            Row(self.part("log_file", known.log_file, "telemetry_log"), "log files"),
+            Row(self.part("log_message", known.mask and known.log_message, "unsolicited_log"), "unsolicited logs"),
+            Row(self.time(), "packed times"),
+            Row(self.index(), "index of files"),
+            Row(self.hole_map(), "hole map"),
+            Row(self.files(), "file transfer"),
             *(Row(self.procedure(name), name) for name in PROCEDURES),
             Row(self.part("program_copy", known.program_copy, "program_copy"), "program copy"),
             Row(
@@ -223,11 +230,11 @@ class _Tables:
 
     def checksum(self) -> str:
         one = self.known.checksum
-        return self.part("checksum", one, "crc8", Row(f"{{{self.crc('crc8', one.crc)}}}", "CRC")) if one else "NULL"
+        return self.part("checksum", one, "crc8", Row(f"{_CRC}{{{self.crc('crc8', one.crc)}}}")) if one else "NULL"
 
     def crc16(self) -> str:
         one = self.known.crc16
-        return self.add("crc16", TYPES[Crc], [Row(self.crc("crc16", one))]) if one else "NULL"
+        return self.add("crc16", TYPES[Crc], [Row(f"{_CRC}{self.crc('crc16', one)}")]) if one else "NULL"
 
     def log_mask(self) -> str:
         mask = self.known.mask

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from icdgen.backends.c.bits import is_word, order
 from icdgen.describe import FieldDescription
+from icdgen.frozen import dataclass
 
 LONG_ENOUGH = 8
 """From this many words on, a row is moved as one."""

@@ -11,9 +11,23 @@ from icdgen.describe.comments import Comment
 
 WIDTH = 120
 
-_CAN_BE_MARKUP = re.compile(r"[\\@<&#%*_~[]")
-_MARKUP = re.compile(r"[\\@]|<(?=[A-Za-z/!?])|[&#%](?=[\w#:])|(?:(?<![^\s<{(\[,:;]))[*_~](?=\S)|\[(?=[^\]]*\][(\[:])")
-_COMMAND = re.compile(r"@file\Z|@note (?=Erratum |Note )")
+_MARKUP = re.compile(
+    r"""[\\@<&#%*_~[]  # all that can be: where none of these stands, nothing else is tried
+        (?: (?<=[\\@])
+          | (?<=<)(?=[A-Za-z/!?])
+          | (?<=[&#%])(?=[\w#:])
+          | (?<=[*_~])(?<![^\s<{(\[,:;].)(?=\S)
+          | (?<=\[)(?=[^\]]*\][(\[:])
+        )""",
+    re.VERBOSE,
+)
+
+
+class _Command(str):
+    """A paragraph that begins with a command of documentation tools: only we make one, no text of an ICD does."""
+
+
+FILE = _Command("@file")
 
 
 @lru_cache(maxsize=8192)
@@ -31,14 +45,12 @@ def plain(text: str) -> str:
 @lru_cache(maxsize=8192)
 def prose(text: str) -> str:
     """`plain` text for a documentation comment: only backticks are markup, nothing is a command or HTML to Doxygen or clang."""
-    text = plain(text)
-    return _MARKUP.sub(r"\\\g<0>", text) if _CAN_BE_MARKUP.search(text) else text
+    return _MARKUP.sub(r"\\\g<0>", plain(text))
 
 
 def _spelled(paragraph: str) -> str:
-    command = _COMMAND.match(paragraph) if paragraph[0] == "@" else None
-    start = command.group() if command else ""
-    return start + prose(paragraph[len(start) :])
+    command, space, rest = paragraph.partition(" ") if isinstance(paragraph, _Command) else ("", "", paragraph)
+    return command + space + prose(rest)
 
 
 def comment(paragraphs: Iterable[str], indent: str = "") -> str:
@@ -56,7 +68,7 @@ def described(one: Comment, indent: str = "") -> str:
 
 def noted(one: Comment) -> list[str]:
     """The errata as notes of the usual documentation tools."""
-    return [f"@note {paragraph}" for paragraph in one.errata]
+    return [_Command(f"@note {paragraph.removeprefix('Note ')}") for paragraph in one.errata]
 
 
 @lru_cache(maxsize=4096)

@@ -65,7 +65,7 @@ def files() -> Iterator[tuple[str, str]]:
     """What the pages show and lead to: path on the site and text."""
     folder = shipped.docs()
     for path in sorted(folder.glob("*/**/*")):
-        if path.is_file() and path.suffix in (".yaml", ".c", ".h", ".py", ".toml", ".txt"):
+        if path.is_file() and path.suffix in (".yaml", ".c", ".h", ".py", ".rs", ".toml", ".txt"):
             yield f"{FOLDER}/{path.relative_to(folder).as_posix()}", path.read_text("utf-8")
 
 

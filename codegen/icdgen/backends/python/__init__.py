@@ -47,7 +47,7 @@ class PythonBackend:
         linked = links_of(description)
         yield PurePosixPath("pyproject.toml"), render("pyproject.toml.j2", **common)
         yield PurePosixPath("README.md"), render("README.md.j2", **common)
-        yield root / "__init__.py", render("package.py.j2", **common)
+        yield root / "__init__.py", render("package.py.j2", public=nodes.public(description.nodes), **common)
         yield root / "py.typed", ""
         for name in render.runtime_files(str(_RUNTIME)):
             path = PurePosixPath(name).relative_to(_RUNTIME)
@@ -80,7 +80,7 @@ def _functions() -> dict[str, object]:
 
     found = (
         fields.annotation, fields.declaration, fields.exact, fields.physical, fields.scaled, fields.view_info, fields.whole,
-        fields.whole_comment, names.class_name, physical_comment, nodes.literals, nodes.mapping, text.docstring,
+        fields.whole_comment, names.class_name, physical_comment, nodes.listing, nodes.literals, nodes.mapping, text.docstring,
         text.documented, text.literal, text.prose, text_comment,
     )  # fmt: skip
     return {function.__name__: function for function in found}

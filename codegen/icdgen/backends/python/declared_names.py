@@ -44,7 +44,7 @@ def _of_field(field: FieldDescription) -> Iterator[str]:
 
 def _message(message: MessageDescription, scope: str) -> Iterator[Identifier]:
     for field in message.all_members:
-        for name in _of_field(field):
+        for name in (*_of_field(field), *(one.name.upper() for one in field.constants)):
             yield field.identifier(scope, name)
             if name in names.IN_MESSAGE:
                 yield Identifier(scope, name, names.IN_MESSAGE[name].format(name), None)

@@ -53,7 +53,7 @@ def _told(field: FieldDescription) -> list[str]:
         pairs = [f"({special.value}, {literal(special.meaning)})" for special in one.special]
         items.append(exploded("special=(", pairs, ")", " " * 8))
     items += (f'{key}="{value}"' for key in ("byte_order", "bit_order") if (value := getattr(one, key)))
-    items += (f"{_KEYWORDS.get(bound.key, bound.key)}={_number(bound.value)}" for bound in field.bounds)
+    items += (f"{_KEYWORDS.get(bound.key, bound.key)}={number(bound.value)}" for bound in field.bounds)
     return items
 
 
@@ -116,5 +116,6 @@ def _statement(name: str, note: str, call: str, items: list[str]) -> str:
     return line if len(line) + len(STEP) <= _WIDTH else f"{head}\n{STEP * 2}{inner}\n{STEP})"
 
 
-def _number(exact: Fraction) -> str:
+def number(exact: Fraction | int) -> str:
+    """A literal: of an int, or of the nearest float."""
     return str(exact.numerator) if exact.denominator == 1 else repr(exact.numerator / exact.denominator)

@@ -18,6 +18,10 @@ IN_MESSAGE = {
     **dict.fromkeys(("from_part", "from_physical", "iter_parts", "to_bytes", "to_json"), "the method `{}`"),
     **dict.fromkeys(("bool", "bytes", "float", "int", "str", "tuple"), "Python's `{}`"),
     **dict.fromkeys(("self", "cls"), "the parameter `{}`"),
+    **dict.fromkeys(
+        """ACKNOWLEDGED BIT_ORDER BYTE_ORDER FIELDS GET_ID ID IDS KIND LENGTH NAME NODE PARTS SET_ID TABLE VIEWS""".split(),
+        "the attribute `{}`",
+    ),
 }
 IN_PACKAGE = dict.fromkeys(("getattr", "globals", "import_module", "sorted"), "the function `{}`")
 IN_PACKAGE["wire"] = "the package `wire`"

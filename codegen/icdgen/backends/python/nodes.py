@@ -12,6 +12,13 @@ from icdgen.describe.comments import sentence
 from icdgen.describe.description import Under
 from icdgen.icd.model import Node
 
+_OF_NODE = (
+    "DIGEST", "ENUMS", "NAME", "TELECOMMANDS", "TELEMETRY", "TITLE", "decode_telecommand", "decode_telemetry",
+)  # fmt: skip
+_OF_PACKAGE = (
+    "NODES", "FieldInfo", "IcdError", "LengthError", "Message", "OpenEnum", "RangeError", "UnknownIdError",
+)  # fmt: skip
+
 
 def values(node: NodeDescription, description: Description) -> dict[str, object]:
     """What can be imported from a node: modules and names; and what is told of it."""
@@ -23,6 +30,7 @@ def values(node: NodeDescription, description: Description) -> dict[str, object]
     return {
         "doc": docstring(0, _documentation(node.model)),
         "imports": sorted(f"from {home} import {name} as {name}" for home, name in declared),
+        "public": sorted({*_OF_NODE, *_facts(node.model), *(name for _, name in declared)}),
         "homes": [(name, home) for home, name in sorted(declared)],
         "telecommands": _by_id(node, "telecommand"),
         "enums": [(one.model.name, names.class_name(one)) for one in node.enums],
@@ -43,6 +51,22 @@ def _known(under: Under) -> str:
         signs = "".join(f"({sign.byte}, 0x{sign.mask:02X}, 0x{sign.value:02X}), " for sign in one.signs)
         rows.append(f"({literal(names.class_name(one.message))}, {one.message.model.length}, ({signs.rstrip(' ')})),")
     return "(\n        " + "\n        ".join(rows) + "\n    )"
+
+
+def _facts(node: Node) -> list[str]:
+    """The constants that not every node has."""
+    known = {"NODE_TYPE": node.node_type, "INTERFACE_VERSION": node.interface_version}
+    return [name for name, value in known.items() if value is not None]
+
+
+def public(nodes: Iterable[NodeDescription]) -> list[str]:
+    """What can be imported from the package."""
+    return sorted({*_OF_PACKAGE, *(node.name for node in nodes)})
+
+
+def listing(names: Iterable[str]) -> str:
+    """A list of names."""
+    return exploded("[", [literal(name) for name in names], "]")
 
 
 def mapping(pairs: Sequence[tuple[str, str]]) -> str:

@@ -173,9 +173,15 @@ def view_of_fields(ctx: Context) -> Iterator[Fault]:
         free = _mask(field, node)
         for owner in message.owners:
             free &= ~_mask(owner, node)
-        if free:
+        if free and _is_read(message):
             help = "describe what has them as a field, or correct `at` or `bits`"
             yield Fault(source, source.at("at"), f"{name} is a view of {_bits_of(free)} that no field has", help)
+
+
+def _is_read(message: Message) -> bool:
+    """Whether no field was left out for a finding of its own; it may have the bits that others seem to lack."""
+    read = {id(field.source) for field in message.fields}
+    return all(id(entry) in read or "bitfields" in entry for entry in message.source.get("fields", ()))
 
 
 def covered_bytes(message: Message) -> int:

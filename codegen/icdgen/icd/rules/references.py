@@ -49,6 +49,11 @@ def _unknown_enum(ctx: Context, node: Node, name: str) -> tuple[str, str]:
 def enum_used(ctx: Context) -> Iterator[Fault]:
     used = {id(field.enum) for field, _, _ in ctx.having["enum"]}
     named = set()
+    for field, _, node in ctx.having["enum"]:
+        if field.enum is None:  # a slip of the pen; the one that is meant is used
+            scope = ctx.scope(node)
+            close = close_to(field.source["enum"], (e.name for n in scope for e in n.enums))
+            named |= {(id(n), close) for n in scope}
     for node in ctx.icd.nodes:
         for owner, key in _protocol_enums(node):
             named |= {(id(n), owner[key]) for n in ctx.scope(node)}

@@ -12,6 +12,66 @@ from __future__ import annotations
 
 from .. import _lazy
 
+__all__ = [
+    "AdvanceFileListReadPointer",
+    "AdvanceLogPointer",
+    "BlockChecksum",
+    "BootAndRunningProgramStatus",
+    "BootCause",
+    "BootIndexAndStatus",
+    "BootProgramsList",
+    "BootStatus",
+    "CacheEnabledState",
+    "CommunicationStatus",
+    "CurrentUnixTime",
+    "DIGEST",
+    "DownloadBlockReady",
+    "ENUMS",
+    "EdacErrorCounters",
+    "EraseFile",
+    "FileDownloadBufferWithFileContents",
+    "FileInformation",
+    "FileType",
+    "FileUploadDestination",
+    "FileUploadPacket",
+    "FinalizeUploadBlock",
+    "FormatSdCard",
+    "HoleMap1",
+    "HoleMap2",
+    "HoleMap3",
+    "HoleMap4",
+    "HoleMap5",
+    "HoleMap6",
+    "HoleMap7",
+    "HoleMap8",
+    "Identification",
+    "InitializeUploadComplete",
+    "InitiateDownloadBurst",
+    "InitiateFileUpload",
+    "LINK",
+    "LastLoggedEvent",
+    "LoadFileDownloadBlock",
+    "NAME",
+    "Reset",
+    "ResetBootRegisters",
+    "ResetCause",
+    "ResetFileListReadPointer",
+    "ResetLogPointer",
+    "ResetUploadBlock",
+    "SdCardFormatEraseProgress",
+    "SramLatchupCounters",
+    "SramScrubParameters",
+    "TELECOMMANDS",
+    "TELEMETRY",
+    "TITLE",
+    "TcErrorReason",
+    "TelecommandAcknowledge",
+    "UnixTimeSaveToFlash",
+    "UploadBlockComplete",
+    "decode_telecommand",
+    "decode_telemetry",
+]
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from ._link import LINK as LINK
@@ -209,4 +269,4 @@ if not TYPE_CHECKING:
         return _lazy.attribute(globals(), _HOMES, name)
 
     def __dir__():
-        return sorted({*globals(), *_HOMES})
+        return sorted({*globals(), *__all__})

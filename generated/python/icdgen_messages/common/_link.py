@@ -7,6 +7,8 @@ from __future__ import annotations
 from ..wire import link
 from . import TELECOMMANDS, TELEMETRY
 
+__all__ = ["LINK"]
+
 LINK = link.Link(
     node="common",
     order="little",

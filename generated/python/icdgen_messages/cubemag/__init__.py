@@ -12,6 +12,23 @@ from __future__ import annotations
 
 from .. import _lazy
 
+__all__ = [
+    "DIGEST",
+    "DeploymentStatus",
+    "ENUMS",
+    "MagState",
+    "MntState",
+    "NAME",
+    "PrimaryMagnetometerMeasurement",
+    "RedundantMagnetometerMeasurement",
+    "State",
+    "TELECOMMANDS",
+    "TELEMETRY",
+    "TITLE",
+    "decode_telecommand",
+    "decode_telemetry",
+]
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from ._types.deployment_status import DeploymentStatus as DeploymentStatus
@@ -68,4 +85,4 @@ if not TYPE_CHECKING:
         return _lazy.attribute(globals(), _HOMES, name)
 
     def __dir__():
-        return sorted({*globals(), *_HOMES})
+        return sorted({*globals(), *__all__})

@@ -15,6 +15,21 @@ from __future__ import annotations
 
 from .. import _lazy
 
+__all__ = [
+    "DIGEST",
+    "ENUMS",
+    "MotorPower",
+    "NAME",
+    "TELECOMMANDS",
+    "TELEMETRY",
+    "TITLE",
+    "WheelErrorState",
+    "WheelReferenceSpeed",
+    "WheelSpeed",
+    "decode_telecommand",
+    "decode_telemetry",
+]
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from ._types.motor_power import MotorPower as MotorPower
@@ -65,4 +80,4 @@ if not TYPE_CHECKING:
         return _lazy.attribute(globals(), _HOMES, name)
 
     def __dir__():
-        return sorted({*globals(), *_HOMES})
+        return sorted({*globals(), *__all__})

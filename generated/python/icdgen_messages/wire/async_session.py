@@ -42,6 +42,7 @@ class AsyncSession(Exchanges):
         super().__init__(Client(link, "uart", crc, settings=settings), on_event, clock)
         self._reader, self._writer = reader, writer
         self._turn: Optional[asyncio.Lock] = None
+        self._read_before: Optional[asyncio.Future[bytes]] = None
 
     async def get(self, message: type[M]) -> M:
         """Requests telemetry, or reads a setting.
@@ -78,15 +79,13 @@ class AsyncSession(Exchanges):
         Without ``until`` it waits as long as the client wants to, and a second at most.
         """
         await self._flush()
-        try:
-            reading = self._reader.read(_PIECE)
-            data = await asyncio.wait_for(reading, self._seconds(until))
-        except asyncio.TimeoutError:  # which is `TimeoutError` only since 3.11
+        data = await self._read(self._seconds(until))
+        if data is None:
             events = self.client.tick(self._now())
-        else:
-            if not data:
-                raise ConnectionResetError("the other side closed the connection")
+        elif data:
             events = self.client.received(self._now(), data)
+        else:
+            raise ConnectionResetError("the other side closed the connection")
         await self._flush()
         return self._tell_unasked(events)
 
@@ -107,6 +106,25 @@ class AsyncSession(Exchanges):
                 return result
             finally:
                 exchange.close()
+
+    async def _read(self, seconds: float) -> Optional[bytes]:
+        """What comes by then; None if nothing does.
+
+        `asyncio.wait_for` could lose a cancellation at the moment at which bytes come, before
+        Python 3.12; here the bytes are kept for whoever reads next.
+        """
+        reading = self._read_before or asyncio.ensure_future(self._reader.read(_PIECE))
+        self._read_before = None
+        try:
+            await asyncio.wait((reading,), timeout=seconds)
+        except asyncio.CancelledError:
+            if not reading.cancel():
+                self._read_before = reading
+            raise
+        if reading.cancel():
+            await asyncio.wait((reading,))  # until the stream can be read again
+            return None
+        return reading.result()
 
     async def _flush(self) -> None:
         data = self.client.output()

@@ -54,7 +54,9 @@ def socket_port(
 
     def read(seconds: float) -> bytes:
         before = port.gettimeout()
-        port.settimeout(max(seconds, 0.001))  # 0 would be an error where nothing is there
+        port.settimeout(
+            max(seconds, 0.001)
+        )  # 0 would be an error where nothing is there
         try:
             data = port.recv(_PIECE)
         except socket.timeout:  # which is `TimeoutError` only since 3.10

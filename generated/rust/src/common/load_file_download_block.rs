@@ -47,7 +47,7 @@ pub struct LoadFileDownloadBlock {
     ///
     /// 20 kB at most.
     ///
-    /// Must be at most 20480 byte.
+    /// Must be at most 20480 byte, which setters do not check.
     ///
     /// Erratum COM-039 (likely): see Offset.
     ///

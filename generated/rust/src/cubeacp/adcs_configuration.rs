@@ -492,7 +492,7 @@ pub struct AdcsConfiguration {
     ///
     /// wy-ref.
     ///
-    /// Must be below 0 deg/s.
+    /// Must be below 0 deg/s, which setters do not check.
     ///
     /// Note ACP-162 (certain): Limits of a sign in words only. Two references must always be
     /// smaller than 0; the types allow the opposite, and what the program does with it is not said.
@@ -521,7 +521,7 @@ pub struct AdcsConfiguration {
     ///
     /// H-ref.
     ///
-    /// Must be below 0 Nms.
+    /// Must be below 0 Nms, which setters do not check.
     ///
     /// Note ACP-162 (certain): see Reference spin rate.
     pub reference_wheel_momentum: f32,
@@ -3168,7 +3168,8 @@ impl AdcsConfiguration {
         Ok(())
     }
 
-    /// Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s.
+    /// Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s, which setters do not
+    /// check.
     #[must_use]
     pub fn reference_spin_rate_deg_per_s(&self) -> f64 {
         f64::from(self.reference_spin_rate) / 1_000.0

@@ -43,7 +43,7 @@ pub struct SetDetumblingControlParameters {
     ///
     /// wy-ref.
     ///
-    /// Must be below 0 deg/s.
+    /// Must be below 0 deg/s, which setters do not check.
     ///
     /// Note ACP-162 (certain): Limits of a sign in words only. Two references must always be
     /// smaller than 0; the types allow the opposite, and what the program does with it is not said.
@@ -108,7 +108,8 @@ impl SetDetumblingControlParameters {
         Ok(bytes)
     }
 
-    /// Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s.
+    /// Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s, which setters do not
+    /// check.
     #[must_use]
     pub fn spin_rate_deg_per_s(&self) -> f64 {
         f64::from(self.spin_rate) / 1_000.0

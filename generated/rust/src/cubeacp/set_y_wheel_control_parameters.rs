@@ -61,7 +61,7 @@ pub struct SetYWheelControlParameters {
     ///
     /// H-ref.
     ///
-    /// Must be below 0 Nms.
+    /// Must be below 0 Nms, which setters do not check.
     ///
     /// Note ACP-162 (certain): Limits of a sign in words only. Two references must always be
     /// smaller than 0; the types allow the opposite, and what the program does with it is not said.

@@ -9,6 +9,72 @@ from __future__ import annotations
 
 from importlib import import_module
 
+__all__ = [
+    "AsyncSession",
+    "BusyError",
+    "CanEvent",
+    "CanJoiner",
+    "CanMessage",
+    "CanPacket",
+    "ChecksumError",
+    "Client",
+    "Crc",
+    "Done",
+    "DosTime",
+    "Download",
+    "Erase",
+    "Event",
+    "FailedError",
+    "FileEntry",
+    "FileList",
+    "Format",
+    "HoleMap",
+    "I2cTransfer",
+    "Identity",
+    "IndexEntry",
+    "LineError",
+    "Link",
+    "Log",
+    "LogEntry",
+    "LogFrame",
+    "LogMessage",
+    "LogReader",
+    "LogWriter",
+    "Malformed",
+    "OutcomeOf",
+    "Packet",
+    "Procedure",
+    "ProgramCopy",
+    "ProgramInformation",
+    "Refused",
+    "RefusedError",
+    "ReplyTimeoutError",
+    "Request",
+    "Session",
+    "Settings",
+    "Stray",
+    "Timeout",
+    "TooLongError",
+    "UartDecoder",
+    "UartEvent",
+    "UnsupportedError",
+    "Upload",
+    "can_split",
+    "crc8",
+    "crc16",
+    "dos_time_pack",
+    "dos_time_unpack",
+    "i2c_read_length",
+    "i2c_reply",
+    "i2c_write",
+    "identify",
+    "read_index",
+    "serial_port",
+    "uart_encode",
+    "uart_kind",
+    "write_index",
+]
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from .async_session import AsyncSession as AsyncSession
@@ -126,4 +192,4 @@ if not TYPE_CHECKING:
         return value
 
     def __dir__():
-        return sorted({*globals(), *_HOME})
+        return sorted({*globals(), *__all__})

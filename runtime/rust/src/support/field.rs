@@ -76,6 +76,17 @@ impl Field {
         self
     }
 
+    /// Whether a physical value (a raw one where there is no scale) keeps the limits; NaN keeps none.
+    #[must_use]
+    pub fn allows(&self, value: f64) -> bool {
+        self.limits.iter().all(|&(kind, limit)| match kind {
+            "min" => value >= limit,
+            "above" => value > limit,
+            "max" => value <= limit,
+            _ => value < limit,
+        })
+    }
+
     /// The double nearest to the physical value of a raw one; None without a scale.
     #[must_use]
     pub fn physical(&self, raw: i64) -> Option<f64> {

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["BootSetProgramsList"]
+
 
 class BootSetProgramsList(_enumeration.OpenEnum):
     """BootSetProgramsList: an enumeration. Table 63.

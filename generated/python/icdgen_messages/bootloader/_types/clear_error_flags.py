@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["ClearErrorFlags"]
+
 
 class ClearErrorFlags(_base.Message):
     """Clear Error Flags: telecommand 7, 0 bytes. Table 61.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .programs_list import ProgramsList
 
+__all__ = ["CopyToInternalFlash"]
+
 
 class CopyToInternalFlash(_base.Message):
     """Copy Program to Internal Flash: telecommand 103, 2 bytes. Table 67.
@@ -24,6 +26,8 @@ class CopyToInternalFlash(_base.Message):
     ID = 103
     IDS = (ID,)
     LENGTH = 2
+    OVERWRITE_OVERWRITE_THE_BOOT_SEGMENT = 90
+    """Bootloader overwrite flag: overwrite the boot segment."""
     TABLE = 67
 
     source_program_index: ProgramsList = _base.field(

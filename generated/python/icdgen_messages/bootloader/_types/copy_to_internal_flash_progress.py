@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["CopyToInternalFlashProgress"]
+
 
 class CopyToInternalFlashProgress(_base.Message):
     """Copy To Internal Flash Progress: telemetry 233, 1 byte. Table 71.

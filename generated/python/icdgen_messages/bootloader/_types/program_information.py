@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .programs_list import ProgramsList
 
+__all__ = ["ProgramInformation"]
+
 
 class ProgramInformation(_base.Message):
     """Program Information: telemetry 232, 8 bytes. Table 70.

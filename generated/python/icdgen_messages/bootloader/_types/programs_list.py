@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["ProgramsList"]
+
 
 class ProgramsList(_enumeration.OpenEnum):
     """ProgramsList: an enumeration. Table 66."""

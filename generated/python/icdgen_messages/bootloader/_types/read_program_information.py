@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .programs_list import ProgramsList
 
+__all__ = ["ReadProgramInformation"]
+
 
 class ReadProgramInformation(_base.Message):
     """Read Program Information: telecommand 102, 1 byte. Table 65.

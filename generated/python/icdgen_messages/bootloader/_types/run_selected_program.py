@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["RunSelectedProgram"]
+
 
 class RunSelectedProgram(_base.Message):
     """Run Selected Program: telecommand 101, 0 bytes. Table 64.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .boot_set_programs_list import BootSetProgramsList
 
+__all__ = ["SetBootIndex"]
+
 
 class SetBootIndex(_base.Message):
     """Set Boot Index: telecommand 100, 1 byte. Table 62.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["State"]
+
 
 class State(_base.Message):
     """Bootloader State: telemetry 132, 6 bytes. Table 69.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["AdvanceFileListReadPointer"]
+
 
 class AdvanceFileListReadPointer(_base.Message):
     """Advance File List Read Pointer: telecommand 113, 0 bytes. Table 18.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["AdvanceLogPointer"]
+
 
 class AdvanceLogPointer(_base.Message):
     """Advance Log Pointer: telecommand 5, 0 bytes. Table 12.

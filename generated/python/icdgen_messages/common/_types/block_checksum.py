@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["BlockChecksum"]
+
 
 class BlockChecksum(_base.Message):
     """Block Checksum: telemetry 246, 2 bytes. Table 46.

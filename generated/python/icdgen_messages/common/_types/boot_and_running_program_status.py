@@ -10,6 +10,8 @@ from .boot_cause import BootCause
 from .boot_programs_list import BootProgramsList
 from .reset_cause import ResetCause
 
+__all__ = ["BootAndRunningProgramStatus"]
+
 
 class BootAndRunningProgramStatus(_base.Message):
     """Boot And Running Program Status: telemetry 129, 6 bytes. Table 28.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["BootCause"]
+
 
 class BootCause(_enumeration.OpenEnum):
     """BootCause: an enumeration. Table 30."""

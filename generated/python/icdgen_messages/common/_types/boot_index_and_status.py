@@ -9,6 +9,8 @@ from ... import _base
 from .boot_programs_list import BootProgramsList
 from .boot_status import BootStatus
 
+__all__ = ["BootIndexAndStatus"]
+
 
 class BootIndexAndStatus(_base.Message):
     """Boot Index and Status: telemetry 130, 2 bytes. Table 32.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["BootProgramsList"]
+
 
 class BootProgramsList(_enumeration.OpenEnum):
     """BootProgramsList: an enumeration. Table 31."""

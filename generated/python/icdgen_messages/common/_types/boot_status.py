@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["BootStatus"]
+
 
 class BootStatus(_enumeration.OpenEnum):
     """BootStatus: an enumeration. Table 33.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["CacheEnabledState"]
+
 
 class CacheEnabledState(_base.Message):
     """Cache enabled state: configuration, set by telecommand 3, got by telemetry 131, 1

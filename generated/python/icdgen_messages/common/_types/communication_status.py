@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["CommunicationStatus"]
+
 
 class CommunicationStatus(_base.Message):
     """Communication Status: telemetry 144, 6 bytes. Table 37.

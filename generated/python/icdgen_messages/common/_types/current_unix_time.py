@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["CurrentUnixTime"]
+
 
 class CurrentUnixTime(_base.Message):
     """Current Unix Time: configuration, set by telecommand 2, got by telemetry 140, 6

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["DownloadBlockReady"]
+
 
 class DownloadBlockReady(_base.Message):
     """Download Block Ready: telemetry 242, 5 bytes. Table 42.

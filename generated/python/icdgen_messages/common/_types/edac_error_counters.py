@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["EdacErrorCounters"]
+
 
 class EdacErrorCounters(_base.Message):
     """EDAC Error Counters: telemetry 143, 6 bytes. Table 36.

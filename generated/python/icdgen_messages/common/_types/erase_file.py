@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .file_type import FileType
 
+__all__ = ["EraseFile"]
+
 
 class EraseFile(_base.Message):
     """Erase File: telecommand 108, 3 bytes. Table 15.

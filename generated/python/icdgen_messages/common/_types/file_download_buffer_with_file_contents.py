@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["FileDownloadBufferWithFileContents"]
+
 
 class FileDownloadBufferWithFileContents(_base.Message):
     """File Download Buffer with File Contents: telemetry 241, 22 bytes. Table 41.

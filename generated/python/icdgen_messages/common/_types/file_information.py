@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .file_type import FileType
 
+__all__ = ["FileInformation"]
+
 
 class FileInformation(_base.Message):
     """File Information: telemetry 243, 12 bytes. Table 43.

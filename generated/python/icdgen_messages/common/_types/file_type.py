@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["FileType"]
+
 
 class FileType(_enumeration.OpenEnum):
     """FileType: an enumeration. Table 16.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["FileUploadDestination"]
+
 
 class FileUploadDestination(_enumeration.OpenEnum):
     """FileUploadDestination: an enumeration. Table 20.

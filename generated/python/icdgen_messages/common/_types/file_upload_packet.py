@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["FileUploadPacket"]
+
 
 class FileUploadPacket(_base.Message):
     """File Upload Packet: telecommand 115, 22 bytes. Table 21.

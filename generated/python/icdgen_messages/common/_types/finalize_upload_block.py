@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .file_upload_destination import FileUploadDestination
 
+__all__ = ["FinalizeUploadBlock"]
+
 
 class FinalizeUploadBlock(_base.Message):
     """Finalize Upload Block: telecommand 116, 7 bytes. Table 22.

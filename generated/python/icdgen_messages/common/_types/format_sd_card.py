@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["FormatSdCard"]
+
 
 class FormatSdCard(_base.Message):
     """Format SD card: telecommand 33, 1 byte. Table 14.
@@ -22,6 +24,8 @@ class FormatSdCard(_base.Message):
     ID = 33
     IDS = (ID,)
     LENGTH = 1
+    MAGIC_NUMBER_CONST = 90
+    """Magic Number: the only valid raw value."""
     TABLE = 14
 
     magic_number: int = _base.field("Magic Number", 0, 8, "uint", default=90, const=90)

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["HoleMap1"]
+
 
 class HoleMap1(_base.Message):
     """Hole Map 1: configuration, set by telecommand 120, got by telemetry 247, 16

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["HoleMap2"]
+
 
 class HoleMap2(_base.Message):
     """Hole Map 2: configuration, set by telecommand 121, got by telemetry 248, 16

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["HoleMap3"]
+
 
 class HoleMap3(_base.Message):
     """Hole Map 3: configuration, set by telecommand 122, got by telemetry 249, 16

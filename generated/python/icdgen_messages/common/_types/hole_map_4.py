@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["HoleMap4"]
+
 
 class HoleMap4(_base.Message):
     """Hole Map 4: configuration, set by telecommand 123, got by telemetry 250, 16

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["HoleMap5"]
+
 
 class HoleMap5(_base.Message):
     """Hole Map 5: configuration, set by telecommand 124, got by telemetry 251, 16

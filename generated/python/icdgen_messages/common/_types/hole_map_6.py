@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["HoleMap6"]
+
 
 class HoleMap6(_base.Message):
     """Hole Map 6: configuration, set by telecommand 125, got by telemetry 252, 16

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["HoleMap7"]
+
 
 class HoleMap7(_base.Message):
     """Hole Map 7: configuration, set by telecommand 126, got by telemetry 253, 16

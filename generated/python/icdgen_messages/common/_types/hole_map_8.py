@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["HoleMap8"]
+
 
 class HoleMap8(_base.Message):
     """Hole Map 8: configuration, set by telecommand 127, got by telemetry 254, 16

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Identification"]
+
 
 class Identification(_base.Message):
     """Identification: telemetry 128, 8 bytes. Table 27.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["InitializeUploadComplete"]
+
 
 class InitializeUploadComplete(_base.Message):
     """Initialize Upload Complete: telemetry 244, 1 byte. Table 44.

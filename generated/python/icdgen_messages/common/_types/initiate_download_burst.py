@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["InitiateDownloadBurst"]
+
 
 class InitiateDownloadBurst(_base.Message):
     """Initiate Download Burst: telecommand 119, 2 bytes. Table 25.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .file_upload_destination import FileUploadDestination
 
+__all__ = ["InitiateFileUpload"]
+
 
 class InitiateFileUpload(_base.Message):
     """Initiate File Upload: telecommand 114, 2 bytes. Table 19.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["LastLoggedEvent"]
+
 
 class LastLoggedEvent(_base.Message):
     """Last Logged Event: telemetry 141, 6 bytes. Table 34.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .file_type import FileType
 
+__all__ = ["LoadFileDownloadBlock"]
+
 
 class LoadFileDownloadBlock(_base.Message):
     """Load File Download Block: telecommand 112, 8 bytes. Table 17.
@@ -22,6 +24,8 @@ class LoadFileDownloadBlock(_base.Message):
     ID = 112
     IDS = (ID,)
     LENGTH = 8
+    BLOCK_LENGTH_MAX = 20480
+    """BlockLength in byte: largest value."""
     TABLE = 17
 
     file_type: FileType = _base.field("File Type", 0, 8, "enum", default=FileType(0))
@@ -56,7 +60,7 @@ class LoadFileDownloadBlock(_base.Message):
 
     20 kB at most.
 
-    Must be at most 20480 byte.
+    Must be at most 20480 byte, which setters do not check.
 
     Erratum COM-039 (likely): see Offset.
 

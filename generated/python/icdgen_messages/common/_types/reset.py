@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Reset"]
+
 
 class Reset(_base.Message):
     """Reset: telecommand 1, 1 byte. Table 10.
@@ -27,6 +29,8 @@ class Reset(_base.Message):
     ID = 1
     IDS = (ID,)
     LENGTH = 1
+    MAGIC_NUMBER_CONST = 90
+    """Magic number: the only valid raw value."""
     TABLE = 10
     ACKNOWLEDGED = False
 

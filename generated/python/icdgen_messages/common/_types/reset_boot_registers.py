@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["ResetBootRegisters"]
+
 
 class ResetBootRegisters(_base.Message):
     """Reset Boot Registers: telecommand 6, 0 bytes. Table 13.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["ResetCause"]
+
 
 class ResetCause(_enumeration.OpenEnum):
     """ResetCause: an enumeration. Table 29."""

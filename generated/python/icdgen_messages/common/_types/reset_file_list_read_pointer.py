@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["ResetFileListReadPointer"]
+
 
 class ResetFileListReadPointer(_base.Message):
     """Reset File List Read Pointer: telecommand 118, 0 bytes. Table 24.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["ResetLogPointer"]
+
 
 class ResetLogPointer(_base.Message):
     """Reset Log Pointer: telecommand 4, 0 bytes. Table 11.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["ResetUploadBlock"]
+
 
 class ResetUploadBlock(_base.Message):
     """Reset Upload Block: telecommand 117, 0 bytes. Table 23.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SdCardFormatEraseProgress"]
+
 
 class SdCardFormatEraseProgress(_base.Message):
     """SD card format/erase progress: telemetry 234, 1 byte. Table 38.

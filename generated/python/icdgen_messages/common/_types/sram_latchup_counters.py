@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SramLatchupCounters"]
+
 
 class SramLatchupCounters(_base.Message):
     """SRAM Latchup counters: telemetry 142, 6 bytes. Table 35.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SramScrubParameters"]
+
 
 class SramScrubParameters(_base.Message):
     """SRAM Scrub Parameters: configuration, set by telecommand 8, got by telemetry 134,

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["TcErrorReason"]
+
 
 class TcErrorReason(_enumeration.OpenEnum):
     """TcErrorReason: an enumeration. Table 40."""

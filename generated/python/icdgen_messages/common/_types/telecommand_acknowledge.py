@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .tc_error_reason import TcErrorReason
 
+__all__ = ["TelecommandAcknowledge"]
+
 
 class TelecommandAcknowledge(_base.Message):
     """Telecommand Acknowledge: telemetry 240, 4 bytes. Table 39.

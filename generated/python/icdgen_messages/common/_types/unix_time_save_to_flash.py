@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["UnixTimeSaveToFlash"]
+
 
 class UnixTimeSaveToFlash(_base.Message):
     """Unix Time Save to Flash: configuration, set by telecommand 9, got by telemetry

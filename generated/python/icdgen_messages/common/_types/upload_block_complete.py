@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["UploadBlockComplete"]
+
 
 class UploadBlockComplete(_base.Message):
     """Upload Block Complete: telemetry 245, 1 byte. Table 45.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .execution_waypoints import ExecutionWaypoints
 
+__all__ = ["AcpExecutionState"]
+
 
 class AcpExecutionState(_base.Message):
     """ACP Execution State: telemetry 220, 3 bytes. Table 167.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["AcpProgramType"]
+
 
 class AcpProgramType(_enumeration.OpenEnum):
     """AcpProgramType: an enumeration. Table 202."""

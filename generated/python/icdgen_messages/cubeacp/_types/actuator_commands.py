@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["ActuatorCommands"]
+
 
 class ActuatorCommands(_base.Message):
     """Actuator Commands: telemetry 192, 12 bytes. Table 151.

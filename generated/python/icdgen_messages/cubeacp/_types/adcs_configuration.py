@@ -10,6 +10,8 @@ from .asgp_filter import AsgpFilter
 from .axis_select import AxisSelect
 from .mag_mode_val import MagModeVal
 
+__all__ = ["AdcsConfiguration"]
+
 
 class AdcsConfiguration(_base.Message):
     """ADCS Configuration: configuration, set by telecommand 20, got by telemetry 206,
@@ -45,6 +47,10 @@ class AdcsConfiguration(_base.Message):
     GET_ID = 206
     IDS = (SET_ID, GET_ID)
     LENGTH = 504
+    REFERENCE_SPIN_RATE_DEG_PER_S_BELOW = 0
+    """Reference spin rate in deg/s: must be below this."""
+    REFERENCE_WHEEL_MOMENTUM_BELOW = 0
+    """Reference Wheel Momentum in Nms: must be below this."""
     TABLE = 192
     PARTS = (
         ("cubeacp", "SetMagnetorquerConfiguration", 0),
@@ -1168,14 +1174,16 @@ class AdcsConfiguration(_base.Message):
 
     wy-ref.
 
-    Must be below 0 deg/s.
+    Must be below 0 deg/s, which setters do not check.
 
     Note ACP-162 (certain): Limits of a sign in words only. Two references must always
     be smaller than 0; the types allow the opposite, and what the program does with it
     is not said.
     """
     reference_spin_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
-    """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s."""
+    """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s, which
+    setters do not check.
+    """
     reference_spin_rate_mdeg_per_s: int = _base.whole(1, 0)
     """Reference spin rate in thousandths of deg/s, exact: -32768 to 32767."""
 
@@ -1218,7 +1226,7 @@ class AdcsConfiguration(_base.Message):
 
     H-ref.
 
-    Must be below 0 Nms.
+    Must be below 0 Nms, which setters do not check.
 
     Note ACP-162 (certain): see Reference spin rate.
     """

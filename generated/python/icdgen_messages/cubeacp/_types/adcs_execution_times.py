@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["AdcsExecutionTimes"]
+
 
 class AdcsExecutionTimes(_base.Message):
     """Adcs Execution Times: telemetry 196, 8 bytes. Table 155.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["AdcsMeasurements"]
+
 
 class AdcsMeasurements(_base.Message):
     """ADCS Measurements: telemetry 191, 72 bytes. Table 150.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["AdcsMiscCurrents"]
+
 
 class AdcsMiscCurrents(_base.Message):
     """ADCS Misc Current Measurements: telemetry 198, 6 bytes. Table 156.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .power_select import PowerSelect
 
+__all__ = ["AdcsPowerControl"]
+
 
 class AdcsPowerControl(_base.Message):
     """ADCS Power Control: configuration, set by telecommand 11, got by telemetry 197, 3

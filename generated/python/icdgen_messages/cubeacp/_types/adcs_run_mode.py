@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["AdcsRunMode"]
+
 
 class AdcsRunMode(_enumeration.OpenEnum):
     """AdcsRunMode: an enumeration. Table 75."""

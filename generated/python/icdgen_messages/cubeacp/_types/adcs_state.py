@@ -12,6 +12,8 @@ from .con_mode_select import ConModeSelect
 from .estim_mode_select import EstimModeSelect
 from .mag_mode_val import MagModeVal
 
+__all__ = ["AdcsState"]
+
 
 class AdcsState(_base.Message):
     """ADCS State: telemetry 190, 54 bytes. Table 149.

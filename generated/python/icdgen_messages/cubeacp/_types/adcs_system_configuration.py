@@ -13,6 +13,8 @@ from .gpio_port_pin import GpioPortPin
 from .gps_select import GpsSelect
 from .special_con_select import SpecialConSelect
 
+__all__ = ["AdcsSystemConfiguration"]
+
 
 class AdcsSystemConfiguration(_base.Message):
     """ADCS System Configuration: configuration, set by telecommand 30, got by telemetry

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["AdcsTemperatures"]
+
 
 class AdcsTemperatures(_base.Message):
     """ADCS Temperatures: telemetry 174, 6 bytes. Table 132.

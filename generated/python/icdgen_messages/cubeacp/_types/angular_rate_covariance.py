@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["AngularRateCovariance"]
+
 
 class AngularRateCovariance(_base.Message):
     """Angular Rate Covariance: telemetry 165, 6 bytes. Table 121.

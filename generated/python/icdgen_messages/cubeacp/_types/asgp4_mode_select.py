@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["Asgp4ModeSelect"]
+
 
 class Asgp4ModeSelect(_enumeration.OpenEnum):
     """Asgp4ModeSelect: an enumeration. Table 87.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .asgp4_mode_select import Asgp4ModeSelect
 
+__all__ = ["Asgp4RunMode"]
+
 
 class Asgp4RunMode(_base.Message):
     """ASGP4 Run Mode: telecommand 31, 1 byte. Table 86.

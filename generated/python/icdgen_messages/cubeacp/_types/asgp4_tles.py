@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .asgp_error import AsgpError
 
+__all__ = ["Asgp4Tles"]
+
 
 class Asgp4Tles(_base.Message):
     """ASGP4 TLEs: telemetry 228, 33 bytes. Table 170.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Asgp4Trigger"]
+
 
 class Asgp4Trigger(_base.Message):
     """ASGP4 Trigger: telecommand 32, 0 bytes. Table 88.

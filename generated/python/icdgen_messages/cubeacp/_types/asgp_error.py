@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["AsgpError"]
+
 
 class AsgpError(_enumeration.OpenEnum):
     """AsgpError: an enumeration. Table 171.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["AsgpFilter"]
+
 
 class AsgpFilter(_enumeration.OpenEnum):
     """AsgpFilter: an enumeration. Table 193.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .asgp_filter import AsgpFilter
 
+__all__ = ["AugmentedSgp4Parameters"]
+
 
 class AugmentedSgp4Parameters(_base.Message):
     """Augmented-SGP4 Parameters: configuration, set by telecommand 28, got by telemetry

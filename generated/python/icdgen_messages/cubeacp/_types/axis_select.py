@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["AxisSelect"]
+
 
 class AxisSelect(_enumeration.OpenEnum):
     """AxisSelect: an enumeration. Table 180."""

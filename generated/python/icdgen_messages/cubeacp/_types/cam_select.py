@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["CamSelect"]
+
 
 class CamSelect(_enumeration.OpenEnum):
     """CamSelect: an enumeration. Table 95.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["CaptureResult"]
+
 
 class CaptureResult(_enumeration.OpenEnum):
     """CaptureResult: an enumeration. Table 123."""

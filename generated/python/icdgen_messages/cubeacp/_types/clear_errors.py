@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["ClearErrors"]
+
 
 class ClearErrors(_base.Message):
     """Clear Errors: telecommand 12, 1 byte. Table 76.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["CoarseSunVector"]
+
 
 class CoarseSunVector(_base.Message):
     """Coarse Sun Vector: telemetry 152, 6 bytes. Table 108.

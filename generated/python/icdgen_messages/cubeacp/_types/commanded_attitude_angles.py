@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["CommandedAttitudeAngles"]
+
 
 class CommandedAttitudeAngles(_base.Message):
     """Commanded Attitude Angles: configuration, set by telecommand 15, got by telemetry

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["ConModeSelect"]
+
 
 class ConModeSelect(_enumeration.OpenEnum):
     """ConModeSelect: an enumeration. Table 78.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["ConvertToJpgFile"]
+
 
 class ConvertToJpgFile(_base.Message):
     """Convert to JPG file: telecommand 57, 3 bytes. Table 91.

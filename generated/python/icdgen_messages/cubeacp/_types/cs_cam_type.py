@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["CsCamType"]
+
 
 class CsCamType(_enumeration.OpenEnum):
     """CsCamType: an enumeration. Table 204."""

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .axis_select import AxisSelect
 
+__all__ = ["CssConfiguration"]
+
 
 class CssConfiguration(_base.Message):
     """CSS Configuration: configuration, set by telecommand 24, got by telemetry 139, 21

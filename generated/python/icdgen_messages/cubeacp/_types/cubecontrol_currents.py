@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["CubecontrolCurrents"]
+
 
 class CubecontrolCurrents(_base.Message):
     """CubeControl Current Measurements: telemetry 172, 6 bytes. Table 130.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Cubesense1Currents"]
+
 
 class Cubesense1Currents(_base.Message):
     """CubeSense1 Current Measurements: telemetry 171, 4 bytes. Table 129.

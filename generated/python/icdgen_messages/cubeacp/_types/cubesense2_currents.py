@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Cubesense2Currents"]
+
 
 class Cubesense2Currents(_base.Message):
     """CubeSense2 Current Measurements: telemetry 232, 4 bytes. Table 175.

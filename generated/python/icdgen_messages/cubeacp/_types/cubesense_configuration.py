@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["CubesenseConfiguration"]
+
 
 class CubesenseConfiguration(_base.Message):
     """CubeSense Configuration: configuration, set by telecommand 25, got by telemetry

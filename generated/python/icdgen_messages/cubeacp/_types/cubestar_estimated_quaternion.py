@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["CubestarEstimatedQuaternion"]
+
 
 class CubestarEstimatedQuaternion(_base.Message):
     """CubeStar Estimated Quaternion: telemetry 230, 6 bytes. Table 173.

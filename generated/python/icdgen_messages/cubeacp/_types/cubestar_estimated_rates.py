@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["CubestarEstimatedRates"]
+
 
 class CubestarEstimatedRates(_base.Message):
     """CubeStar Estimated Rates: telemetry 229, 6 bytes. Table 172.

@@ -11,6 +11,8 @@ from .asgp4_mode_select import Asgp4ModeSelect
 from .con_mode_select import ConModeSelect
 from .estim_mode_select import EstimModeSelect
 
+__all__ = ["CurrentAdcsState"]
+
 
 class CurrentAdcsState(_base.Message):
     """Current ADCS State: telemetry 132, 6 bytes. Table 98.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .mag_mode_val import MagModeVal
 
+__all__ = ["CurrentAdcsState2"]
+
 
 class CurrentAdcsState2(_base.Message):
     """Current ADCS State 2: telemetry 224, 6 bytes. Table 169.

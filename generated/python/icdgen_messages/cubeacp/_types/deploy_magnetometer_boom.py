@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["DeployMagnetometerBoom"]
+
 
 class DeployMagnetometerBoom(_base.Message):
     """Deploy Magnetometer Boom: telecommand 7, 1 byte. Table 73.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["DetectResult"]
+
 
 class DetectResult(_enumeration.OpenEnum):
     """DetectResult: an enumeration. Table 124."""

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["EcefPosition"]
+
 
 class EcefPosition(_base.Message):
     """ECEF Position: telemetry 219, 6 bytes. Table 166.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["EstimModeSelect"]
+
 
 class EstimModeSelect(_enumeration.OpenEnum):
     """EstimModeSelect: an enumeration. Table 80."""

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["EstimatedAngularRates"]
+
 
 class EstimatedAngularRates(_base.Message):
     """Estimated Angular Rates: telemetry 147, 6 bytes. Table 103.

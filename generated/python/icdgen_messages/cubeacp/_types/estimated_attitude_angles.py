@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["EstimatedAttitudeAngles"]
+
 
 class EstimatedAttitudeAngles(_base.Message):
     """Estimated Attitude Angles: telemetry 146, 6 bytes. Table 102.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["EstimatedGyroBias"]
+
 
 class EstimatedGyroBias(_base.Message):
     """Estimated Gyro Bias: telemetry 161, 6 bytes. Table 117.

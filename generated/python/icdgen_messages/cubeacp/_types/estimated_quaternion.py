@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["EstimatedQuaternion"]
+
 
 class EstimatedQuaternion(_base.Message):
     """Estimated Quaternion: telemetry 218, 6 bytes. Table 165.

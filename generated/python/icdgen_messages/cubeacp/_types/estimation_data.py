@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["EstimationData"]
+
 
 class EstimationData(_base.Message):
     """Estimation Data: telemetry 193, 42 bytes. Table 152.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["EstimationInnovationVector"]
+
 
 class EstimationInnovationVector(_base.Message):
     """Estimation Innovation Vector: telemetry 162, 6 bytes. Table 118.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .mag_mode_val import MagModeVal
 
+__all__ = ["EstimationParameters"]
+
 
 class EstimationParameters(_base.Message):
     """Estimation Parameters: configuration, set by telecommand 27, got by telemetry

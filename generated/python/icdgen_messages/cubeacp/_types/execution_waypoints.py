@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["ExecutionWaypoints"]
+
 
 class ExecutionWaypoints(_enumeration.OpenEnum):
     """ExecutionWaypoints: an enumeration. Table 168."""

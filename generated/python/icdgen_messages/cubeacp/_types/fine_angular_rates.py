@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["FineAngularRates"]
+
 
 class FineAngularRates(_base.Message):
     """Fine Estimated Angular Rates: telemetry 201, 6 bytes. Table 157.

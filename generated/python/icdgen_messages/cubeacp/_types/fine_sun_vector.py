@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["FineSunVector"]
+
 
 class FineSunVector(_base.Message):
     """Fine Sun Vector: telemetry 153, 6 bytes. Table 109.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["GpioPort"]
+
 
 class GpioPort(_enumeration.OpenEnum):
     """GpioPort: an enumeration. Table 206."""

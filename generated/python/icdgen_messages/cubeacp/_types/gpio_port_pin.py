@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["GpioPortPin"]
+
 
 class GpioPortPin(_enumeration.OpenEnum):
     """GpioPortPin: an enumeration. Table 207."""

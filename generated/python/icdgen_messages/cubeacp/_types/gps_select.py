@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["GpsSelect"]
+
 
 class GpsSelect(_enumeration.OpenEnum):
     """GpsSelect: an enumeration. Table 205."""

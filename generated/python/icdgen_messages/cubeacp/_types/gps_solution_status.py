@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["GpsSolutionStatus"]
+
 
 class GpsSolutionStatus(_enumeration.OpenEnum):
     """GpsSolutionStatus: an enumeration. Table 85.

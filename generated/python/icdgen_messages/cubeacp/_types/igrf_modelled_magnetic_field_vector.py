@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["IgrfModelledMagneticFieldVector"]
+
 
 class IgrfModelledMagneticFieldVector(_base.Message):
     """IGRF Modelled Magnetic Field Vector: telemetry 159, 6 bytes. Table 115.

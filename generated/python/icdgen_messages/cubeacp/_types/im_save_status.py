@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["ImSaveStatus"]
+
 
 class ImSaveStatus(_enumeration.OpenEnum):
     """ImSaveStatus: an enumeration. Table 177."""

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["ImSize"]
+
 
 class ImSize(_enumeration.OpenEnum):
     """ImSize: an enumeration. Table 96."""

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["InertialPointingReferenceVector"]
+
 
 class InertialPointingReferenceVector(_base.Message):
     """Inertial Pointing Reference Vector: configuration, set by telecommand 34, got by

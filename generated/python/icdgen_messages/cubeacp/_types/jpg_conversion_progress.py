@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .jpg_convert_result import JpgConvertResult
 
+__all__ = ["JpgConversionProgress"]
+
 
 class JpgConversionProgress(_base.Message):
     """JPG Conversion Progress: telemetry 133, 3 bytes. Table 99."""

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["JpgConvertResult"]
+
 
 class JpgConvertResult(_enumeration.OpenEnum):
     """JpgConvertResult: an enumeration. Table 100."""

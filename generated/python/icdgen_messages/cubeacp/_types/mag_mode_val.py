@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["MagModeVal"]
+
 
 class MagModeVal(_enumeration.OpenEnum):
     """MagModeVal: an enumeration. Table 90.

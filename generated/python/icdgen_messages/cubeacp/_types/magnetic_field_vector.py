@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["MagneticFieldVector"]
+
 
 class MagneticFieldVector(_base.Message):
     """Magnetic Field Vector: telemetry 151, 6 bytes. Table 107.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["MagnetometerConfiguration"]
+
 
 class MagnetometerConfiguration(_base.Message):
     """Magnetometer Configuration: configuration, set by telecommand 26, got by

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["MagnetorquerCommand"]
+
 
 class MagnetorquerCommand(_base.Message):
     """Magnetorquer Command: telemetry 157, 6 bytes. Table 113.

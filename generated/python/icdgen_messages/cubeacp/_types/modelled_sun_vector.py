@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["ModelledSunVector"]
+
 
 class ModelledSunVector(_base.Message):
     """Modelled Sun Vector: telemetry 160, 6 bytes. Table 116.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["MomentOfInertiaMatrix"]
+
 
 class MomentOfInertiaMatrix(_base.Message):
     """Moment of Inertia Matrix: configuration, set by telecommand 41, got by telemetry

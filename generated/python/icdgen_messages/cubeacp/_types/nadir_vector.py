@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["NadirVector"]
+
 
 class NadirVector(_base.Message):
     """Nadir Vector: telemetry 154, 6 bytes. Table 110.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["PowerAndTemperature"]
+
 
 class PowerAndTemperature(_base.Message):
     """Power and Temperature Measurements: telemetry 195, 38 bytes. Table 154.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["PowerSelect"]
+
 
 class PowerSelect(_enumeration.OpenEnum):
     """PowerSelect: an enumeration. Table 185."""

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["QuaternionCovariance"]
+
 
 class QuaternionCovariance(_base.Message):
     """Quaternion Covariance: telemetry 164, 6 bytes. Table 120.

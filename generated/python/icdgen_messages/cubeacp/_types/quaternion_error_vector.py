@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["QuaternionErrorVector"]
+
 
 class QuaternionErrorVector(_base.Message):
     """Quaternion Error Vector: telemetry 163, 6 bytes. Table 119.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["RateSensorRates"]
+
 
 class RateSensorRates(_base.Message):
     """Rate Sensor Rates: telemetry 155, 6 bytes. Table 111.

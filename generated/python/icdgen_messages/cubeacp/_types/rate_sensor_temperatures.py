@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["RateSensorTemperatures"]
+
 
 class RateSensorTemperatures(_base.Message):
     """Rate sensor temperatures: telemetry 175, 6 bytes. Table 133.

@@ -9,6 +9,8 @@ from ... import _base
 from .capture_result import CaptureResult
 from .detect_result import DetectResult
 
+__all__ = ["RawCam1Sensor"]
+
 
 class RawCam1Sensor(_base.Message):
     """Raw Cam1 Sensor: telemetry 167, 6 bytes. Table 125.

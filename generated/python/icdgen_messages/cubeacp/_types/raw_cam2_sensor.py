@@ -9,6 +9,8 @@ from ... import _base
 from .capture_result import CaptureResult
 from .detect_result import DetectResult
 
+__all__ = ["RawCam2Sensor"]
+
 
 class RawCam2Sensor(_base.Message):
     """Raw Cam2 Sensor: telemetry 166, 6 bytes. Table 122.

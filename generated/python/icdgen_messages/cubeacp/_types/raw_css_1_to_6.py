@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["RawCss1To6"]
+
 
 class RawCss1To6(_base.Message):
     """Raw CSS 1 to 6: telemetry 168, 6 bytes. Table 126.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["RawCss7To10"]
+
 
 class RawCss7To10(_base.Message):
     """Raw CSS 7 to 10: telemetry 169, 6 bytes. Table 127.

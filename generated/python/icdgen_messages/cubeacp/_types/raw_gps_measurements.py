@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .gps_solution_status import GpsSolutionStatus
 
+__all__ = ["RawGpsMeasurements"]
+
 
 class RawGpsMeasurements(_base.Message):
     """Raw GPS Measurements: telemetry 210, 36 bytes. Table 158.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .gps_solution_status import GpsSolutionStatus
 
+__all__ = ["RawGpsStatus"]
+
 
 class RawGpsStatus(_base.Message):
     """Raw GPS Status: telemetry 176, 6 bytes. Table 134.

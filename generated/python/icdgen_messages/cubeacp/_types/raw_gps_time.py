@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["RawGpsTime"]
+
 
 class RawGpsTime(_base.Message):
     """Raw GPS Time: telemetry 177, 6 bytes. Table 135.

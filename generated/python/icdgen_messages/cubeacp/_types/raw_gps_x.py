@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["RawGpsX"]
+
 
 class RawGpsX(_base.Message):
     """Raw GPS X: telemetry 178, 6 bytes. Table 136.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["RawGpsY"]
+
 
 class RawGpsY(_base.Message):
     """Raw GPS Y: telemetry 179, 6 bytes. Table 137.

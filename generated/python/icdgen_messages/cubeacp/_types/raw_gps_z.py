@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["RawGpsZ"]
+
 
 class RawGpsZ(_base.Message):
     """Raw GPS Z: telemetry 180, 6 bytes. Table 138.

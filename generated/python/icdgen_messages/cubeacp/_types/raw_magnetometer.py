@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["RawMagnetometer"]
+
 
 class RawMagnetometer(_base.Message):
     """Raw Magnetometer: telemetry 170, 6 bytes. Table 128.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["RawRateSensor"]
+
 
 class RawRateSensor(_base.Message):
     """Raw Rate Sensor: telemetry 216, 6 bytes. Table 164.

@@ -9,6 +9,8 @@ from ... import _base
 from .capture_result import CaptureResult
 from .detect_result import DetectResult
 
+__all__ = ["RawSensorMeasurements"]
+
 
 class RawSensorMeasurements(_base.Message):
     """Raw Sensor Measurements: telemetry 194, 34 bytes. Table 153.

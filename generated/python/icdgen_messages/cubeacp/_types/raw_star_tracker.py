@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .star_id_mode_val import StarIdModeVal
 
+__all__ = ["RawStarTracker"]
+
 
 class RawStarTracker(_base.Message):
     """Raw Star Tracker: telemetry 211, 54 bytes. Table 159.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["RedundantMagConfiguration"]
+
 
 class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Configuration: configuration, set by telecommand 36, got

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SatellitePositionEci"]
+
 
 class SatellitePositionEci(_base.Message):
     """Satellite Position (ECI): telemetry 148, 6 bytes. Table 104.

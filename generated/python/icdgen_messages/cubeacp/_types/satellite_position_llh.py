@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SatellitePositionLlh"]
+
 
 class SatellitePositionLlh(_base.Message):
     """Satellite Position (LLH): telemetry 150, 6 bytes. Table 106.

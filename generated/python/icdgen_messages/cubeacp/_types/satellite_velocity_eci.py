@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SatelliteVelocityEci"]
+
 
 class SatelliteVelocityEci(_base.Message):
     """Satellite Velocity (ECI): telemetry 149, 6 bytes. Table 105.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SaveConfiguration"]
+
 
 class SaveConfiguration(_base.Message):
     """Save Configuration: telecommand 63, 0 bytes. Table 92.

@@ -9,6 +9,8 @@ from ... import _base
 from .cam_select import CamSelect
 from .im_size import ImSize
 
+__all__ = ["SaveImage"]
+
 
 class SaveImage(_base.Message):
     """Save Image: telecommand 80, 2 bytes. Table 94.

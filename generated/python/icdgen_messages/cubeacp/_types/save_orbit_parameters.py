@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SaveOrbitParameters"]
+
 
 class SaveOrbitParameters(_base.Message):
     """Save Orbit Parameters: telecommand 64, 0 bytes. Table 93.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .sd_log_select import SdLogSelect
 
+__all__ = ["SdLog1Configuration"]
+
 
 class SdLog1Configuration(_base.Message):
     """SD Log1 Configuration: configuration, set by telecommand 104, got by telemetry
@@ -30,6 +32,8 @@ class SdLog1Configuration(_base.Message):
     GET_ID = 235
     IDS = (SET_ID, GET_ID)
     LENGTH = 13
+    LOG_PERIOD_LOGGING_DISABLED = 0
+    """Log Period: logging disabled."""
     TABLE = 210
 
     log_selection: bytes = _base.field("Log Selection", 0, 80, "bytes", default=bytes(10))

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .sd_log_select import SdLogSelect
 
+__all__ = ["SdLog2Configuration"]
+
 
 class SdLog2Configuration(_base.Message):
     """SD Log2 Configuration: configuration, set by telecommand 105, got by telemetry
@@ -30,6 +32,8 @@ class SdLog2Configuration(_base.Message):
     GET_ID = 236
     IDS = (SET_ID, GET_ID)
     LENGTH = 13
+    LOG_PERIOD_LOGGING_DISABLED = 0
+    """Log Period: logging disabled."""
     TABLE = 212
 
     log_selection: bytes = _base.field("Log Selection", 0, 80, "bytes", default=bytes(10))

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["SdLogSelect"]
+
 
 class SdLogSelect(_enumeration.OpenEnum):
     """SdLogSelect: an enumeration. Table 211."""

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SecondaryMagnetometerRawMeasurements"]
+
 
 class SecondaryMagnetometerRawMeasurements(_base.Message):
     """Secondary Magnetometer Raw Measurements: telemetry 215, 6 bytes. Table 163.

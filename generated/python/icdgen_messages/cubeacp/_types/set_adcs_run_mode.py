@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .adcs_run_mode import AdcsRunMode
 
+__all__ = ["SetAdcsRunMode"]
+
 
 class SetAdcsRunMode(_base.Message):
     """ADCS Run Mode: telecommand 10, 1 byte. Table 74.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .con_mode_select import ConModeSelect
 
+__all__ = ["SetAttitudeControlMode"]
+
 
 class SetAttitudeControlMode(_base.Message):
     """Set Attitude Control Mode: telecommand 13, 3 bytes. Table 77."""
@@ -18,6 +20,8 @@ class SetAttitudeControlMode(_base.Message):
     ID = 13
     IDS = (ID,)
     LENGTH = 3
+    TIMEOUT_NO_TIMEOUT = 65535
+    """Timeout: no timeout."""
     TABLE = 77
 
     control_mode: ConModeSelect = _base.field("Control Mode", 0, 8, "enum", default=ConModeSelect.NO_CONTROL)

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .estim_mode_select import EstimModeSelect
 
+__all__ = ["SetAttitudeEstimationMode"]
+
 
 class SetAttitudeEstimationMode(_base.Message):
     """Set Attitude Estimation Mode: telecommand 14, 1 byte. Table 79."""

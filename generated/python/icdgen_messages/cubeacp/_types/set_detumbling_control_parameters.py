@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SetDetumblingControlParameters"]
+
 
 class SetDetumblingControlParameters(_base.Message):
     """Set Detumbling Control Parameters: configuration, set by telecommand 38, got by
@@ -26,6 +28,8 @@ class SetDetumblingControlParameters(_base.Message):
     GET_ID = 208
     IDS = (SET_ID, GET_ID)
     LENGTH = 14
+    SPIN_RATE_DEG_PER_S_BELOW = 0
+    """Reference spin rate in deg/s: must be below this."""
     TABLE = 195
 
     detumbling_spin_gain: float = _base.field("Detumbling Spin Gain", 0, 32, "float", default=0.0)
@@ -51,14 +55,16 @@ class SetDetumblingControlParameters(_base.Message):
 
     wy-ref.
 
-    Must be below 0 deg/s.
+    Must be below 0 deg/s, which setters do not check.
 
     Note ACP-162 (certain): Limits of a sign in words only. Two references must always
     be smaller than 0; the types allow the opposite, and what the program does with it
     is not said.
     """
     spin_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
-    """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s."""
+    """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s, which
+    setters do not check.
+    """
     spin_rate_mdeg_per_s: int = _base.whole(1, 0)
     """Reference spin rate in thousandths of deg/s, exact: -32768 to 32767."""
 

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .axis_select import AxisSelect
 
+__all__ = ["SetMagnetorquerConfiguration"]
+
 
 class SetMagnetorquerConfiguration(_base.Message):
     """Set Magnetorquer Configuration: configuration, set by telecommand 21, got by

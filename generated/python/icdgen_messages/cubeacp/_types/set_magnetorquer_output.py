@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SetMagnetorquerOutput"]
+
 
 class SetMagnetorquerOutput(_base.Message):
     """Set Magnetorquer Output: telecommand 16, 6 bytes. Table 81.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .mag_mode_val import MagModeVal
 
+__all__ = ["SetModeOfMagnetometerOperation"]
+
 
 class SetModeOfMagnetometerOperation(_base.Message):
     """Set Mode of Magnetometer Operation: telecommand 56, 1 byte. Table 89.

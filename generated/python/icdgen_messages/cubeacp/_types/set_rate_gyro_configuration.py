@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .axis_select import AxisSelect
 
+__all__ = ["SetRateGyroConfiguration"]
+
 
 class SetRateGyroConfiguration(_base.Message):
     """Set Rate Gyro Configuration: configuration, set by telecommand 23, got by

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .axis_select import AxisSelect
 
+__all__ = ["SetReactionWheelControlParameters"]
+
 
 class SetReactionWheelControlParameters(_base.Message):
     """Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, got

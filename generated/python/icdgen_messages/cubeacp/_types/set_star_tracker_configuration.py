@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SetStarTrackerConfiguration"]
+
 
 class SetStarTrackerConfiguration(_base.Message):
     """Set Star Tracker Configuration: configuration, set by telecommand 37, got by

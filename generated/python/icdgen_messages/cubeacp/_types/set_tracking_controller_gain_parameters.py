@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .axis_select import AxisSelect
 
+__all__ = ["SetTrackingControllerGainParameters"]
+
 
 class SetTrackingControllerGainParameters(_base.Message):
     """Set Tracking Controller Gain Parameters: configuration, set by telecommand 54,

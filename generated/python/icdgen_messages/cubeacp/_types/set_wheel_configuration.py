@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .axis_select import AxisSelect
 
+__all__ = ["SetWheelConfiguration"]
+
 
 class SetWheelConfiguration(_base.Message):
     """Set Wheel Configuration: configuration, set by telecommand 22, got by telemetry

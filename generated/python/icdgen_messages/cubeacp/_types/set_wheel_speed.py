@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SetWheelSpeed"]
+
 
 class SetWheelSpeed(_base.Message):
     """Set Wheel Speed: telecommand 17, 6 bytes. Table 82.

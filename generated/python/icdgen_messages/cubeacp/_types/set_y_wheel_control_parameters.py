@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["SetYWheelControlParameters"]
+
 
 class SetYWheelControlParameters(_base.Message):
     """Set Y-Wheel Control Parameters: configuration, set by telecommand 39, got by
@@ -26,6 +28,8 @@ class SetYWheelControlParameters(_base.Message):
     GET_ID = 209
     IDS = (SET_ID, GET_ID)
     LENGTH = 20
+    REFERENCE_WHEEL_MOMENTUM_BELOW = 0
+    """Reference Wheel Momentum in Nms: must be below this."""
     TABLE = 196
 
     y_momentum_control_gain: float = _base.field("Y-Momentum Control Gain", 0, 32, "float", default=0.0)
@@ -75,7 +79,7 @@ class SetYWheelControlParameters(_base.Message):
 
     H-ref.
 
-    Must be below 0 Nms.
+    Must be below 0 Nms, which setters do not check.
 
     Note ACP-162 (certain): Limits of a sign in words only. Two references must always
     be smaller than 0; the types allow the opposite, and what the program does with it

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Sgp4OrbitParameters"]
+
 
 class Sgp4OrbitParameters(_base.Message):
     """SGP4 Orbit Parameters: configuration, set by telecommand 45, got by telemetry

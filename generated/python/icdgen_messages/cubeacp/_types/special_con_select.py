@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["SpecialConSelect"]
+
 
 class SpecialConSelect(_enumeration.OpenEnum):
     """SpecialConSelect: an enumeration. Table 203.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Star1BodyVector"]
+
 
 class Star1BodyVector(_base.Message):
     """Star 1 Body Vector: telemetry 181, 6 bytes. Table 139.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Star1OrbitVector"]
+
 
 class Star1OrbitVector(_base.Message):
     """Star 1 Orbit Vector: telemetry 184, 6 bytes. Table 142.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Star1RawData"]
+
 
 class Star1RawData(_base.Message):
     """Star 1 Raw Data: telemetry 212, 6 bytes. Table 160.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Star2BodyVector"]
+
 
 class Star2BodyVector(_base.Message):
     """Star 2 Body Vector: telemetry 182, 6 bytes. Table 140.

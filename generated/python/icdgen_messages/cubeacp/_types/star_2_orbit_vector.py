@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Star2OrbitVector"]
+
 
 class Star2OrbitVector(_base.Message):
     """Star 2 Orbit Vector: telemetry 185, 6 bytes. Table 143.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Star2RawData"]
+
 
 class Star2RawData(_base.Message):
     """Star 2 Raw Data: telemetry 213, 6 bytes. Table 161.

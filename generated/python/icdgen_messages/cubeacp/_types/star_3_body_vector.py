@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Star3BodyVector"]
+
 
 class Star3BodyVector(_base.Message):
     """Star 3 Body Vector: telemetry 183, 6 bytes. Table 141.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Star3OrbitVector"]
+
 
 class Star3OrbitVector(_base.Message):
     """Star 3 Orbit Vector: telemetry 186, 6 bytes. Table 144.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["Star3RawData"]
+
 
 class Star3RawData(_base.Message):
     """Star 3 Raw Data: telemetry 214, 6 bytes. Table 162.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["StarIdModeVal"]
+
 
 class StarIdModeVal(_enumeration.OpenEnum):
     """StarIDModeVal: an enumeration. Table 147.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["StarMagnitude"]
+
 
 class StarMagnitude(_base.Message):
     """Star Magnitude: telemetry 187, 6 bytes. Table 145.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .star_id_mode_val import StarIdModeVal
 
+__all__ = ["StarPerformance1"]
+
 
 class StarPerformance1(_base.Message):
     """Star Performance1: telemetry 188, 6 bytes. Table 146.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["StarPerformance2"]
+
 
 class StarPerformance2(_base.Message):
     """Star Performance2: telemetry 231, 6 bytes. Table 174.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["StarTiming"]
+
 
 class StarTiming(_base.Message):
     """Star Timing: telemetry 189, 6 bytes. Table 148.

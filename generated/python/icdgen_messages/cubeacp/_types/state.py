@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["State"]
+
 
 class State(_base.Message):
     """CubeACP State: telemetry 135, 1 byte. Table 101.

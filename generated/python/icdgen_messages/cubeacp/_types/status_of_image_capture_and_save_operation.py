@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .im_save_status import ImSaveStatus
 
+__all__ = ["StatusOfImageCaptureAndSaveOperation"]
+
 
 class StatusOfImageCaptureAndSaveOperation(_base.Message):
     """Status of Image Capture and Save Operation: telemetry 233, 2 bytes. Table 176.

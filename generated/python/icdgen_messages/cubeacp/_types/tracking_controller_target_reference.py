@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["TrackingControllerTargetReference"]
+
 
 class TrackingControllerTargetReference(_base.Message):
     """Tracking Controller Target Reference: configuration, set by telecommand 55, got

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["TriggerAdcsLoop"]
+
 
 class TriggerAdcsLoop(_base.Message):
     """Trigger ADCS Loop: telecommand 18, 0 bytes. Table 83.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .gps_solution_status import GpsSolutionStatus
 
+__all__ = ["TriggerSimulatedLoop"]
+
 
 class TriggerSimulatedLoop(_base.Message):
     """Trigger ADCS Loop with Simulated Sensor Data: telecommand 19, 127 bytes. Table

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["UartLogConfiguration"]
+
 
 class UartLogConfiguration(_base.Message):
     """UART Log Configuration: configuration, set by telecommand 106, got by telemetry
@@ -22,6 +24,8 @@ class UartLogConfiguration(_base.Message):
     GET_ID = 237
     IDS = (SET_ID, GET_ID)
     LENGTH = 12
+    LOG_PERIOD_LOGGING_DISABLED = 0
+    """Log Period: logging disabled."""
     TABLE = 213
 
     log_selection: bytes = _base.field("Log Selection", 0, 80, "bytes", default=bytes(10))

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["UserCodedControllerAndEstimatorParameters"]
+
 
 class UserCodedControllerAndEstimatorParameters(_base.Message):
     """User-coded Controller and Estimator Parameters: configuration, set by telecommand

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["WheelCurrents"]
+
 
 class WheelCurrents(_base.Message):
     """Wheel Currents: telemetry 173, 6 bytes. Table 131.

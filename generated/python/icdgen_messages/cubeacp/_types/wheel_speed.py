@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["WheelSpeed"]
+
 
 class WheelSpeed(_base.Message):
     """Wheel Speed: telemetry 156, 6 bytes. Table 112.

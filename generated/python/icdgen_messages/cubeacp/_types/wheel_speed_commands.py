@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["WheelSpeedCommands"]
+
 
 class WheelSpeedCommands(_base.Message):
     """Wheel Speed Commands: telemetry 158, 6 bytes. Table 114.

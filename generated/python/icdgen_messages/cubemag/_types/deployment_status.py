@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["DeploymentStatus"]
+
 
 class DeploymentStatus(_base.Message):
     """Deployment Status: telemetry 190, 5 bytes. Table 61.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["MagState"]
+
 
 class MagState(_enumeration.OpenEnum):
     """MagState: an enumeration. Table 58.

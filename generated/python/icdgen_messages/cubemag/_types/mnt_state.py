@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["MntState"]
+
 
 class MntState(_enumeration.OpenEnum):
     """MntState: an enumeration. Table 59.

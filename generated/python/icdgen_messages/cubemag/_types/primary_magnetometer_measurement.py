@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["PrimaryMagnetometerMeasurement"]
+
 
 class PrimaryMagnetometerMeasurement(_base.Message):
     """Primary Magnetometer Measurement: telemetry 197, 13 bytes. Table 68.

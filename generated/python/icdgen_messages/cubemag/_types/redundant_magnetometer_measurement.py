@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["RedundantMagnetometerMeasurement"]
+
 
 class RedundantMagnetometerMeasurement(_base.Message):
     """Redundant Magnetometer Measurement: telemetry 193, 13 bytes. Table 64.

@@ -9,6 +9,8 @@ from ... import _base
 from .mag_state import MagState
 from .mnt_state import MntState
 
+__all__ = ["State"]
+
 
 class State(_base.Message):
     """State: telemetry 188, 3 bytes. Table 57.

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["MotorPower"]
+
 
 class MotorPower(_base.Message):
     """Motor Power: telemetry 197, 1 byte. Table 57.

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from ... import _enumeration
 
+__all__ = ["WheelErrorState"]
+
 
 class WheelErrorState(_enumeration.OpenEnum):
     """WheelErrorState: an enumeration. Table 48."""

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from ... import _base
 
+__all__ = ["WheelReferenceSpeed"]
+
 
 class WheelReferenceSpeed(_base.Message):
     """Wheel Reference Speed: telemetry 196, 4 bytes. Table 56.

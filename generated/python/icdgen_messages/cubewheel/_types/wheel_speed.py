@@ -8,6 +8,8 @@ from __future__ import annotations
 from ... import _base
 from .wheel_error_state import WheelErrorState
 
+__all__ = ["WheelSpeed"]
+
 
 class WheelSpeed(_base.Message):
     """Wheel Speed: telemetry 188, 5 bytes. Table 47.

@@ -1,0 +1,111 @@
+"""Writes docs/api.md, the table of the API, from the programs beside it: what stands there is built and run by a test.
+
+python -m scripts.api_page
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import yaml
+
+ROOT = Path(__file__).parent.parent
+PAGE, FOLDER = ROOT / "docs" / "api.md", ROOT / "docs" / "api"
+LANGUAGES = {"c": "C", "python": "Python", "rust": "Rust"}
+PROGRAMS = {"c": "imu.c", "python": "imu.py", "rust": "imu.rs"}
+_MARK = re.compile(r"\s*(?:/\*|//|#) \[(?P<key>\w*)\](?: \*/)?\s*")
+
+BEGIN = """\
+# The API in each language
+
+The same in every language, named by the same rule. The message is one of an ICD made for this page, [imu.yaml](api/imu.yaml), for
+it has a field of each kind; what is generated from the shipped ICDs looks the same. Each cell is taken from a program that a test
+builds and runs, [imu.c](api/imu.c), [imu.py](api/imu.py) and [imu.rs](api/imu.rs), and the page is made of them by
+`python -m scripts.api_page`.
+
+Messages hold raw values; physical values are computed on demand. A divided field is its parts, which are fields like any other.
+Setting refuses what the field cannot hold; the limits of the ICD are data, which `allows` asks, since only the device knows when
+they hold. What is refused is a status in C (`ICD_ERROR_RANGE`), an exception in Python (`RangeError`) and a `Result` in Rust
+(`Error::Range`). The JavaScript of the documentation site reads and writes the same values, and is no library.
+"""
+END = """
+[A program in each language](programs.md) shows the same at work; [the wire layer](wire.md) describes buses, files and logs. In C an
+event of a message that was not asked for, or of another node, is refused by `imu_receive_state` with `ICD_ERROR_UNKNOWN_ID`; in
+Rust another node's message does not compile.
+"""
+
+
+class Row(NamedTuple):
+    """What a user does; ``without``: languages that do not have it, and why."""
+
+    key: str
+    does: str
+    without: dict[str, str]
+
+
+def rows() -> list[Row | str]:
+    """The rows, and the headings between them."""
+    found: list[Any] = yaml.safe_load((FOLDER / "rows.yaml").read_text("utf-8"))
+    return [one if isinstance(one, str) else Row(one["key"], one["does"], one.get("without", {})) for one in found]
+
+
+def snippets(language: str) -> dict[str, str]:
+    """The code of a program by the keys of rows, each on one line; what another row has within it is left out."""
+    found: dict[str, list[str]] = {}
+    open_keys: list[str] = []
+    for line in (FOLDER / PROGRAMS[language]).read_text("utf-8").splitlines():
+        mark = _MARK.fullmatch(line)
+        if mark is None:
+            if open_keys:
+                found[open_keys[-1]].append(line)
+        elif key := mark["key"]:
+            if key in found:
+                raise ValueError(f"{PROGRAMS[language]} has [{key}] twice")
+            if open_keys:
+                found[open_keys[-1]].append("...")
+            found[key] = []
+            open_keys.append(key)
+        else:
+            open_keys.pop()
+    if open_keys:
+        raise ValueError(f"[{open_keys[-1]}] of {PROGRAMS[language]} does not end")
+    return {key: " ".join(line.strip() for line in lines) for key, lines in found.items()}
+
+
+def page() -> str:
+    """The text of the page. Raises `ValueError` for a row that a program lacks without a reason."""
+    code = {language: snippets(language) for language in LANGUAGES}
+    lines, known = [BEGIN], set()
+    for row in rows():
+        if isinstance(row, str):
+            lines += [
+                f"\n## {row}\n" if known else f"## {row}\n",
+                f"| | {' | '.join(LANGUAGES.values())} |",
+                "|---|---|---|---|",
+            ]
+            continue
+        known.add(row.key)
+        cells = [_cell(row, language, code[language]) for language in LANGUAGES]
+        lines.append(f"| {row.does} | {' | '.join(cells)} |")
+    for language, some in code.items():
+        if left := some.keys() - known:
+            raise ValueError(f"{PROGRAMS[language]} has {sorted(left)}, of which rows.yaml knows nothing")
+    return "\n".join(lines) + "\n" + END
+
+
+def _cell(row: Row, language: str, code: dict[str, str]) -> str:
+    if (row.key in code) == (language in row.without):
+        raise ValueError(f"{PROGRAMS[language]} and rows.yaml disagree about [{row.key}]")
+    return row.without.get(language) or f"`{code[row.key]}`".replace("|", "\\|")
+
+
+def main() -> None:
+    if not PAGE.exists() or PAGE.read_text("utf-8") != page():
+        PAGE.write_text(page(), "utf-8")
+        print(f"written: {PAGE.relative_to(ROOT)}")
+
+
+if __name__ == "__main__":
+    main()

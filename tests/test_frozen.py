@@ -1,0 +1,45 @@
+"""Classes of the model are values: equal, hashed and shown as those of `dataclasses` are."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from icdgen.frozen import dataclass as frozen
+from icdgen.icd.model import Field, Limits, Member
+
+
+def _fields(dataclass):
+    @dataclass(frozen=True, slots=True)
+    class One:
+        name: str
+        at: int = 0
+        source: list = dataclasses.field(default_factory=list, compare=False, repr=False)
+        protocol: dict = dataclasses.field(default_factory=dict, hash=False)
+
+    return One
+
+
+@pytest.mark.parametrize("dataclass", [dataclasses.dataclass, frozen])
+def test_values_compare_hash_and_show_themselves_alike(dataclass):
+    one = _fields(dataclass)
+    assert one("a", 1, [1]) == one("a", 1, [2]) and one("a", 1) != one("a", 2) and one("a") != "a"
+    assert one("a") != one("a", protocol={1: 2})
+    assert len({one("a", 1, [1]), one("a", 1, [2]), one("b")}) == 2
+    assert hash(one("a", protocol={1: 2})) == hash(one("a"))
+    assert repr(one("a", 1, [1])).endswith("One(name='a', at=1, protocol={})")
+    assert not hasattr(one("a"), "__dict__")
+
+
+def test_without_eq_an_object_is_equal_to_itself_alone():
+    @frozen(frozen=True, eq=False, repr=False)
+    class One:
+        name: str
+
+    assert One("a") != One("a") and len({One("a"), One("a")}) == 2
+
+
+def test_a_field_of_another_class_is_never_equal():
+    assert Member(1, "a") != Limits() and Member(1, "a") == Member(1, "a")
+    assert dataclasses.replace(Field("a", 0, 8, "uint"), at=8) == Field("a", 8, 8, "uint")
