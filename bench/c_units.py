@@ -5,7 +5,7 @@
 The unit includes the header of a node, begins a client on the UART, requests a frame, sends, receives, and decodes what came.
 It is compiled as it is (every unit has functions and tables of its own) and with ICDGEN_SHARED (they are in `icdgen_wire.c`
 and `link.c`). Then whole programs of that kind, on each bus, linked with --gc-sections: with the C library's memory functions,
-without start-up code.
+without start-up code; with all messages in the tables of `link.c`, and with the one that is asked for.
 """
 
 from __future__ import annotations
@@ -97,6 +97,12 @@ void program(volatile uint32_t *place)
     {input};
 }}
 """
+CHOSEN = (
+    "-DCUBEACP_CHOSEN",
+    "-DCUBEACP_WITH_ESTIMATED_ATTITUDE_ANGLES",
+    "-DICDGEN_NO_FILES",
+    "-DICDGEN_NO_LOGS",
+)
 WAYS = {"header only": [], "ICDGEN_SHARED": ["-DICDGEN_SHARED"]}
 
 
@@ -141,7 +147,7 @@ def main() -> None:
             if (folder / source).exists():
                 print(f"{source}, once: {text_bytes(cc, folder, source)} bytes")
         for bus in OUTPUT:
-            for options in ((), ("-DICDGEN_NO_TABLES",)):
+            for options in ((), ("-DICDGEN_NO_TABLES",), CHOSEN, ("-DICDGEN_NO_TABLES", *CHOSEN)):
                 print(f"a program on {bus} {' '.join(options)}: {linked_bytes(cc, folder, bus, *options)} bytes")
 
 

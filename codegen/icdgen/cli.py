@@ -13,6 +13,7 @@ import click
 from icdgen import __version__
 from icdgen.errors import UserError
 from icdgen.reports.excerpt import shown
+from icdgen.suggest import close_words
 
 # Each is a module in ``icdgen.commands`` with a click command of the same name; `import` cannot be one in Python.
 _COMMANDS = (
@@ -67,9 +68,7 @@ def _refuse_mistyped(word: str) -> None:
     """A word that is no option, and no file or folder, was meant as a command, and not as an ICD."""
     if not word.isidentifier() or os.path.lexists(word):
         return
-    from difflib import get_close_matches
-
-    close = get_close_matches(word.lower(), _COMMANDS, 3)
+    close = close_words(word, _COMMANDS)
     meant = "did you mean " + " or ".join(f"`{name}`" for name in close) + "?" if close else ""
     raise UserError(f"there is no command `{word}`, and no file of that name", meant or "`icdgen --help` lists them")
 

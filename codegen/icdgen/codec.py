@@ -19,17 +19,60 @@ class CodecError(ValueError):
 
 
 class LengthError(CodecError):
-    def __init__(self, message: Message, actual: int) -> None:
-        super().__init__(f"{message.name} has {message.length} bytes, {actual} given")
-        self.expected, self.actual = message.length, actual
+    def __init__(self, message: Message, expected: int, actual: int) -> None:
+        super().__init__(f"{message.name} has {expected} bytes, {actual} given")
+        self.expected, self.actual = expected, actual
 
 
 def decode(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]:
-    """Raw value of every field by name. Raises `LengthError`."""
-    if len(frame) != message.length:
-        raise LengthError(message, len(frame))
-    bits = int.from_bytes(frame, "little")
-    return {field.name: _read(node, field, bits) for field in message.fields}
+    """Raw value of every field by name; elements that are not in the frame are 0. Raises `LengthError`."""
+    bits, actual = int.from_bytes(frame, "little"), len(frame)
+    if actual not in message.lengths:
+        raise LengthError(message, _next_length(message, actual), actual)
+    raw = {field.name: _read(node, field, bits) for field in message.fields}
+    tail, counter = message.tail, message.counter
+    if tail is not None and counter is not None:
+        count = (actual - message.least) // tail.step
+        if counter.implied:
+            raw[counter.name] = count
+        elif raw[counter.name] != count:
+            raise LengthError(message, message.least + _number(raw[counter.name]) * tail.step, actual)
+    return raw
+
+
+def _next_length(message: Message, actual: int) -> int:
+    """The length that a frame of no possible length should have had: the longest possible one below, or the least."""
+    return max((one for one in message.lengths if one < actual), default=message.least)
+
+
+def _number(raw: int | bytes) -> int:
+    assert isinstance(raw, int)
+    return raw
+
+
+def count_of(message: Message, raw: Mapping[str, int | bytes]) -> int:
+    """How many elements the open end has. Raises `CodecError` if it is more than it can have."""
+    tail = message.tail
+    if tail is None:
+        return 0
+    count = _number(raw.get(tail.counter, 0))
+    if count > tail.most:
+        raise CodecError(f"{tail.counter!r} takes 0 to {tail.most}, not {count}")
+    return count
+
+
+def counted(node: Node, message: Message, frame: bytes, count: int) -> bytes:
+    """The frame with another count in the field that counts the elements of its open end, if it has such a field."""
+    counter = message.counter
+    if counter is None or counter.implied:
+        return frame
+    bits, mine = int.from_bytes(frame, "little"), _written(node, counter, (1 << counter.bits) - 1)
+    return (bits & ~mine | _written(node, counter, count)).to_bytes(len(frame), "little")
+
+
+def is_there(message: Message, field: Field, count: int) -> bool:
+    """Whether a frame holds a field, if its open end has ``count`` elements; bytes and text that are cut off are there."""
+    return not field.path or message.tail is None or field.at < 8 * (message.least + count * message.tail.step)
 
 
 def which(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | None:
@@ -64,7 +107,10 @@ def _has_alike(icd: Icd, message: Message, constant: Field, node: Node) -> bool:
 
 
 def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
-    """The frame, reserved bits 0; values of views are not looked at. Raises `CodecError` for a missing, unknown or unfit value."""
+    """The frame, reserved bits 0. Values of views, and of elements that are not in the frame, are not looked at.
+
+    Raises `CodecError` for a missing, unknown or unfit value.
+    """
     known = {field.name for field in message.fields}
     for name in raw:
         if name not in known:
@@ -77,11 +123,12 @@ def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> byte
 
 def frame_with(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
     """The frame in which these fields have these values and all other bits are 0. Raises `CodecError` for an unfit value."""
-    bits = 0
+    bits, count = 0, count_of(message, raw)
     for field in message.owners:
-        if field.name in raw:
+        if field.name in raw and is_there(message, field, count):
             bits |= _written(node, field, raw[field.name])
-    return bits.to_bytes(message.length, "little")
+    frame = bits.to_bytes(message.length, "little")
+    return frame if message.tail is None else frame[: message.least + count * message.tail.step]
 
 
 def check_raw(field: Field, value: int | bytes) -> None:
@@ -192,6 +239,8 @@ def _read(node: Node, field: Field, frame: int) -> int | bytes:
 def _written(node: Node, field: Field, value: int | bytes) -> int:
     """The frame's bits that the value sets."""
     check_raw(field, value)
+    if field.implied:
+        return 0
     if isinstance(value, (bytes, bytearray)):
         return int.from_bytes(value, "little") << field.at // 8 * 8
     frame, value = 0, int(value)

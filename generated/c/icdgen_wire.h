@@ -11,6 +11,10 @@
  * ICDGEN_SHARED     define it where the program has several units: this header declares the functions then, and
  *                   icdgen_wire.c and NODE/link.c are compiled once. Else each unit has those that it uses for itself.
  * ICDGEN_NO_TABLES  define it to compute checksums without tables: slower, and smaller by 512 bytes each.
+ * ICDGEN_NO_FILES   define it for a program that transfers no files and programs: these are unsupported then.
+ * ICDGEN_NO_LOGS    define it for a program that reads no logs, of a node that sends none unasked.
+ * NODE_CHOSEN       define it, and NODE_WITH_MESSAGE for each message that a program sends or requests, and the tables
+ *                   of NODE/link.c hold no others but for those that the wire layer needs itself.
  */
 
 #include "icdgen.h"
@@ -88,6 +92,18 @@ typedef struct {
 #define ICDGEN_TABLE(table) NULL
 #else
 #define ICDGEN_TABLE(table) (table)
+#endif
+
+/* Parts that a program may leave out: for it the ICD does not describe them. */
+#ifdef ICDGEN_NO_FILES
+#define ICDGEN_OF_FILES(part) NULL
+#else
+#define ICDGEN_OF_FILES(part) (part)
+#endif
+#ifdef ICDGEN_NO_LOGS
+#define ICDGEN_OF_LOGS(part) NULL
+#else
+#define ICDGEN_OF_LOGS(part) (part)
 #endif
 
 /** Parameters of a CRC in the notation of the usual catalogues. */

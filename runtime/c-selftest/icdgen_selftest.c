@@ -151,10 +151,10 @@ static void assemble(const run_t *run, const uint8_t *at)
     }
 }
 
-static void encoded(run_t *run, const uint8_t *frame)
+static void encoded(run_t *run, const uint8_t *frame, uint16_t length)
 {
+    const icdgen_selftest_tail_t *tail = run->message->tail;
     const uint8_t *buffer = run->node->buffer;
-    const uint16_t length = run->message->length;
     uint16_t i;
     bool same = true;
     (void)memset(run->node->buffer, (int)FILLER, run->node->buffer_size);
@@ -163,6 +163,7 @@ static void encoded(run_t *run, const uint8_t *frame)
         same = same && buffer[i] == (frame[i] & run->message->kept[i]);
     }
     check(run, same, "encoded bytes", NULL);
+    check(run, tail == NULL || tail->size(run->node->value) == length, "size", NULL);
     check(run, holds_bytes(&buffer[length], ICDGEN_SELFTEST_MARGIN, FILLER), "encode writes past the end", NULL);
 }
 
@@ -289,6 +290,10 @@ static void field_values(run_t *run, const icdgen_selftest_field_t *field)
     for (i = 0; i < field->unfit_count; i++) {
         run->vector = i;
         run->message->init(run->node->value);
+        if (run->message->tail != NULL) {
+            set_member(
+                &run->message->fields[run->message->tail->counter], run->node->value, run->message->tail->most);
+        }
         set_member(field, run->node->value, field->unfit[i]);
         (void)memset(run->node->buffer, (int)FILLER, run->node->buffer_size);
         check(
@@ -307,7 +312,20 @@ static void field_values(run_t *run, const icdgen_selftest_field_t *field)
 
 static void lengths(run_t *run)
 {
+    const icdgen_selftest_tail_t *tail = run->message->tail;
+    const uint16_t least = tail != NULL ? tail->least : run->message->length;
     uint16_t i;
+    for (i = 0; tail != NULL && i < tail->refused_frame_count; i++) {
+        const uint8_t *frame = &tail->refused_frames[(size_t)i * run->message->length];
+        run->vector = i;
+        fill(run);
+        check(
+            run, run->message->decode(run->node->value, frame, tail->refused_frame_lengths[i]) == ICD_ERROR_LENGTH,
+            "refused frame", NULL);
+        check(
+            run, holds_bytes((const uint8_t *)run->node->value, run->node->value_size, FILLER),
+            "changed in spite of a refusal", NULL);
+    }
     for (i = 0; i < run->message->refused_length_count; i++) {
         run->vector = i;
         fill(run);
@@ -320,11 +338,12 @@ static void lengths(run_t *run)
             run, holds_bytes((const uint8_t *)run->node->value, run->node->value_size, FILLER),
             "changed in spite of a refusal", NULL);
     }
-    if (run->message->length != 0u) {
+    if (least != 0u) {
+        fill(run);
         run->message->init(run->node->value);
         check(
             run,
-            run->message->encode(run->node->value, run->node->buffer, run->message->length - 1u) == ICD_ERROR_LENGTH,
+            run->message->encode(run->node->value, run->node->buffer, least - 1u) == ICD_ERROR_LENGTH,
             "small buffer", NULL);
         check(
             run, holds_bytes(run->node->buffer, run->node->buffer_size, FILLER), "written in spite of a small buffer",
@@ -363,13 +382,14 @@ static void message(run_t *run)
     const uint64_t *doubles = run->message->doubles;
 #endif
     for (i = 0; i < run->message->vector_count; i++) {
+        const uint16_t length = run->message->tail != NULL ? run->message->tail->lengths[i] : run->message->length;
         run->vector = i;
         fill(run);
-        check(run, run->message->decode(run->node->value, at, run->message->length) == ICD_OK, "decode refuses", NULL);
+        check(run, run->message->decode(run->node->value, at, length) == ICD_OK, "decode refuses", NULL);
         raw_values(run, at + run->message->length);
-        encoded(run, at);
+        encoded(run, at, length);
         assemble(run, at + run->message->length);
-        encoded(run, at);
+        encoded(run, at, length);
         expected = texts(run, expected);
 #ifndef ICDGEN_NO_DOUBLE
         doubles = physical_values(run, doubles);
@@ -400,7 +420,7 @@ static void dispatcher(run_t *run, const icdgen_selftest_dispatcher_t *one)
         check(run, one->length(id, &length) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID), "dispatcher", "id");
         check(run, !known || length == (size_t)one->ids[i].length, "dispatcher", "length");
         check(
-            run, one->decode(id, run->node->buffer, length) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID), "dispatcher",
+            run, one->decode(id, run->node->buffer, one->ids[i].least) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID), "dispatcher",
             "decode");
         check(
             run, !known || one->decode(id, run->node->buffer, length + 1u) == ICD_ERROR_LENGTH, "dispatcher",

@@ -96,6 +96,18 @@ typedef struct {
     uint32_t expected;
 } icdgen_selftest_constant_t;
 
+/** What there is of a message whose frames differ in length. */
+typedef struct {
+    uint16_t least;                         /* bytes of the shortest frame */
+    uint16_t counter;                       /* which field has the number of elements */
+    uint16_t most;                          /* elements */
+    const uint16_t *lengths;                /* of the frame of each vector; the rest of its bytes is 0 */
+    size_t (*size)(const void *message);    /* bytes of the frame that it makes */
+    const uint8_t *refused_frames;          /* that have more or fewer elements than they say, `length` bytes each */
+    const uint16_t *refused_frame_lengths;
+    uint16_t refused_frame_count;
+} icdgen_selftest_tail_t;
+
 /** A message. Each vector is `length` bytes of a frame, then the packed raw values. */
 typedef struct {
     const char *name;
@@ -117,12 +129,14 @@ typedef struct {
     void (*init)(void *message);
     icd_status_t (*decode)(void *message, const uint8_t *buffer, size_t length);
     icd_status_t (*encode)(const void *message, uint8_t *buffer, size_t capacity);
+    const icdgen_selftest_tail_t *tail; /* NULL where all frames have one length */
 } icdgen_selftest_message_t;
 
 /** An id and the length of the message that has it, -1 where the id is unknown. */
 typedef struct {
     uint32_t id;
     int32_t length;
+    uint16_t least; /* of its frames that have none but zeros */
 } icdgen_selftest_id_t;
 
 /** A frame that came under an id which several messages have: what the dispatcher answers, and the name of the message. */

@@ -10,6 +10,10 @@
  * ICDGEN_SHARED     define it where the program has several units: this header declares the functions then, and
  *                   icdgen_wire.c and NODE/link.c are compiled once. Else each unit has those that it uses for itself.
  * ICDGEN_NO_TABLES  define it to compute checksums without tables: slower, and smaller by 512 bytes each.
+ * ICDGEN_NO_FILES   define it for a program that transfers no files and programs: these are unsupported then.
+ * ICDGEN_NO_LOGS    define it for a program that reads no logs, of a node that sends none unasked.
+ * NODE_CHOSEN       define it, and NODE_WITH_MESSAGE for each message that a program sends or requests, and the tables
+ *                   of NODE/link.c hold no others but for those that the wire layer needs itself.
  */
 
 #include "icdgen.h"

@@ -15,24 +15,64 @@ const icdgenCodec = (() => {
     }
   }
 
-  /** Raw value of each field, in their order. Throws a CodecError unless the frame has the message's length. */
+  /** Raw value of each field, in their order; elements that are not in the frame are 0. Throws a CodecError unless the frame has a length of the message. */
   function decode(message, frame) {
-    if (frame.length !== message.length) {
-      const text = `${message.name} has ${message.length} bytes, ${frame.length} given`;
-      throw new CodecError("length", text, { expected: message.length, actual: frame.length });
-    }
-    return message.fields.map((field) => read(field, frame));
+    const { tail } = message;
+    const count = tail ? elementsIn(message, frame.length) : 0;
+    if (!tail && frame.length !== message.length) throw misfit(message, message.length, frame.length);
+    const longest = tail ? new Uint8Array(message.length) : frame;
+    if (tail) longest.set(frame);
+    const raw = message.fields.map((field) => read(field, longest));
+    if (!tail) return raw;
+    const counter = counterOf(message);
+    if (message.fields[counter].implied) raw[counter] = BigInt(count);
+    else if (raw[counter] !== BigInt(count)) throw misfit(message, tail.least + Number(raw[counter]) * tail.step, frame.length);
+    return raw;
+  }
+
+  /** How many elements the end of a frame of so many bytes has. Throws a CodecError if no frame has so many. */
+  function elementsIn(message, actual) {
+    const { least, step } = message.tail;
+    if (actual < least) throw misfit(message, least, actual);
+    if (actual > message.length) throw misfit(message, message.length, actual);
+    if ((actual - least) % step) throw misfit(message, actual - ((actual - least) % step), actual);
+    return (actual - least) / step;
+  }
+
+  function misfit(message, expected, actual) {
+    return new CodecError("length", `${message.name} has ${expected} bytes, ${actual} given`, { expected, actual });
+  }
+
+  /** The place of the field that says how many elements the end of a message has; -1 where frames have one length. */
+  function counterOf(message) {
+    return message.tail ? message.fields.findIndex((field) => field.name === message.tail.counter) : -1;
+  }
+
+  /** Bytes of the frame of raw values. Throws a CodecError for more elements than there can be. */
+  function sizeOf(message, raw) {
+    if (!message.tail) return message.length;
+    const counter = counterOf(message);
+    const { least, step, most } = message.tail;
+    check(message.fields[counter], raw[counter]);
+    if (raw[counter] > most) throw unfit(message.fields[counter], `takes 0 to ${most}, not ${raw[counter]}`);
+    return least + Number(raw[counter]) * step;
+  }
+
+  /** Whether a frame of so many bytes holds a field; bytes and text are there, if only in part. */
+  function isIn(field, size) {
+    return field.type === "bytes" || field.pieces.every(([byte]) => byte < size);
   }
 
   /** The frame of raw values in the order of the fields; reserved bits are 0. Throws a CodecError for a value that does not fit; views have none. */
   function encode(message, raw) {
     const frame = new Uint8Array(message.length);
+    const size = sizeOf(message, raw);
     message.fields.forEach((field, index) => {
-      if (field.view) return;
+      if (field.view || !isIn(field, size)) return;
       check(field, raw[index]);
       write(field, frame, raw[index]);
     });
-    return frame;
+    return message.tail ? frame.slice(0, size) : frame;
   }
 
   function read(field, frame) {
@@ -197,7 +237,7 @@ const icdgenCodec = (() => {
   }
 
   return {
-    CodecError, decode, encode, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf, text,
+    CodecError, decode, encode, isIn, sizeOf, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf, text,
     rawFromText, floatValue, floatBits,
   };
 })();

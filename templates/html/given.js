@@ -11,9 +11,15 @@ const icdgenGiven = ((frames, packets, pasted, stream) => {
 
   /** The data in bytes, and remarks about what was around it; bytes that do not fit as they are. Throws an Error, too. */
   function unwrap(wire, length, bytes) {
-    if (bytes.length === length) return { data: bytes, remarks: [] };
+    if (hasLength(wire, length, bytes)) return { data: bytes, remarks: [] };
     const read = wire.framing && stream.messages(wire, bytes);
     return read ? ofStream(wire, length, read) : bare(wire, length, bytes);
+  }
+
+  /** Whether bytes are as many as the message has; where frames differ, as some of them have. */
+  function hasLength(wire, length, { length: given }) {
+    const [least, step] = wire.lengths ?? [length, 1];
+    return given >= least && given <= length && (given - least) % step === 0;
   }
 
   function ofStream(wire, length, { messages, remarks }) {
@@ -41,7 +47,7 @@ const icdgenGiven = ((frames, packets, pasted, stream) => {
 
   /** The data, if they are as many as the message has, or the right checksum follows them; else null. */
   function fitting(wire, length, id, data) {
-    if (data.length === length) return { fits: data, remarks: [] };
+    if (hasLength(wire, length, data)) return { fits: data, remarks: [] };
     const right = wire.crc.some((facts) => frames.check(facts, length, id, data)?.fits);
     return right ? { fits: data.slice(0, length), remarks: ["CRC is right"] } : null;
   }

@@ -129,7 +129,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
       if (number === undefined) continue;
       const read = withChecksum(index, speaker, what, id, number, data);
       if (read) yield read;
-      if (what === "telemetry" && !data.length && lengthOf(index, number)) yield reading(index, speaker, "request", number, id);
+      if (what === "telemetry" && !data.length && !fits(index, number, data)) yield reading(index, speaker, "request", number, id);
     }
     const [size, idAt, errorAt] = speaker.acknowledge ?? [];
     if (body.length === size && speaker.telemetry[id] === undefined && speaker.telecommands[body[idAt]] !== undefined) {
@@ -154,6 +154,18 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
   }
 
   const numbersOf = (known) => (Array.isArray(known) ? known.map(([number]) => number) : known === undefined ? [] : [known]);
+  /** Whether a message can have these data: by their number, and by what they say of it where frames differ in length. */
+  function fits(index, number, data) {
+    const [length, tail] = [lengthOf(index, number), index.messages[number][4]];
+    if (!tail) return data.length === length;
+    const count = (data.length - tail.least) / tail.step;
+    if (data.length < tail.least || data.length > length || !Number.isInteger(count)) return false;
+    const told = tail.pieces.reduce((sum, [byte, shift, bits, at]) => sum + ((data[byte] >> shift) & ((1 << bits) - 1)) * 2 ** at, 0);
+    return !tail.pieces.length || told === count;
+  }
+
+  /** Bytes of a message, for people. */
+  const lengthText = (index, number) => (index.messages[number][4] ? `${index.messages[number][4].least} to ` : "") + lengthOf(index, number);
 
   function reading(index, speaker, what, number, id, data = new Uint8Array(), remarks = [], checked = false) {
     const [message, url, , owner] = index.messages[number];
@@ -163,7 +175,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
   /** The message, if the bytes are as many as it has, or the right checksum follows them. */
   function withChecksum(index, speaker, what, id, number, data) {
     const length = lengthOf(index, number);
-    if (data.length === length) return reading(index, speaker, what, number, id, data);
+    if (fits(index, number, data)) return reading(index, speaker, what, number, id, data);
     if (!frames.check(speaker.crc, length, id, data)?.fits) return null;
     return reading(index, speaker, what, number, id, data.slice(0, length), ["CRC is right"], true);
   }
@@ -243,7 +255,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
       const right = frames.check(speaker.crc, lengthOf(index, number), id, data)?.right;
       if (right) return new Error(`${index.messages[number][0]}: as CRC ${frames.hex(right)} would be right, not ${frames.hex(data.slice(-right.length))}`);
     }
-    const told = [...known.values()].map(({ number }) => `${index.messages[number][0]} has ${lengthOf(index, number)} bytes`);
+    const told = [...known.values()].map(({ number }) => `${index.messages[number][0]} has ${lengthText(index, number)} bytes`);
     const [{ id, data }] = known.values();
     if ([...known.values()].some(({ number }) => lengthOf(index, number) === data.length)) {
       return new Error(`the ${data.length} bytes after the id ${id} have the constants of none of its messages`);

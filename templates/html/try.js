@@ -99,18 +99,35 @@
 
   function edit(index, widget, parse) {
     const changed = [...raw];
+    let frame;
     try {
       changed[index] = parse();
+      if (plan.tail) makeRoom(index, changed);
       codec.check(fields[index], changed[index]);
+      frame = codec.encode(plan, changed);
     } catch (error) {
       widget.setAttribute("aria-invalid", "true");
       say(error.message, true);
       return;
     }
-    const frame = codec.encode(plan, changed);
     raw = codec.decode(plan, frame); // views follow
     bytes.value = frames.hex(frame);
     show(frame, []);
+  }
+
+  /** Where frames differ in length: what was typed is in the frame, and open bytes or text are as long as typed. */
+  function makeRoom(index, changed) {
+    const { part, counter, least, step } = plan.tail;
+    const [field, at] = [fields[index], fields.findIndex((one) => one.name === counter)];
+    if (field.name === part && field.type === "bytes") {
+      const filled = field.text && changed[index].length === field.bits / 8; // with NUL, by what was typed as text
+      const typed = changed[index].subarray(0, filled ? codec.text(changed[index]).length : changed[index].length);
+      changed[index] = new Uint8Array(Math.max(field.bits / 8, typed.length));
+      changed[index].set(typed);
+      changed[at] = BigInt(typed.length);
+    } else if (!field.view && !codec.isIn(field, codec.sizeOf(plan, raw))) {
+      changed[at] = BigInt(Math.floor((Math.min(...field.pieces.map(([byte]) => byte)) - least) / step) + 1);
+    }
   }
 
   // From raw values to what is shown
@@ -118,9 +135,16 @@
   function show(frame, remarks) {
     const wrong = [];
     rows.forEach(({ box, value, note }, index) => {
-      const [field, one] = [fields[index], raw[index]];
-      box.value = values.rawText(field, one);
+      const field = fields[index];
+      const one = shownOf(field, raw[index], frame);
       box.removeAttribute("aria-invalid");
+      if (one === null) {
+        clear(rows[index]);
+        note.textContent = "not in the frame";
+        note.classList.remove("wrong");
+        return;
+      }
+      box.value = values.rawText(field, one);
       const remark = values.remark(field, one, plan.enums);
       note.textContent = remark.text;
       note.classList.toggle("wrong", remark.wrong);
@@ -137,6 +161,13 @@
     say([`${frame.length} bytes`, ...remarks, ...wrong.slice(0, 3), ...more].join(", "), wrong.length > 0);
     light(frame);
     send(frame);
+  }
+
+  /** The value of a field as the frame holds it: bytes that are cut off are as many as there are; null for what is not there. */
+  function shownOf(field, one, frame) {
+    if (!plan.tail || field.implied) return one;
+    if (field.type === "bytes") return one.subarray(0, frame.length - field.first);
+    return codec.isIn(field, frame.length) ? one : null;
   }
 
   function say(text, wrong, ...links) {
@@ -163,7 +194,10 @@
       });
       return make("span", { title: `byte ${number}` }, make("b", {}, frames.hex([byte])), ...bits);
     }));
-    const text = (key) => values.shortText(fields[key - 1], raw[key - 1], plan.enums);
+    const text = (key) => {
+      const one = shownOf(fields[key - 1], raw[key - 1], frame);
+      return one === null ? "" : values.shortText(fields[key - 1], one, plan.enums);
+    };
     pictures().forEach((svg, number) => icdgenLit.show(svg, drawings[number], plan.length * 8, isSet, text));
   }
 
@@ -195,7 +229,7 @@
   // What was pasted, or came with the address
 
   function read() {
-    if (!bytes.value.trim() && plan.length) {
+    if (!bytes.value.trim() && (plan.tail?.least ?? plan.length)) {
       empty();
       say("", false);
       return;
@@ -224,16 +258,18 @@
   /** Nothing is left from before beside a frame that is not this message. */
   function empty() {
     raw = codec.fresh(plan);
-    rows.forEach(({ box, value, note }) => {
-      box.value = "";
-      note.textContent = "";
-      if (value?.type === "checkbox") value.checked = false;
-      else if (value) value.value = "";
-    });
+    rows.forEach(clear);
     strip.replaceChildren();
     sent.replaceChildren();
     link.setAttribute("href", "#try");
     pictures().forEach(icdgenLit.clear);
+  }
+
+  function clear({ box, value, note }) {
+    box.value = "";
+    note.textContent = "";
+    if (value?.type === "checkbox") value.checked = false;
+    else if (value) value.value = "";
   }
 
   function fromAddress() {

@@ -6,6 +6,8 @@ import subprocess
 
 import pytest
 
+from icdgen.describe import describe
+from icdgen.describe.links import links_of
 from tests.c import harness
 
 BOTH = """\
@@ -129,3 +131,67 @@ def test_a_program_without_tables_of_checksums_has_none(folder):
         return {name for name in linked(folder, "uart", *options) if "_table" in name and name.startswith("crc")}
 
     assert with_tables() and not with_tables("-DICDGEN_NO_TABLES")
+
+
+CHOSEN = ("-DCUBEACP_CHOSEN", "-DCUBEACP_WITH_IDENTIFICATION")
+
+
+def test_a_program_may_choose_the_messages_of_its_tables(folder):
+    """Others do not compile; those that the wire layer asks for itself are there nevertheless."""
+    rows = []
+    for options in ((), CHOSEN, (*CHOSEN, "-DICDGEN_NO_FILES"), (*CHOSEN, "-DICDGEN_NO_FILES", "-DICDGEN_NO_LOGS")):
+        linked(folder, "uart", *options)  # the program runs
+        done = subprocess.run(["nm", "-S", folder / "client"], capture_output=True, text=True, check=True)
+        sizes = {
+            line.split()[3].partition(".")[0]: int(line.split()[1], 16)
+            for line in done.stdout.splitlines()
+            if len(line.split()) == 4
+        }
+        ends = sizes["telecommands"] // 4 - 1, sizes["telemetry"] // 4 - 1  # the last one is none
+        rows.append((*ends, "download" in sizes, "log_bits" in sizes))
+    link = links_of(describe(harness.shipped()))["cubeacp"]
+    needed = [one.name for one in (*link.always_needed, *link.in_procedures)]
+    few = [sum(sent.message.name in needed for sent in sents) for sents in (link.telecommands, link.telemetry)]
+    own = [sum(sent.message in link.always_needed for sent in sents) for sents in (link.telecommands, link.telemetry)]
+    assert own == [0, 2] and few > own
+    assert rows == [
+        (len(link.telecommands), len(link.telemetry), True, True),
+        (*few, True, True),
+        (*own, False, True),
+        (*own, False, False),
+    ]
+    with pytest.raises(AssertionError, match="cubeacp_request_identification"):
+        linked(folder, "uart", "-DCUBEACP_CHOSEN")
+
+
+@pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")])
+@pytest.mark.parametrize("shared", [(), ("-DICDGEN_SHARED",)], ids=["header only", "shared"])
+def test_chosen_messages_compile_without_a_warning(folder, compiler, standard, shared):
+    options = (*CHOSEN, "-DBOOTLOADER_CHOSEN", "-DICDGEN_NO_FILES", "-DICDGEN_NO_LOGS", *shared)
+    objects(folder, ["first.c", *(SHARED if shared else ())], compiler, standard, *options)
+
+
+def test_what_is_left_out_is_unsupported(folder):
+    (folder / "left.c").write_text("""\
+#include "cubeacp.h"
+int main(void)
+{
+    icd_list_t list;
+    icd_log_reader_t reader;
+    uint8_t buffer[CUBEACP_LOG_BYTES];
+    if (icd_list_init(&list, cubeacp_link(), NULL, NULL) != ICD_ERROR_UNSUPPORTED) {
+        return 1;
+    }
+    return icd_log_reader_init(&reader, cubeacp_link(), buffer, sizeof buffer) == ICD_ERROR_UNSUPPORTED ? 0 : 2;
+}
+""")
+    options = (
+        "-std=c99",
+        *harness.WARNINGS,
+        *harness.SANITIZERS,
+        "-DICDGEN_NO_FILES",
+        "-DICDGEN_NO_LOGS",
+        f"-I{folder}",
+    )
+    program = harness.compile(folder / "left.c", *options, output=folder / "left")
+    assert subprocess.run([program]).returncode == 0

@@ -318,6 +318,76 @@ messages:
   - {name: Alone, id: 0x0107, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: A, type: uint, const: 5}]}
 """
 
+OPEN = """\
+icdgen: 1
+node: {name: open, title: Messages of variable length, byte_order: big, bit_order: msb0}
+enums:
+  - name: Gauge
+    members: [{value: 1, name: First}, {value: 300, name: Last}]
+messages:
+  - name: Counted
+    id: 130
+    kind: telemetry
+    length: 4
+    fields:
+      - {at: 0, bits: 8, name: Size, type: uint}
+      - {at: 8, bits: 6, name: Levels Count, type: uint, special: [{value: 12, meaning: all}]}
+      - {at: 14, bits: 2, name: Gain, type: uint}
+      - {at: 16, bits: 16, name: Rate, type: uint, unit: mA, formula: raw*0.1}
+      - {at: 32, bits: 16, name: Type, type: int, count: Levels Count, up_to: 12, unit: V, formula: raw*0.01}
+      - {at: 8, bits: 8, name: Both, type: uint, view: true}
+  - name: Narrow
+    id: 131
+    kind: telemetry
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Number, type: uint}
+      - {at: 8, bits: 24, name: Samples, type: int, count: rest, up_to: 5, byte_order: little, formula: raw*2^-70}
+  - name: Text
+    id: 132
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 16, name: Severity, type: uint}
+      - {at: 16, name: Match, type: text, size: rest, up_to: 80}
+  - {name: Payload, id: 133, kind: telecommand, length: 0, fields: [{at: 0, name: Data, type: bytes, size: rest, up_to: 255}]}
+  - name: Gauges
+    id: 134
+    kind: telecommand
+    length: 2
+    fields:
+      - {at: 16, bits: 16, name: Gauges, type: enum, enum: Gauge, count: Gauges Count, up_to: 3}
+      - {at: 0, bits: 16, name: Gauges Count, type: uint, byte_order: little}
+  - name: Floats
+    id: 135
+    kind: telemetry
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Number, type: uint}
+      - {at: 8, bits: 32, name: Values, type: float, count: rest, up_to: 4}
+  - name: Octets
+    kind: configuration
+    set_id: 7
+    get_id: 136
+    length: 9
+    fields:
+      - {at: 0, bits: 64, name: Number, type: uint}
+      - {at: 72, bits: 8, name: Octets, type: uint, count: Number, up_to: 200, const: 3}
+  - {name: Lengthy, id: 137, kind: telemetry, length: 0, fields: [{at: 0, bits: 8, name: Fn, type: uint, count: rest, up_to: 300}]}
+  - name: Doubles
+    id: 138
+    kind: telemetry
+    length: 0
+    fields: [{at: 0, bits: 64, name: Values, type: float, count: rest, up_to: 1}]
+  - name: Fives
+    id: 139
+    kind: telecommand
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: One, type: uint, const: 9}
+      - {at: 8, bits: 40, name: Fives, type: uint, count: rest, up_to: 2, min: 4, special: [{value: 1099511627775, meaning: none}]}
+"""
+
 EMPTY = """\
 icdgen: 1
 node: {name: empty, title: No messages, byte_order: little, bit_order: lsb0}
@@ -325,7 +395,8 @@ node: {name: empty, title: No messages, byte_order: little, bit_order: lsb0}
 
 
 _ODD = {
-    "shared": SHARED, "mixed": MIXED, "other": OTHER, "wide": WIDE, "common": COMMON, "apart": APART, "empty": EMPTY,
+    "shared": SHARED, "mixed": MIXED, "other": OTHER, "wide": WIDE, "common": COMMON, "apart": APART, "open": OPEN,
+    "empty": EMPTY,
 }  # fmt: skip
 
 

@@ -130,6 +130,11 @@ class Reference:
                 raw[field.name] = raw_value(field, given[field.name])
             else:
                 raise Refusal("missing-field", field=field.name)
+        try:
+            codec.count_of(message, raw)
+        except codec.CodecError as error:
+            assert message.tail is not None
+            raise Refusal("range", field=message.tail.counter, detail=str(error)) from None
         return described(node, message, codec.decode(node, message, codec.encode(node, message, raw)))
 
     def constants(self, request: dict) -> dict:

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from icdgen.icd.model import Icd
+from icdgen.vectors import patterns
 from icdgen.vectors.make import frame_row
 from icdgen.vectors.write import raw_json
 from tests.conformance import robust
@@ -101,7 +102,10 @@ def _random(icd: Icd, message, cases: MessageCases, frames: int, seed: int) -> I
         left -= count
         found: list[Case] = []
         for _ in range(count):
-            row = frame_row(node, message, "random frame", source.randbytes(message.length))
+            frame = source.randbytes(message.length)
+            if message.tail is not None:
+                frame = patterns.cut(message, node, frame, source.randint(0, message.tail.most))
+            row = frame_row(node, message, "random frame", frame)
             vector = {
                 "why": "random frame", "bytes": row.frame.hex(), "encoded": row.encoded.hex(),
                 "raw": [raw_json(f, row.raw[f.name]) for f in message.fields], "doubles": list(row.doubles.values()),

@@ -102,7 +102,9 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         else:
             message["id"] = ids(first_id + number + (0 if message["kind"] == "telecommand" else 40))
         message["length"] = length
-        if draw(st.integers(0, 4)) == 0:
+        if draw(st.integers(0, 3)) == 0:
+            fields = [*fields, draw(_open_end(fields, length, enums))]
+        elif draw(st.integers(0, 4)) == 0:
             message["reserved"] = draw(st.integers(1, 9))
             message["length"] += message["reserved"]
         if fields:
@@ -194,6 +196,31 @@ def _fields(draw, enums: list[dict], orders: dict) -> tuple[list[dict], int]:
     fields += draw(_views(fields, used, names, enums, orders))
     order = draw(st.permutations(fields)) if draw(st.booleans()) else fields
     return order, (end + 7) // 8
+
+
+@st.composite
+def _open_end(draw, fields: list[dict], length: int, enums: list[dict]) -> dict:
+    """What ends a message of variable length: elements that a field counts or that the frame ends, bytes or text."""
+    end = {"at": 8 * length, **Names(draw, {field["name"] for field in fields}).one("end")}
+    if draw(st.integers(0, 3)) == 0:
+        return end | {
+            "type": draw(st.sampled_from(("bytes", "text"))),
+            "size": "rest",
+            "up_to": draw(st.integers(1, 20)),
+        }
+    element = draw(
+        _field(enums).filter(lambda one: one["type"] not in ("bool", "bytes", "text") and one["bits"] % 8 == 0)
+    )
+    counters = [field for field in fields if _counts(field)]
+    counter = draw(st.sampled_from([None, *counters]))
+    most = draw(st.integers(1, min(9, (1 << counter["bits"]) - 1) if counter else 9))
+    return end | element | {"count": counter["name"] if counter else "rest", "up_to": most}
+
+
+def _counts(field: dict) -> bool:
+    """Whether a field can say how many elements there are."""
+    others = ("formula", "const", "count", "view", "bitfields")
+    return field["type"] == "uint" and not any(key in field for key in others)
 
 
 @st.composite

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from icdgen.backends.assurance.changes import OTHER_TYPES, formulas
 from icdgen.icd.build import plain
 from icdgen.icd.model import Enum, Icd, Message, Node
+from icdgen.icd.tails import is_open
 
 Change = Callable[[dict], object]
 
@@ -75,7 +76,11 @@ class _Home:
             one.pop("contains", None)
             one.pop("listed", None)
             if message.fields:  # what the manual divides in words is its parts
-                one["fields"] = [{"type": "uint", **plain(field.source), "at": field.at} for field in message.members]
+                one["fields"] = [
+                    {"type": "uint", **plain(field.source), "at": field.at}
+                    for field in message.members
+                    if not field.implied
+                ]
             tree["messages"] = [one]
             used = {field.get("unit") for field in one.get("fields") or ()}
             tree["units"] = [unit for symbol, unit in self.units.items() if symbol in used]
@@ -104,7 +109,7 @@ def _message(home: _Home, message: Message) -> Iterator[Mutant]:
         if number is not None:
             for step in (-1, 1):
                 yield on_message("id", f"{key} {number} -> {number + step}", **{key: number + step})
-    for step in (-1, 1):
+    for step in (-1, 1) if message.tail is None else ():  # an open end begins where it ends
         yield on_message("length", f"length {message.length} -> {message.length + step}", length=message.length + step)
     for key, values in (("byte_order", ("little", "big")), ("bit_order", ("lsb0", "msb0"))):
         own = key in base["messages"][0]
@@ -128,6 +133,8 @@ def _swaps(fields: list[dict]) -> Iterator[tuple[str, Change]]:
     """Two neighbours of the same width and type in each other's place."""
     for index in range(1, len(fields)):
         one, other = fields[index - 1], fields[index]
+        if is_open(one) or is_open(other):
+            continue
         if (one["bits"], one["type"]) == (other["bits"], other["type"]):
             about = f"{one['name']!r} and {other['name']!r} in each other's place"
             places = {index - 1: other["at"], index: one["at"]}
@@ -135,16 +142,26 @@ def _swaps(fields: list[dict]) -> Iterator[tuple[str, Change]]:
 
 
 def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
-    for step in (-8, -1, 1, 8):
+    if is_open(field):
+        for step in (-1, 1):
+            yield _number("up to", field, "up_to", step)
+        for step in (-8, 8) if "bits" in field else ():
+            yield _number("width", field, "bits", step)
+        if field.get("count", "rest") != "rest":
+            yield "counter", "up to the end", lambda f: f.update(count="rest")
+    for step in (-8, -1, 1, 8) if not is_open(field) else ():
         yield _number("offset", field, "at", step)
     for step in (-1, 1) if field["type"] not in ("bytes", "text") else (-8, 8):
-        yield _number("width", field, "bits", step)
-    for step in (-1, 1) if "count" in field else ():
+        if not is_open(field):
+            yield _number("width", field, "bits", step)
+    for step in (-1, 1) if type(field.get("count")) is int else ():
         yield _number("count", field, "count", step)
     if field.get("view"):
         yield "view", "no view", lambda f: f.pop("view")
     for other in OTHER_TYPES[field["type"]]:
-        if other == "bytes" and field.get("view"):
+        if (other == "bytes" and field.get("view")) or (
+            is_open(field) and ("size" in field or other in ("bytes", "bool"))
+        ):
             continue
         yield "type", f"{field['type']} -> {other}", lambda f, o=other: _retype(f, o)
     for key, values in (("byte_order", ("little", "big")), ("bit_order", ("lsb0", "msb0"))):

@@ -162,9 +162,12 @@ class Served(threading.Thread):
         self.start()
 
     def run(self) -> None:
-        while data := self.far.recv(4096):
-            self.port.write(data)
-            self.far.sendall(self.port.read(1))
+        try:
+            while data := self.far.recv(4096):
+                self.port.write(data)
+                self.far.sendall(self.port.read(1))
+        except OSError:
+            return
 
 
 def test_a_socket_will_do(shipped, wire):

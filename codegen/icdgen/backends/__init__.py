@@ -14,6 +14,7 @@ from icdgen.errors import UserError
 from icdgen.icd.identifiers import Identifier as Identifier
 from icdgen.icd.identifiers import Language
 from icdgen.icd.model import Icd
+from icdgen.suggest import close_words
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -78,10 +79,8 @@ def get(name: str) -> Backend:
         return _load(known[name])
     found = plug_ins()
     if name not in found:
-        from difflib import get_close_matches
-
         there = sorted({*_BUILT_IN, *found})
-        close = get_close_matches(name.lower(), there, 1) or [one for one in there if one.startswith(name.lower())]
+        close = close_words(name, there, 1) or [one for one in there if one.startswith(name.lower())]
         help = "a backend of another package must be installed beside icdgen"
         raise UnknownBackend(
             f"there is no backend `{name}`; there are: {', '.join(there)}",

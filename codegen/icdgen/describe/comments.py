@@ -10,9 +10,9 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.describe.bounds import Bound, bounds
-from icdgen.describe.numbers import array_text, bit_range, byte_count, byte_range, exact_text, value_text
+from icdgen.describe.numbers import array_text, bit_range, byte_count, byte_range, exact_text, length_text, value_text
 from icdgen.describe.steps import Steps, steps
-from icdgen.icd.model import CONFIGURATION, Enum, Erratum, Field, Member, Message
+from icdgen.icd.model import CONFIGURATION, Enum, Erratum, Field, Member, Message, Tail
 
 
 class Comment(NamedTuple):
@@ -70,7 +70,7 @@ def message_comment(message: Message, log_bit: int | None = None, sharing: str =
     facts += (f"Repeats {words(part.message)} from {_from(part.at)}." for part in message.contains)
     if message.reserved:
         facts.append(f"The last {'byte is' if message.reserved == 1 else f'{message.reserved} bytes are'} reserved.")
-    head = f"{words(message.name)}: {kind} {ids}, {byte_count(message.length)}.{_table(message.table)}"
+    head = f"{words(message.name)}: {kind} {ids}, {length_text(message)}.{_table(message.table)}"
     return _comment(head, (sentence(message.summary), " ".join(facts)), message.errata, {})
 
 
@@ -99,15 +99,24 @@ def member_comment(member: Member, told: Mapping[str, str]) -> Comment:
     return _comment(f"{words(member.name)} ({member.value}).", (sentence(member.summary),), member.errata, told)
 
 
-def field_comment(field: Field, told: Mapping[str, str]) -> Comment:
-    """Name, place, range and unit; summary; values that are allowed or mean something. ``told``: as for a member."""
+def field_comment(field: Field, told: Mapping[str, str], tail: Tail | None = None) -> Comment:
+    """Name, place, range and unit; summary; values that are allowed or mean something.
+
+    ``told``: as for a member. ``tail``: the open end of its message.
+    """
+    if tail is not None and field.implied:
+        what = f"how much of {words(tail.name)} the frame has, up to {tail.most}; told by its length"
+        return Comment(f"{words(field.name)}: {what}.")
     facts = ["A view: it reads bits of other fields, and is not set."] if field.view else []
     if field.const is not None:
         facts.append(f"Always {value_text(field.const)}.")
     if field.limits is not None:
         facts.append(_limits(field))
     facts += (f"{value_text(special.value)}: {sentence(special.meaning)}" for special in field.special)
-    head = f"{words(field.name)}: {_place(field)}{_meaning(field)}."
+    if tail is not None and tail.counter == field.name:
+        facts.append(f"Counts {words(tail.name)}: at most {tail.most}.")
+    place = _place(field) if tail is None or tail.name != field.name else _open_place(field, tail)
+    head = f"{words(field.name)}: {place}{_meaning(field)}."
     return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, told)
 
 
@@ -128,6 +137,17 @@ def _place(field: Field) -> str:
     where = bit_range(field.at, field.width)
     elements = array_text(field.count, field.bits) if field.count else ""
     return ", ".join(filter(None, (where, elements, orders_text(field))))
+
+
+def _open_place(field: Field, tail: Tail) -> str:
+    """``from byte 4 on, up to 12 elements of 16 bits``"""
+    if field.type == "bytes":
+        what = f"up to {byte_count(tail.most)}"
+    elif field.type == "text":
+        what = f"text of up to {tail.most} character{'s' * (tail.most != 1)}"
+    else:
+        what = f"up to {array_text(tail.most, field.bits)}"
+    return ", ".join(filter(None, (f"from byte {field.at // 8} on", what, orders_text(field))))
 
 
 def orders_text(field: Field) -> str:

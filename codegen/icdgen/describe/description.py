@@ -56,6 +56,12 @@ class FieldDescription(Named[Field]):
         """How many elements an array has that stands as one; else 0."""
         return self.model.count
 
+    @property
+    def is_open(self) -> bool:
+        """Whether it is the open end of its message, or an element of that."""
+        tail, path = self.message.model.tail, self.model.path
+        return tail is not None and tail.name == (path[0].name if path else self.model.name)
+
     @cached_property
     def elements(self) -> tuple[FieldDescription, ...]:
         """The elements of an array that stands as one; else none."""
@@ -130,7 +136,8 @@ class FieldDescription(Named[Field]):
 
     @cached_property
     def comment(self) -> Comment:
-        return field_comment(self.model, told_elsewhere(self.model, self.message.tellers) if self.model.errata else {})
+        told = told_elsewhere(self.model, self.message.tellers) if self.model.errata else {}
+        return field_comment(self.model, told, self.message.model.tail)
 
 
 class Id(NamedTuple):
@@ -139,6 +146,21 @@ class Id(NamedTuple):
     name: str
     value: int
     comment: str
+
+
+class TailDescription(NamedTuple):
+    """The open end of a message: see `icdgen.icd.model.Tail`."""
+
+    part: FieldDescription  # the array as one, or the bytes or text
+    counter: FieldDescription  # how many elements there are; implied, or a field of the frame
+    least: int  # bytes of a frame without any element
+    step: int  # bytes of an element
+    most: int  # elements
+
+    @property
+    def is_bound(self) -> bool:
+        """Whether the integer that holds the count holds larger ones than there can be."""
+        return self.counter.storage.max > self.most
 
 
 class MessageDescription(Named[Message]):
@@ -181,6 +203,27 @@ class MessageDescription(Named[Message]):
         return tuple(field for field in fields if not field.model.view) if self.views else fields
 
     @cached_property
+    def tail(self) -> TailDescription | None:
+        """Its open end, where frames differ in length."""
+        tail = self.model.tail
+        if tail is None:
+            return None
+        part, counter = (
+            next(one for one in self.members if one.model.name == name) for name in (tail.name, tail.counter)
+        )
+        return TailDescription(part, counter, self.model.least, tail.step, tail.most)
+
+    @property
+    def sent(self) -> tuple[FieldDescription, ...]:
+        """Members that have bits in the frame: without the count that only the length of the frame tells."""
+        return self.members if self.tail is None else tuple(one for one in self.members if not one.model.implied)
+
+    @property
+    def sent_fields(self) -> tuple[FieldDescription, ...]:
+        """Fields that have bits in the frame, each element of an array."""
+        return self.fields if self.tail is None else tuple(one for one in self.fields if not one.model.implied)
+
+    @cached_property
     def contained(self) -> tuple[tuple[MessageDescription, int], ...]:
         """The messages that it repeats, each with the bit at which it begins, in the order of the ICD."""
         if not self.model.contains:
@@ -212,7 +255,7 @@ class MessageDescription(Named[Message]):
     @property
     def is_narrow(self) -> bool:
         """Whether a field of it may be given a raw value that does not fit."""
-        return any(field.is_narrow for field in self.fields)
+        return any(field.is_narrow for field in self.fields) or (self.tail is not None and self.tail.is_bound)
 
     @property
     def has_floats(self) -> bool:

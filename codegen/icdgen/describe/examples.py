@@ -39,7 +39,12 @@ class Example(NamedTuple):
 
 def worth_showing(message: MessageDescription) -> FieldDescription | None:
     """The first field with a scale, else the first that is neither constant nor an array."""
-    usual = [one for one in message.members if one.model.const is None and not one.model.is_bytes and not one.count]
+    counter = message.tail.counter if message.tail else None  # which is 0 in an example, as the frame has no element
+    usual = [
+        one
+        for one in message.members
+        if one.model.const is None and not one.model.is_bytes and not one.count and one is not counter
+    ]
     return next((one for one in usual if one.steps is not None), usual[0] if usual else None)
 
 

@@ -173,7 +173,21 @@ class LinkDescription:
     @property
     def longest_step(self) -> int:
         """Bytes of the longest message that takes part in a procedure."""
-        return max((message.length for message in self._in_procedures()), default=0)
+        return max((message.length for message in self.in_procedures), default=0)
+
+    def name_of(self, message: Message) -> str:
+        """What it is called in names of code."""
+        return self._describe(message).name
+
+    @cached_property
+    def always_needed(self) -> list[Message]:
+        """The messages that the wire layer asks for by itself, whatever a program does."""
+        return [step.message for step in (self.polled, self.identification) if step]
+
+    @cached_property
+    def in_procedures(self) -> list[Message]:
+        """The messages that take part in the transfer of files and programs."""
+        return list(self._in_procedures())
 
     def _in_procedures(self) -> Iterator[Message]:
         facts = self.facts

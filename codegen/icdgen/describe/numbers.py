@@ -5,6 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import lru_cache
 
+from icdgen.icd.model import Message
+
 MOST_DIGITS = 24  # of a decimal that is shown in full
 
 
@@ -52,6 +54,11 @@ def array_text(count: int, bits: int) -> str:
 def byte_range(first: int, count: int) -> str:
     """``byte 3``, ``bytes 4 to 7``"""
     return f"byte {first}" if count == 1 else f"bytes {first} to {first + count - 1}"
+
+
+def length_text(message: Message) -> str:
+    """``6 bytes``; where frames differ ``4 to 28 bytes``."""
+    return byte_count(message.length) if message.tail is None else f"{message.least} to {byte_count(message.length)}"
 
 
 def byte_count(count: int) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
+from icdgen.describe.numbers import length_text
 from icdgen.diff.changes.numbers import is_wider
 from icdgen.diff.compare import Comparison
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
@@ -133,14 +134,15 @@ def _verdict(
 
 def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple[str, ...]]:
     """How much of what is sent the reader understands."""
-    if sent.length != reader.length:
-        return NO, (f"{sent.length} bytes come, {reader.length} are expected",)
+    lengths, odd = _lengths(sent, reader, "come")
+    if lengths == NO:
+        return NO, odd
     own = [p for p in pair.parts if not p.any.view]  # views read what the others carry
     absent = [p.any for p in own if not p.both and (p.before if reader is pair.old else p.after) is not None]
     wrong = [(p, why) for p in pair.kept if (why := _misread(p))]
     if not absent and not wrong:
-        return YES, ()
-    reasons = _together((p.any.name, why) for p, why in wrong)
+        return lengths, odd
+    reasons = [*odd, *_together((p.any.name, why) for p, why in wrong)]
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
     verdict = NO if len(absent) + len(wrong) == len(reader.members) - len(reader.views) else PARTLY
@@ -176,12 +178,25 @@ def _senses_differ(old: Field, new: Field) -> bool:
     return any(not same_sense(before[value], after[value]) for value in before.keys() & after.keys())
 
 
+def _lengths(sent: Message, reader: Message, verb: str) -> tuple[str, tuple[str, ...]]:
+    """Whether frames that are sent have a length that is expected."""
+    fitting = sum(one in reader.lengths for one in sent.lengths)
+    if fitting == len(sent.lengths):
+        return YES, ()
+    if sent.tail is None and reader.tail is None:
+        return NO, (f"{sent.length} bytes {verb}, {reader.length} are expected",)
+    text = f"{length_text(sent)} {verb}, {length_text(reader)} are expected"
+    return (PARTLY if fitting else NO), (text,)
+
+
 def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
     old, new = pair.old, pair.new
-    if old.length != new.length:
-        return NO, (f"{old.length} bytes are sent, {new.length} are expected",)
+    lengths, odd = _lengths(old, new, "are sent")
+    if lengths == NO:
+        return NO, odd
     found = [(one, *_disobeyed(one)) for one in pair.parts if not one.any.view]
     reasons = _together((one.any.name, why) for one, why, _ in found if why)
+    reasons = [*odd, *reasons]
     return (NO if any(refused for *_, refused in found) else PARTLY if reasons else YES), tuple(reasons)
 
 

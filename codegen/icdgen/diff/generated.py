@@ -258,6 +258,9 @@ class _Cut:
         fields = {_place(side): p for p in pair.parts if (side := self.side_of(p)) is not None}
         own: list[Field] = []
         for one in message.members:
+            if one.implied:
+                own.append(one)
+                continue
             part = fields[_place(one)]
             if id(part) not in self.kept or not _is_sound(one):
                 continue
@@ -265,7 +268,11 @@ class _Cut:
             field = self.marked(one, part, enum=enum)
             self.fields[id(part)] = field
             own += field.elements
-        made = self.marked(message, pair, fields=tuple(own), node=names.get(message.node, message.node))
+        kept = message.with_fields(tuple(own))
+        fields_of_it = tuple(one for one in own if kept.tail or not one.implied)
+        made = self.marked(
+            kept, pair, fields=fields_of_it, node=names.get(message.node, message.node)
+        )
         self.messages[id(pair)] = made
         return made
 

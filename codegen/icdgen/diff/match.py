@@ -288,9 +288,13 @@ _MESSAGES_LIKELY = ((_moved_message, _name, SAME_MESSAGE), (_renamed_message, _m
 # Fields
 
 
+def _printed(message: Message) -> list[Field]:
+    """The members that the ICD has lines for."""
+    return [one for one in message.members if not one.implied]
+
+
 def _fields(pair: MessagePair) -> list[FieldPair]:
-    old = sorted(pair.before.members, key=_place) if pair.before else []
-    new = sorted(pair.after.members, key=_place) if pair.after else []
+    old, new = (sorted(_printed(one), key=_place) if one else [] for one in (pair.before, pair.after))
     pairs = _side_by_side(old, new, lambda known, *left: _renamed_fields(pair, known, *left))
     found = [FieldPair(*one, owner=pair) for one in pairs]
     return sorted(found, key=lambda p: _place(p.old if p.before is not None else p.new))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Generic, TypeVar
 
@@ -108,8 +108,17 @@ class FieldPair(SideBySide[Field]):
 
     @cached_property
     def same_bits(self) -> bool:
-        """Whether both lie on the same bits, however these are numbered."""
-        return position(self.owner.old_node, self.old) == position(self.owner.new_node, self.new)
+        """Whether both lie on the same bits, however these are numbered; of an open end, what they have in common."""
+        old, new = self.old, self.new
+        if self.is_open:
+            old, new = _first_of(old), _first_of(new)
+        return position(self.owner.old_node, old) == position(self.owner.new_node, new)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it is, or was, what ends a message of variable length."""
+        sides = (self.owner.old, self.old), (self.owner.new, self.new)
+        return any(message.tail is not None and message.tail.name == one.name for message, one in sides)
 
     @property
     def moved(self) -> bool:
@@ -203,6 +212,11 @@ def is_of_another_node(pair: Pair) -> bool:
 
 def orders(node: Node) -> tuple[str, str]:
     return node.byte_order, node.bit_order
+
+
+def _first_of(one: Field) -> Field:
+    """The first element, or byte."""
+    return replace(one, bits=8) if one.is_bytes else one.elements[0]
 
 
 def position(node: Node, one: Field) -> Position:

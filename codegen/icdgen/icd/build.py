@@ -9,7 +9,7 @@ from functools import partial
 from itertools import chain
 from typing import TypeVar
 
-from icdgen.icd import division, formula, model, wire_ids
+from icdgen.icd import division, formula, model, tails, wire_ids
 from icdgen.icd.errata import Applied
 from icdgen.icd.located import Map, plain
 from icdgen.icd.units import STANDARD, Unit
@@ -110,11 +110,13 @@ class Builder:
 
     def message(self, item: Map) -> model.Message:
         where = item.get("source") or {}
+        fields = tuple(chain.from_iterable(self.each("fields", partial(self.fields, orders(item)), item)))
+        tail, ends = self.tail(item)
         return model.Message(
             name=item["name"],
             kind=item["kind"],
-            length=item["length"],
-            fields=tuple(chain.from_iterable(self.each("fields", partial(self.fields, orders(item)), item))),
+            length=item["length"] + (tail.most * tail.step if tail else 0),
+            fields=fields + ends,
             id=_id(item, "id"),
             set_id=_id(item, "set_id"),
             get_id=_id(item, "get_id"),
@@ -129,13 +131,31 @@ class Builder:
             assumptions=tuple((key, str(why)) for key, why in (item.get("assumptions") or {}).items()),
             contains=tuple(self.each("contains", lambda p: model.Part(p["message"], p["at"]), item)),
             reserved=item.get("reserved", 0),
+            tail=tail,
             node=self.name,
             errata=self.applied.about(item),
             source=item,
         )
 
+    def tail(self, message: Map) -> tuple[model.Tail | None, tuple[model.Field, ...]]:
+        """The open end of a message, and its fields: the elements, and how many there are where no field says so."""
+        items = [item for item in tails.open_parts(message) if id(item) not in self.broken]
+        if len(items) != 1 or any(tails.obstacles(message, items[0])):
+            return None, ()
+        (item,) = items
+        most, bits, counter = item["up_to"], tails.unit(item), tails.counter_of(message, item)
+        tail = model.Tail(item["name"], counter["name"] if counter else "", bits // 8, most)
+        end = self.field(item, orders(message))
+        end = replace(end, bits=8 * most) if "size" in item else replace(end, count=most)
+        if counter is not None:
+            return tail, end.elements
+        implied = model.implied_count(end, message["length"] + most * tail.step)
+        return replace(tail, counter=implied.name), (*end.elements, implied)
+
     def fields(self, around: Orders, item: Map) -> tuple[model.Field, ...]:
         """The field, the elements of an array, or the parts that it is divided into; ``around``: the orders of its message."""
+        if tails.is_open(item):
+            return ()  # see `tail`
         if "count" in item:
             return replace(self.field(item, around), count=item["count"]).elements
         if "bitfields" not in item:
@@ -163,7 +183,7 @@ class Builder:
         return model.Field(
             name=item["name"],
             at=item["at"],
-            bits=item["bits"],
+            bits=get("bits", 0),  # open bytes and text: `tail` knows
             type=kind,
             identifier=get("identifier"),
             enum=self.scope.enums.get(get("enum", "")) if kind == "enum" else None,

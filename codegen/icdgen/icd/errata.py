@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Set
 from icdgen.diagnostics import Finding, Place
 from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import Erratum
+from icdgen.suggest import close_to
 
 _AGAIN = "look at the manual again, then update or remove the entry"
 STALE, NOWHERE, DOUBLE_ID, OTHER_NODE = "ICD080", "ICD081", "ICD082", "ICD083"
@@ -217,8 +218,6 @@ def _stale(entry: Map, target: Map, printed: Map) -> Finding:
 
 
 def _nowhere(tree: Map, where: Map) -> Finding:
-    import difflib
-
     wanted, known = "", []
     if "section" in where:
         wanted = f"section `{where['section']}`"
@@ -235,8 +234,8 @@ def _nowhere(tree: Map, where: Map) -> Finding:
             wanted = f"field `{where.get('field') or where.get('fields')}` in {wanted}"
             known = [f.get("name") for m in messages for f in _maps(m.get("fields"))]
     target = str(where.get("field") or where.get("message") or where.get("enum") or "")
-    close = difflib.get_close_matches(target, [k for k in known if isinstance(k, str)], 1)
-    help = f"did you mean `{close[0]}`?" if close else "names are the manual's, to the letter"
+    close = close_to(target, (k for k in known if isinstance(k, str)))
+    help = f"did you mean `{close}`?" if close else "names are the manual's, to the letter"
     return Finding(NOWHERE, f"there is no {wanted}", where.place, help)
 
 

@@ -151,6 +151,7 @@ class Field:
     view: bool = False  # it reads bits that other fields have, and has none: see `Message.owners`
     path: tuple[Step, ...] = ()  # of an element: its array; empty: the message has the field itself
     count: int = 0  # of an array that stands as one: its elements, of which this is the first but for its name
+    implied: bool = False  # it has no bits: the length of a frame tells its value; see `Tail`
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
@@ -213,6 +214,36 @@ class Field:
         return (1 << (self.bits - self.signed)) - 1
 
 
+@dataclass(frozen=True, slots=True)
+class Tail:
+    """The end of a message whose frames differ in length: an array, bytes or text, of which there is not always all.
+
+    A frame is the beginning of the longest one. Elements that are not in it are 0 in what it is decoded to.
+    """
+
+    name: str  # of the array, or of the field of bytes or text
+    counter: str  # the field that says how many elements there are: one of the frame, or an implied one
+    step: int  # bytes of an element
+    most: int  # elements
+
+
+def implied_count(end: Field, length: int) -> Field:
+    """How many elements the open ``end`` of a message has, an array that stands as one, bytes or text.
+
+    It is for frames whose longest has so many bytes, and no field that says it.
+    """
+    most, what = (end.bits // 8, "Size") if end.is_bytes else (end.count, "Count")
+    return Field(
+        name=f"{end.name} {what}",
+        at=8 * length,
+        bits=8 if most < 256 else 16,
+        type="uint",
+        identifier=f"{end.identifier} {what}" if end.identifier else None,
+        implied=True,
+        source=end.source,
+    )
+
+
 def _declared(field: Field) -> Field:
     """The array of which a field is the first element; or else the field."""
     if not field.path:
@@ -235,7 +266,7 @@ class Message:
 
     name: str
     kind: str  # TELECOMMAND | TELEMETRY | CONFIGURATION
-    length: int  # bytes, without the id
+    length: int  # bytes of a frame, without the id; where frames differ, of the longest
     fields: tuple[Field, ...]
     id: int | None = None
     set_id: int | None = None
@@ -251,9 +282,31 @@ class Message:
     assumptions: tuple[tuple[str, str], ...] = ()  # key and reason of what is assumed
     contains: tuple[Part, ...] = ()
     reserved: int = 0  # bytes at the end that are said to be reserved
+    tail: Tail | None = None  # where frames differ in length
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
+
+    @property
+    def least(self) -> int:
+        """Bytes of the shortest frame."""
+        return self.length - (self.tail.most * self.tail.step if self.tail else 0)
+
+    @property
+    def lengths(self) -> range:
+        """The lengths that frames have."""
+        return range(self.least, self.length + 1, self.tail.step if self.tail else 1)
+
+    def with_fields(self, fields: tuple[Field, ...]) -> Message:
+        """The message with these of its fields; without the open end where what it is made of is not among them."""
+        found = replace(self, fields=fields)
+        names = {field.name for field in found.members}
+        return found if self.tail and {self.tail.name, self.tail.counter} <= names else replace(found, tail=None)
+
+    @property
+    def counter(self) -> Field | None:
+        """Where frames differ in length: the field that says how many elements the end has."""
+        return next((one for one in self.fields if self.tail and one.name == self.tail.counter), None)
 
     @property
     def owners(self) -> tuple[Field, ...]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from icdgen.diagnostics import Finding, Place
 from icdgen.icd.located import Map, Seq
+from icdgen.suggest import close_to
 
 PATH = Path(__file__).with_name("schema.json")
 CODE = "ICD010"
@@ -114,13 +115,11 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
 
 
 def _unknown_key(key: str, known: list[str], place: Place) -> Finding:
-    import difflib
-
     from icdgen.icd import remedies
 
-    close = difflib.get_close_matches(key, known, 1)
+    close = close_to(key, known)
     help = remedies.of_key(key, known)
-    help = help or f"did you mean `{close[0]}`?" if help or close else "known keys: " + ", ".join(known)
+    help = help or f"did you mean `{close}`?" if help or close else "known keys: " + ", ".join(known)
     return Finding(CODE, f"unknown key `{key[:60]}`", place, help)
 
 

@@ -62,6 +62,8 @@ def variants(spoken: Sequence[Spoken]) -> tuple[Variant, ...]:
 
 def are_told_apart(one: Spoken, other: Spoken) -> bool:
     """Whether every frame is of one of the two at most, or one of them is narrower than the other."""
+    if one[0].tail or other[0].tail:
+        return False  # of a message whose frames differ in length an id is its own
     if one[0].length != other[0].length:
         return True
     mine, its = _constants(*one), _constants(*other)

@@ -97,7 +97,7 @@ def _readings(icd: Icd, pasted: Pasted, asked: Node | None, message: Message | N
 
 def _framed(speakers: Sequence[Speaker], data: bytes, message: Message | None) -> list[Reading]:
     """The messages in a stream with framing; none if it has none, or its bytes are just those of the message asked for."""
-    if message is not None and len(data) == message.length:
+    if message is not None and len(data) in message.lengths:
         return []
     for framing in dict.fromkeys(speaker.link.framing for speaker in speakers if speaker.link.framing):
         if bytes((framing.escape, framing.start)) not in data:

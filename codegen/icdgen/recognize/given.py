@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 
+from icdgen.describe.numbers import length_text
 from icdgen.icd.model import Icd, Message
 from icdgen.protocol import facts
 from icdgen.recognize import match
@@ -15,7 +16,10 @@ def of_message(icd: Icd, speaker: Speaker, message: Message, data: bytes) -> Rea
     """The message, with its id before and a checksum after it if they are there. Raises `BadLength`."""
     plain = message.telecommand_id if message.telecommand_id is not None else message.telemetry_id
     assert plain is not None
-    if len(data) == message.length:
+    if len(data) in message.lengths:
+        wrong = match.miscounted(speaker, message, data)
+        if wrong is not None:
+            raise wrong
         return _reading(speaker, message, None, data)
     apart = speaker.taken_apart(data)
     for id, rest in [(None, data), *([apart] if apart and apart[0] in message.ids else [])]:
@@ -24,13 +28,13 @@ def of_message(icd: Icd, speaker: Speaker, message: Message, data: bytes) -> Rea
             right = match.checksum(other, plain if id is None else id, message, rest)
             if right is not None and rest[message.length :] == right:
                 return _reading(speaker, message, id, rest[: message.length], *taken, "CRC is right")
-        if id is not None and len(rest) == message.length:
+        if id is not None and len(rest) in message.lengths and match.miscounted(speaker, message, rest) is None:
             return _reading(speaker, message, id, rest, *taken)
     right = match.checksum(speaker, plain, message, data)
     if right is not None:
         raise match.wrong_checksum(message, right, data)
     help = f"`icdgen show {speaker.node.name} {shlex.quote(message.name)}` shows what it holds"
-    text = f"{message.name} has {message.length} byte{'' if message.length == 1 else 's'}, {len(data)} given"
+    text = f"{message.name} has {length_text(message)}, {len(data)} given"
     raise BadLength(text, message.length, len(data), help)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from icdgen_runtime.wire.i2c import i2c_write
 
 from icdgen import codec
+from icdgen.describe.numbers import length_text
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Icd, Message
 from icdgen.icd.variants import Variant
@@ -46,7 +47,7 @@ def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
         read = _with_checksum(speaker, what, id, message, data) if message else None
         if read:
             yield read
-        if message and what == TELEMETRY and not data and message.length:
+        if message and what == TELEMETRY and not data and message.least:
             yield Reading(speaker, REQUEST, message, id)
     form = facts.acknowledge
     if form and len(body) == form.length and id not in facts.telemetry:
@@ -71,7 +72,7 @@ def _directions(speaker: Speaker) -> tuple[tuple[str, dict[int, tuple[Variant, .
 
 def _with_checksum(speaker: Speaker, what: str, id: int, message: Message, data: bytes) -> Reading | None:
     """The message, if the bytes are as many as it has, or the right checksum follows them."""
-    if len(data) == message.length:
+    if len(data) in message.lengths and miscounted(speaker, message, data) is None:
         return Reading(speaker, what, message, id, data)
     right = checksum(speaker, id, message, data)
     if right is not None and data[message.length :] == right:
@@ -82,7 +83,7 @@ def _with_checksum(speaker: Speaker, what: str, id: int, message: Message, data:
 def checksum(speaker: Speaker, id: int, message: Message, data: bytes) -> bytes | None:
     """The checksum that must follow the message's data; None if there is none, or no room for it."""
     form = speaker.facts.checksum
-    if form is None or len(data) != message.length + form.bytes:
+    if form is None or message.tail is not None or len(data) != message.length + form.bytes:
         return None
     return i2c_write(speaker.link, id, data[: message.length], crc=True)[-form.bytes :]
 
@@ -119,10 +120,13 @@ def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
         right = checksum(speaker, id, message, data)
         if right is not None:
             return wrong_checksum(message, right, data)
+        wrong = miscounted(speaker, message, data) if len(data) in message.lengths else None
+        if wrong is not None:
+            return wrong
+    told = " or ".join(f"`{m.name}` ({describe(m)}) has {length_text(m)}" for _, m, _, _ in known.values())
     _, first, id, data = next(iter(known.values()))
     if len(known) > 1 and any(message.length == len(data) for _, message, _, data in known.values()):
         return none_of([message for _, message, _, _ in known.values()], f"the {len(data)} bytes after the id {id}")
-    told = " or ".join(f"`{m.name}` ({describe(m)}) has {m.length} bytes" for _, m, _, _ in known.values())
     return BadLength(
         f"{told}, {len(data)} given after the id {id}", first.length, len(data), "bytes are missing, or too many"
     )
@@ -133,6 +137,18 @@ def none_of(messages: Sequence[Message], data: str) -> NotFound:
     told = ", ".join(f"`{one.name}` ({describe(one)}, {one.length} bytes)" for one in messages)
     help = "a byte was damaged, or there are too many; name the message to have them read all the same"
     return NotFound(f"{data} are like none of {told}, by length and constants", help)
+
+
+def miscounted(speaker: Speaker, message: Message, data: bytes) -> BadLength | None:
+    """What is wrong with data that do not have as many elements as they say; None if they have."""
+    try:
+        codec.decode(speaker.icd.node(message.node), message, data)
+    except codec.LengthError as error:
+        counter = message.counter
+        said = f"`{counter.name}` says" if counter else "they say"
+        text = f"`{message.name}` of {error.actual} bytes: {error.expected} are needed for as many elements as {said}"
+        return BadLength(text, error.expected, error.actual, "bytes are missing, or too many, or damaged")
+    return None
 
 
 def wrong_checksum(message: Message, right: bytes, data: bytes) -> BadLength:

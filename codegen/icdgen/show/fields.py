@@ -27,23 +27,36 @@ _COLUMNS = [
 
 def field_table(message: Message, node: Node, width: int | None = None) -> str:
     """Fields and reserved bits in the order of the frame; empty for a message without any."""
-    rows: list[tuple[int, tuple[str, ...]]] = [(field.at, _row(field)) for field in message.members]
+    rows: list[tuple[int, tuple[str, ...]]] = [
+        (field.at, _row(field, message)) for field in message.members if not field.implied
+    ]
     reserved = ("reserved", "", "", "", "", "", "")
     rows += [(gap.at, (str(gap.at), str(gap.bits), *reserved)) for gap in layout.gaps(message, node)]
     return render(_COLUMNS, [row for _, row in sorted(rows, key=lambda r: r[0])], width)
 
 
-def _row(field: Field) -> tuple[str, ...]:
+def _row(field: Field, message: Message) -> tuple[str, ...]:
     low, high = ("" if bound is None else exact_text(bound) for bound in allowed_ends(field))
     resolution = factor_text(field.scale.factor) if field.scale else ""
     unit = field.unit.symbol if field.unit else ""
     kind = field.enum.name if field.enum else field.type
     bits = f"{field.count} x {field.bits}" if field.count else str(field.bits)
-    return (str(field.at), bits, kind, field.name, unit, resolution, low, high, "; ".join(_notes(field)))
+    tail = message.tail
+    if tail is not None and tail.name == field.name:
+        bits = f"up to {tail.most} x {8 * tail.step}"
+    return (str(field.at), bits, kind, field.name, unit, resolution, low, high, "; ".join(_notes(field, message)))
 
 
-def remarks(field: Field, number: Callable[[Fraction], str] = exact_text) -> Iterator[str]:
-    """What is constant, exclusive limits, and what special values mean, that it is a view; ``number`` writes numbers."""
+def remarks(
+    field: Field, number: Callable[[Fraction], str] = exact_text, message: Message | None = None
+) -> Iterator[str]:
+    """What is constant, exclusive limits, and what special values mean, that it is a view; ``number`` writes numbers.
+
+    ``message`` is the one that has it, where it may be its open end.
+    """
+    counter = message.counter if message else None
+    if message is not None and message.tail is not None and message.tail.name == field.name and counter is not None:
+        yield "up to the end of the frame" if counter.implied else f"as many as {counter.name} says"
     if field.view:
         yield "a view of bits that other fields have"
     if told := orders_text(field):
@@ -57,7 +70,7 @@ def remarks(field: Field, number: Callable[[Fraction], str] = exact_text) -> Ite
         yield f"{number(Fraction(special.value))}: {special.meaning}"
 
 
-def _notes(field: Field) -> list[str]:
-    notes = list(remarks(field))
+def _notes(field: Field, message: Message) -> list[str]:
+    notes = list(remarks(field, message=message))
     notes += [erratum.id for erratum in field.errata]
     return notes + ([field.summary] if field.summary else [])

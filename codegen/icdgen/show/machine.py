@@ -74,8 +74,23 @@ def _message(message: Message) -> _Object:
         **_attributes(message),
         acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
         contains=[{"message": part.message, "offset": part.at} for part in message.contains],
+        tail=_tail(message),
         **_ids(message.errata),
-    ) | {"fields": [_field(f) for f in message.members]}
+    ) | {"fields": [_field(f) for f in message.members if not f.implied]}
+
+
+def _tail(message: Message) -> _Object | None:
+    """The open end: what counts it is left out where only the length of a frame tells."""
+    tail, counter = message.tail, message.counter
+    if tail is None or counter is None:
+        return None
+    return _present(
+        part=tail.name,
+        counter=None if counter.implied else counter.name,
+        least=message.least,
+        step=tail.step,
+        most=tail.most,
+    )
 
 
 def _field(field: Field) -> _Object:

@@ -6,6 +6,7 @@ import textwrap
 from collections.abc import Sequence
 
 from icdgen.describe.errata import errata_of_enum, errata_of_message
+from icdgen.describe.numbers import length_text
 from icdgen.describe.shared_ids import sharing
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Erratum, Icd, Message, Node
 from icdgen.icd.variants import ids_of
@@ -90,7 +91,7 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
             "/".join(map(str, m.ids)),
             m.kind,
             m.name,
-            str(m.length),
+            str(m.length) if m.tail is None else f"{m.least} to {m.length}",
             str(len(m.fields)),
             _number(m.table),
             m.group,
@@ -123,7 +124,7 @@ def _message(icd: Icd, message: Message, width: int | None) -> str:
     node = icd.node(message.node)
     facts = [
         f"{describe(message)} (hex {'/'.join(f'{i:0{2 * size(node.id_bits)}X}' for i in message.ids)})",
-        f"{message.length} byte{'' if message.length == 1 else 's'}",
+        length_text(message),
         f"the last {message.reserved} reserved" if message.reserved else "",
         f"table {message.table}" if message.table else "",
         f"page {message.page}" if message.page else "",

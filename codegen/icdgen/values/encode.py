@@ -10,9 +10,9 @@ from icdgen import codec
 from icdgen.describe.numbers import exact_text
 from icdgen.describe.steps import steps
 from icdgen.errors import UserError
-from icdgen.icd.model import Field, Icd, Message
+from icdgen.icd.model import Field, Icd, Message, Tail
 from icdgen.values import numbers
-from icdgen.values.entry import from_physical, members, raw_value, without_unit
+from icdgen.values.entry import from_physical, members, open_bytes, raw_value, without_unit
 from icdgen.values.errors import BadValue
 from icdgen.values.find import find_array, find_field, find_message, find_node
 from icdgen.values.frame import Frame, frame, violations
@@ -30,15 +30,22 @@ def encode(
     message = find_message(icd, node_name, key, kind)
     wrong = _Wrong()
     given: dict[str, str] = {}
+    is_empty = False  # the open end is said to have no element
     for assignment in assignments:
         with wrong.collect():
-            for field, text in split(message, assignment, node.vocabulary):
+            pairs = split(message, assignment, node.vocabulary)
+            is_empty = is_empty or not pairs
+            for field, text in pairs:
                 if field.name in given:
                     raise BadValue(f"`{field.name}` is given twice: {given[field.name]} and {text}")
                 given[field.name] = text
     misnamed = bool(wrong.messages)
     values, notes = _values(message, given, raw, wrong)
     missing = [f.name for f in message.owners if f.name not in given and f.const is None]
+    if message.tail is not None:
+        missing = _without_end(message, message.tail, missing, given, is_empty)
+        with wrong.collect():
+            _count(message, message.tail, given, values)
     if missing and not misnamed:
         with wrong.collect():
             raise BadValue(
@@ -68,6 +75,35 @@ class _Wrong:
             raise BadValue("\n".join(self.messages), next(filter(None, self.helps), help))
 
 
+def _without_end(message: Message, tail: Tail, missing: list[str], given: dict[str, str], is_empty: bool) -> list[str]:
+    """What is missing: of the open end its name alone, unless some of it is given; how many there are follows from that."""
+    counter = message.counter
+    own = {one.name for one in message.fields if one.name == tail.name or (one.path and one.path[0].name == tail.name)}
+    left = [name for name in missing if name not in own and (counter is None or name != counter.name)]
+    is_given = is_empty or (counter is not None and counter.name in given) or bool(own & given.keys())
+    return left if is_given else [*left, tail.name]
+
+
+def _count(message: Message, tail: Tail, given: dict[str, str], values: dict[str, int | bytes]) -> None:
+    """Counts the elements that are given, unless a number is. Raises `BadValue` where they have a gap or another number."""
+    counter = message.counter
+    assert counter is not None
+    is_octets = tail.name in values
+    elements = [one for one in message.fields if one.path and one.path[0].name == tail.name]
+    there = [index for index, one in enumerate(elements) if one.name in given]
+    count = len(there)
+    if is_octets and isinstance(octets := values[tail.name], bytes):
+        count = len(octets) if tail.name in given else 0
+        values[tail.name] = octets.ljust(tail.most, b"\0")
+    if there and there[-1] != count - 1:
+        raise BadValue(f"`{elements[there[-1]].name}` is given, and not all elements before it")
+    if counter.name not in given:
+        values[counter.name] = count
+    elif values[counter.name] != count:
+        given_text = f"{count} element{'s' * (count != 1)} of `{tail.name}` {'are' if count != 1 else 'is'} given"
+        raise BadValue(f"`{counter.name}` is {given[counter.name]}, and {given_text}", f"leave `{counter.name}` out")
+
+
 def split(message: Message, assignment: str, vocabulary: tuple[str, ...]) -> list[tuple[Field, str]]:
     """The field and the text of its value, or those of all elements of an array: ``temperatures=[1, 2.5, 3]``.
 
@@ -82,19 +118,24 @@ def split(message: Message, assignment: str, vocabulary: tuple[str, ...]) -> lis
         raise BadValue(f"`{assignment}` is not of the form name=value", "for instance `speed=100`")
     elements = find_array(message, name.strip(), vocabulary)
     if elements:
-        return list(zip(elements, listed(name.strip(), text, len(elements)), strict=True))
+        is_open = message.tail is not None and elements[0].path[0].name == message.tail.name
+        texts = listed(name.strip(), text, len(elements), is_open)
+        return list(zip(elements[: len(texts)], texts, strict=True))
     return [(find_field(message, name.strip(), vocabulary), text.strip())]
 
 
-def listed(name: str, text: str, count: int) -> list[str]:
-    """The texts of an array's elements: of ``[1, 2.5, 3]``. Raises `BadValue`."""
+def listed(name: str, text: str, count: int, is_open: bool = False) -> list[str]:
+    """The texts of an array's elements: of ``[1, 2.5, 3]``; of an open one there may be fewer. Raises `BadValue`."""
     text = text.strip()
-    parts = [part.strip() for part in text[1:-1].split(",")] if text[:1] == "[" and text[-1:] == "]" else []
-    if len(parts) != count:
+    is_list = text[:1] == "[" and text[-1:] == "]"
+    if is_list and is_open and not text[1:-1].strip():
+        return []
+    parts = [part.strip() for part in text[1:-1].split(",")] if is_list else []
+    if len(parts) != count and not (is_open and is_list and len(parts) < count):
         said = f"{len(parts)} given" if parts else f"not {text}"
         some = ", ".join(["1", "2", "3"][:count]) + (", ..." if count > 3 else "")
         help = f"`{name}=[{some}]`, or `{name}[0]=1` for one"
-        raise BadValue(f"`{name}` takes {count} values in brackets, {said}", help)
+        raise BadValue(f"`{name}` takes {'up to ' if is_open else ''}{count} values in brackets, {said}", help)
     return parts
 
 
@@ -110,7 +151,8 @@ def _values(
             continue
         text = given[field.name]
         with wrong.collect(f"{field.name}: "):
-            values[field.name] = value = (raw_value if raw else from_physical)(field, text)
+            is_open = message.tail is not None and field.name == message.tail.name
+            values[field.name] = value = _read(field, text, raw, is_open)
             if isinstance(value, bytes):
                 continue
             _fits(field, value, text, raw)
@@ -120,6 +162,14 @@ def _values(
                 if field.scale and exact is not None and field.scale.physical(value) != exact:
                     notes[field.name] = f"rounded from {text}"
     return values, notes
+
+
+def _read(field: Field, text: str, raw: bool, is_open: bool) -> int | bytes:
+    """The raw value; of open bytes and text as much as is given."""
+    if is_open and (raw or field.type == "bytes"):
+        return open_bytes(field, text)
+    value = (raw_value if raw else from_physical)(field, text)
+    return value[: len(text)] if is_open and isinstance(value, bytes) else value
 
 
 def _fits(field: Field, value: int, text: str, raw: bool) -> None:

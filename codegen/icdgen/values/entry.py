@@ -64,6 +64,17 @@ def _bytes(field: Field, text: str) -> bytes:
     return value
 
 
+def open_bytes(field: Field, text: str) -> bytes:
+    """Bytes of which there may be fewer than the field has room for. Raises `BadValue`."""
+    try:
+        value = parse_hex(text) if text.strip() else b""
+    except BadHex as error:
+        raise BadValue(str(error)) from None
+    if len(value) > field.bits // 8:
+        raise BadValue(f"up to {field.bits // 8} bytes are taken, {len(value)} given")
+    return value
+
+
 def _text(field: Field, text: str) -> bytes:
     try:
         return codec.raw_from_text(field, text)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
@@ -10,6 +9,7 @@ from typing import Protocol, TypeVar
 
 from icdgen import naming
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Field, Icd, Message, Node
+from icdgen.suggest import close_words
 from icdgen.values.errors import Ambiguous, NotFound
 
 KINDS = (TELECOMMAND, TELEMETRY, CONFIGURATION)
@@ -199,6 +199,5 @@ def _list_fields(message: Message) -> str:
 
 
 def _suggest(key: str, names: Iterable[str]) -> str:
-    by_folded = {name.casefold(): name for name in names}
-    close = difflib.get_close_matches(key.casefold()[:200], list(by_folded), 3, 0.6)
-    return "did you mean " + " or ".join(f"`{by_folded[c]}`" for c in close) + "?" if close else ""
+    close = close_words(key, names)
+    return "did you mean " + " or ".join(f"`{name}`" for name in close) + "?" if close else ""

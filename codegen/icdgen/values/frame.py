@@ -114,7 +114,7 @@ class Frame:
         """``{"node", "message", "kind", "id" or "set_id" and "get_id", "length", "bytes", "fields": [...]}``"""
         message = self.message
         ids = {key: getattr(message, key) for key in ("id", "set_id", "get_id") if getattr(message, key) is not None}
-        found = {"node": self.node.name, "message": message.name, "kind": message.kind, **ids, "length": message.length}
+        found = {"node": self.node.name, "message": message.name, "kind": message.kind, **ids, "length": len(self.data)}
         found |= {"bytes": self.data.hex(), "fields": [row.to_json() for row in self.rows]}
         return found | ({"remarks": list(self.remarks)} if self.remarks else {})
 
@@ -123,9 +123,13 @@ def frame(icd: Icd, node: Node, message: Message, data: bytes, notes: dict[str, 
     """Reads ``data``. ``notes`` are further remarks by field name. Raises `codec.LengthError`."""
     owner = icd.node(message.node)  # its byte and bit order hold
     values = codec.decode(owner, message, data)
-    rows = []
+    rows, count = [], codec.count_of(message, values)
     for field in message.fields:
+        if field.implied or not codec.is_there(message, field, count):
+            continue
         raw = values[field.name]
+        if message.tail is not None and field.name == message.tail.name and isinstance(raw, bytes):
+            raw = raw[:count]
         extra = (notes or {}).get(field.name)
         rows.append(Row(field, raw, (*remarks(field, raw), *((extra,) if extra else ()))))
     return Frame(node, message, data, tuple(rows), tuple(_reserved(owner, message, data)))
@@ -166,7 +170,7 @@ def _reserved(node: Node, message: Message, data: bytes) -> list[str]:
     found = []
     for gap in layout.gaps(message, node):
         pieces = layout.pieces_at(gap.at, gap.bits, node.byte_order, node.bit_order)
-        if any(data[piece.byte] & piece.mask for piece in pieces):
+        if any(data[piece.byte] & piece.mask for piece in pieces if piece.byte < len(data)):
             found.append(f"reserved {bit_range(gap.at, gap.bits)} {'is' if gap.bits == 1 else 'are'} not 0")
     return found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from icdgen.describe.numbers import byte_count
 from icdgen.tables import Column, clean, render
 from icdgen.values.find import describe
 from icdgen.values.frame import Frame
@@ -18,9 +19,7 @@ _COLUMNS = [
 def to_text(frame: Frame, width: int | None = None) -> str:
     """Message, bytes and a table of its fields. ``width`` is that of the terminal, None for a pipe."""
     message = frame.message
-    lines = [
-        f"{frame.node.name}: {message.name} ({describe(message)}), {message.length} byte{'' if message.length == 1 else 's'}"
-    ]
+    lines = [f"{frame.node.name}: {message.name} ({describe(message)}), {byte_count(len(frame.data))}"]
     if frame.data:
         lines.append(frame.data.hex(" "))
     text = "".join(clean(line) + "\n" for line in lines)

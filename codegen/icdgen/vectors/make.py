@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -37,6 +38,7 @@ class MessageVectors:
     default: Raw  # a fresh message: 0, empty, or what ``const`` says; of views, what they read then
     rows: tuple[Row, ...]
     lengths: tuple[int, ...]  # frames of these lengths are refused
+    miscounted: tuple[bytes, ...]  # and these, which do not have as many elements as they say
     unfit: dict[str, list[int]]  # raw values that encoding refuses, by field
     settings: dict[str, Settings]  # doubles and texts set as physical values, by field
 
@@ -65,8 +67,8 @@ def make(icd: Icd, node: Node) -> NodeVectors:
 
 def message_vectors(node: Node, message: Message) -> MessageVectors:
     """The vectors of one message that ``node`` declares."""
-    frames = dict.fromkeys(frame for _, frame in patterns.frames(message))
-    whys = {frame: why for why, frame in reversed(list(patterns.frames(message)))}
+    frames = dict.fromkeys(frame for _, frame in patterns.frames(message, node))
+    whys = {frame: why for why, frame in reversed(list(patterns.frames(message, node)))}
     rows = [frame_row(node, message, whys[frame], frame) for frame in frames]
     for number, raw in enumerate(patterns.raw_columns(message)):
         frame = codec.encode(node, message, raw)
@@ -78,10 +80,29 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
         message=message,
         default=codec.decode(node, message, codec.encode(node, message, message.fresh)),
         rows=tuple(rows),
-        lengths=tuple(sorted({0, max(message.length - 1, 0), message.length + 1} - {message.length})),
-        unfit={field.name: unfit for field in message.owners if (unfit := patterns.unfit(field))},
+        lengths=_refused(message),
+        miscounted=tuple(_miscounted(node, message)),
+        unfit={field.name: unfit for field in message.owners if (unfit := patterns.unfit(message, field))},
         settings={field.name: settings(field) for field in settable},
     )
+
+
+def _refused(message: Message) -> tuple[int, ...]:
+    """Lengths that no frame has: none at all, and one byte less or more than one that frames have."""
+    ends = {end + step for end in (message.least, message.least + 1, message.length) for step in (-1, 1)}
+    ends = {message.length - 1, message.length + 1} if message.tail is None else ends
+    return tuple(sorted({0, *(max(end, 0) for end in ends)} - set(message.lengths)))
+
+
+def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
+    """Frames that say one element more or less than they have, or more than there can be."""
+    tail, counter = message.tail, message.counter
+    if tail is None or counter is None or counter.implied:
+        return
+    frame = patterns.random_frame(message, "miscounted")
+    for count, told in ((0, 1), (tail.most, tail.most - 1), (tail.most - 1, tail.most), (tail.most, counter.raw_max)):
+        if told != count:
+            yield codec.counted(node, message, frame, told)[: message.least + count * tail.step]
 
 
 def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:

@@ -6,7 +6,8 @@ import hashlib
 from collections.abc import Iterator
 from functools import lru_cache
 
-from icdgen.icd.model import Field, Message
+from icdgen import codec
+from icdgen.icd.model import Field, Message, Node
 
 RANDOM_FRAMES = 4
 
@@ -26,8 +27,34 @@ _FLOATS = {
 }  # fmt: skip
 
 
-def frames(message: Message) -> Iterator[tuple[str, bytes]]:
-    """Frames given as bytes, reserved bits and all: what they are for, and the bytes."""
+def frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
+    """Frames given as bytes, reserved bits and all: what they are for, and the bytes.
+
+    Where frames differ in length, the longest is cut to different numbers of elements, and says so.
+    """
+    if message.tail is None:
+        yield from _longest(message)
+        return
+    counts = _counts(message.tail.most)
+    yield "all zeros, no element", cut(message, node, bytes(message.length), 0)
+    for number, (why, frame) in enumerate(_longest(message)):
+        yield why, cut(message, node, frame, message.tail.most)
+        count = counts[number % len(counts)]
+        yield f"{why}, elements: {count}", cut(message, node, frame, count)
+
+
+def _counts(most: int) -> list[int]:
+    """Numbers of elements that are worth a frame."""
+    return list(dict.fromkeys((1, most - 1, 0, (most + 1) // 2, min(2, most), most)))
+
+
+def cut(message: Message, node: Node, frame: bytes, count: int) -> bytes:
+    """The longest frame as one of so many elements."""
+    assert message.tail is not None
+    return codec.counted(node, message, frame, count)[: message.least + count * message.tail.step]
+
+
+def _longest(message: Message) -> Iterator[tuple[str, bytes]]:
     length = message.length
     yield "all zeros", bytes(length)
     if not length:
@@ -91,7 +118,7 @@ def _numbers(field: Field) -> Iterator[int]:
 
 def raw_columns(message: Message) -> Iterator[dict[str, int | bytes]]:
     """Raw values of all fields but views, so that each takes each of its values; neighbours are out of step."""
-    columns = [values(field) for field in message.owners]
+    columns = [_counted(message) if field == message.counter else values(field) for field in message.owners]
     for row in range(max(map(len, columns), default=0)):
         yield {
             field.name: column[(row + index) % len(column)]
@@ -99,8 +126,17 @@ def raw_columns(message: Message) -> Iterator[dict[str, int | bytes]]:
         }
 
 
-def unfit(field: Field) -> list[int]:
+def _counted(message: Message) -> list[int | bytes]:
+    """Values of the field that counts: every second time all elements are there."""
+    assert message.tail is not None
+    most = message.tail.most
+    return [one for count in _counts(most) for one in (most, count)]
+
+
+def unfit(message: Message, field: Field) -> list[int]:
     """Raw values that encoding must refuse."""
+    if message.tail is not None and field.name == message.tail.counter:
+        return list(dict.fromkeys((message.tail.most + 1, field.raw_max + 1, field.raw_min - 1)))
     if field.type not in ("uint", "int", "enum"):
         return []
     return [field.raw_max + 1, field.raw_min - 1]

@@ -91,9 +91,20 @@ def _message(vectors: MessageVectors) -> str:
     ids = {"id": message.id, "set_id": message.set_id, "get_id": message.get_id}
     head.update((key, id) for key, id in ids.items() if id is not None)
     head["length"] = message.length
+    if message.tail is not None:
+        tail = message.tail
+        head["tail"] = {
+            "part": tail.name,
+            "counter": tail.counter,
+            "least": message.least,
+            "step": tail.step,
+            "most": tail.most,
+        }
     parts = [_json(head)[1:-1]]
     parts.append(_array("fields", [_field(vectors, field) for field in message.fields]))
     parts.append(f'"refused_lengths": {_json(list(vectors.lengths))}')
+    if vectors.miscounted:
+        parts.append(f'"refused_frames": {_json([frame.hex() for frame in vectors.miscounted])}')
     parts.append(_array("vectors", [_row(message.fields, row) for row in vectors.rows]))
     return "{" + ",\n".join(parts) + "}"
 

@@ -46,6 +46,7 @@ static inline icd_status_t bootloader_client_can(
     return icd_client_can(&client->client, bootloader_link(), address, buffer, size);
 }
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET)
 /**
  * Sends Reset, as icd_client_send().
  * Dangerous: The program that runs is stopped, and what it has not saved is lost.
@@ -64,7 +65,9 @@ static inline icd_status_t bootloader_send_reset(
     }
     return icd_client_send(&client->client, now, COMMON_RESET_ID, data, COMMON_RESET_LENGTH, false, on_event, context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_LOG_POINTER)
 /** Sends Reset Log Pointer, as icd_client_send(). */
 static inline icd_status_t bootloader_send_reset_log_pointer(
     bootloader_client_t *client,
@@ -82,7 +85,9 @@ static inline icd_status_t bootloader_send_reset_log_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_ADVANCE_LOG_POINTER)
 /** Sends Advance Log Pointer, as icd_client_send(). */
 static inline icd_status_t bootloader_send_advance_log_pointer(
     bootloader_client_t *client,
@@ -100,7 +105,9 @@ static inline icd_status_t bootloader_send_advance_log_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_BOOT_REGISTERS)
 /** Sends Reset Boot Registers, as icd_client_send(). */
 static inline icd_status_t bootloader_send_reset_boot_registers(
     bootloader_client_t *client,
@@ -118,7 +125,9 @@ static inline icd_status_t bootloader_send_reset_boot_registers(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FORMAT_SD_CARD)
 /**
  * Sends Format SD card, as icd_client_send().
  * Dangerous: All files on the SD card are lost.
@@ -145,7 +154,9 @@ static inline icd_status_t bootloader_send_format_sd_card(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_ERASE_FILE)
 /**
  * Sends Erase File, as icd_client_send().
  * Dangerous: The file is lost; all files are with Erase All.
@@ -172,7 +183,9 @@ static inline icd_status_t bootloader_send_erase_file(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_LOAD_FILE_DOWNLOAD_BLOCK)
 /** Sends Load File Download Block, as icd_client_send(). */
 static inline icd_status_t bootloader_send_load_file_download_block(
     bootloader_client_t *client,
@@ -196,7 +209,9 @@ static inline icd_status_t bootloader_send_load_file_download_block(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_ADVANCE_FILE_LIST_READ_POINTER)
 /** Sends Advance File List Read Pointer, as icd_client_send(). */
 static inline icd_status_t bootloader_send_advance_file_list_read_pointer(
     bootloader_client_t *client,
@@ -214,7 +229,9 @@ static inline icd_status_t bootloader_send_advance_file_list_read_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_INITIATE_FILE_UPLOAD)
 /**
  * Sends Initiate File Upload, as icd_client_send().
  * Dangerous: The program in the destination is lost.
@@ -241,7 +258,9 @@ static inline icd_status_t bootloader_send_initiate_file_upload(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FILE_UPLOAD_PACKET)
 /** Sends File Upload Packet, as icd_client_send(). */
 static inline icd_status_t bootloader_send_file_upload_packet(
     bootloader_client_t *client,
@@ -265,7 +284,9 @@ static inline icd_status_t bootloader_send_file_upload_packet(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FINALIZE_UPLOAD_BLOCK)
 /** Sends Finalize Upload Block, as icd_client_send(). */
 static inline icd_status_t bootloader_send_finalize_upload_block(
     bootloader_client_t *client,
@@ -289,7 +310,9 @@ static inline icd_status_t bootloader_send_finalize_upload_block(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_UPLOAD_BLOCK)
 /** Sends Reset Upload Block, as icd_client_send(). */
 static inline icd_status_t bootloader_send_reset_upload_block(
     bootloader_client_t *client,
@@ -307,7 +330,9 @@ static inline icd_status_t bootloader_send_reset_upload_block(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_FILE_LIST_READ_POINTER)
 /** Sends Reset File List Read Pointer, as icd_client_send(). */
 static inline icd_status_t bootloader_send_reset_file_list_read_pointer(
     bootloader_client_t *client,
@@ -325,7 +350,9 @@ static inline icd_status_t bootloader_send_reset_file_list_read_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_INITIATE_DOWNLOAD_BURST)
 /** Sends Initiate Download Burst, as icd_client_send(). */
 static inline icd_status_t bootloader_send_initiate_download_burst(
     bootloader_client_t *client,
@@ -349,7 +376,9 @@ static inline icd_status_t bootloader_send_initiate_download_burst(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CACHE_ENABLED_STATE)
 /** Sends Cache enabled state, as icd_client_send(). */
 static inline icd_status_t bootloader_send_cache_enabled_state(
     bootloader_client_t *client,
@@ -373,7 +402,9 @@ static inline icd_status_t bootloader_send_cache_enabled_state(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SRAM_SCRUB_PARAMETERS)
 /** Sends SRAM Scrub Parameters, as icd_client_send(). */
 static inline icd_status_t bootloader_send_sram_scrub_parameters(
     bootloader_client_t *client,
@@ -397,7 +428,9 @@ static inline icd_status_t bootloader_send_sram_scrub_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CURRENT_UNIX_TIME)
 /** Sends Current Unix Time, as icd_client_send(). */
 static inline icd_status_t bootloader_send_current_unix_time(
     bootloader_client_t *client,
@@ -421,7 +454,9 @@ static inline icd_status_t bootloader_send_current_unix_time(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_UNIX_TIME_SAVE_TO_FLASH)
 /** Sends Unix Time Save to Flash, as icd_client_send(). */
 static inline icd_status_t bootloader_send_unix_time_save_to_flash(
     bootloader_client_t *client,
@@ -445,7 +480,9 @@ static inline icd_status_t bootloader_send_unix_time_save_to_flash(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_1)
 /** Sends Hole Map 1, as icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_1(
     bootloader_client_t *client,
@@ -469,7 +506,9 @@ static inline icd_status_t bootloader_send_hole_map_1(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_2)
 /** Sends Hole Map 2, as icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_2(
     bootloader_client_t *client,
@@ -493,7 +532,9 @@ static inline icd_status_t bootloader_send_hole_map_2(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_3)
 /** Sends Hole Map 3, as icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_3(
     bootloader_client_t *client,
@@ -517,7 +558,9 @@ static inline icd_status_t bootloader_send_hole_map_3(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_4)
 /** Sends Hole Map 4, as icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_4(
     bootloader_client_t *client,
@@ -541,7 +584,9 @@ static inline icd_status_t bootloader_send_hole_map_4(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_5)
 /** Sends Hole Map 5, as icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_5(
     bootloader_client_t *client,
@@ -565,7 +610,9 @@ static inline icd_status_t bootloader_send_hole_map_5(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_6)
 /** Sends Hole Map 6, as icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_6(
     bootloader_client_t *client,
@@ -589,7 +636,9 @@ static inline icd_status_t bootloader_send_hole_map_6(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_7)
 /** Sends Hole Map 7, as icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_7(
     bootloader_client_t *client,
@@ -613,7 +662,9 @@ static inline icd_status_t bootloader_send_hole_map_7(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_8)
 /** Sends Hole Map 8, as icd_client_send(). */
 static inline icd_status_t bootloader_send_hole_map_8(
     bootloader_client_t *client,
@@ -637,7 +688,9 @@ static inline icd_status_t bootloader_send_hole_map_8(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CLEAR_ERROR_FLAGS)
 /** Sends Clear Error Flags, as icd_client_send(). */
 static inline icd_status_t bootloader_send_clear_error_flags(
     bootloader_client_t *client,
@@ -655,7 +708,9 @@ static inline icd_status_t bootloader_send_clear_error_flags(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SET_BOOT_INDEX)
 /** Sends Set Boot Index, as icd_client_send(). */
 static inline icd_status_t bootloader_send_set_boot_index(
     bootloader_client_t *client,
@@ -679,7 +734,9 @@ static inline icd_status_t bootloader_send_set_boot_index(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RUN_SELECTED_PROGRAM)
 /** Sends Run Selected Program, as icd_client_send(). */
 static inline icd_status_t bootloader_send_run_selected_program(
     bootloader_client_t *client,
@@ -697,7 +754,9 @@ static inline icd_status_t bootloader_send_run_selected_program(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_READ_PROGRAM_INFORMATION)
 /** Sends Read Program Information, as icd_client_send(). */
 static inline icd_status_t bootloader_send_read_program_information(
     bootloader_client_t *client,
@@ -721,7 +780,9 @@ static inline icd_status_t bootloader_send_read_program_information(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_COPY_TO_INTERNAL_FLASH)
 /**
  * Sends Copy Program to Internal Flash, as icd_client_send().
  * Dangerous: The program in internal flash is replaced, and with the overwrite flag the bootloader itself.
@@ -748,7 +809,9 @@ static inline icd_status_t bootloader_send_copy_to_internal_flash(
         on_event,
         context);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_IDENTIFICATION)
 /** Requests Identification, as icd_client_request(). */
 static inline icd_status_t bootloader_request_identification(bootloader_client_t *client, uint32_t now)
 {
@@ -763,7 +826,9 @@ static inline icd_status_t bootloader_receive_identification(common_identificati
     }
     return common_identification_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
 /** Requests Boot And Running Program Status, as icd_client_request(). */
 static inline icd_status_t bootloader_request_boot_and_running_program_status(bootloader_client_t *client, uint32_t now)
 {
@@ -780,7 +845,9 @@ static inline icd_status_t bootloader_receive_boot_and_running_program_status(
     }
     return common_boot_and_running_program_status_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_BOOT_INDEX_AND_STATUS)
 /** Requests Boot Index and Status, as icd_client_request(). */
 static inline icd_status_t bootloader_request_boot_index_and_status(bootloader_client_t *client, uint32_t now)
 {
@@ -797,7 +864,9 @@ static inline icd_status_t bootloader_receive_boot_index_and_status(
     }
     return common_boot_index_and_status_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_LAST_LOGGED_EVENT)
 /** Requests Last Logged Event, as icd_client_request(). */
 static inline icd_status_t bootloader_request_last_logged_event(bootloader_client_t *client, uint32_t now)
 {
@@ -814,7 +883,9 @@ static inline icd_status_t bootloader_receive_last_logged_event(
     }
     return common_last_logged_event_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SRAM_LATCHUP_COUNTERS)
 /** Requests SRAM Latchup counters, as icd_client_request(). */
 static inline icd_status_t bootloader_request_sram_latchup_counters(bootloader_client_t *client, uint32_t now)
 {
@@ -831,7 +902,9 @@ static inline icd_status_t bootloader_receive_sram_latchup_counters(
     }
     return common_sram_latchup_counters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_EDAC_ERROR_COUNTERS)
 /** Requests EDAC Error Counters, as icd_client_request(). */
 static inline icd_status_t bootloader_request_edac_error_counters(bootloader_client_t *client, uint32_t now)
 {
@@ -848,7 +921,9 @@ static inline icd_status_t bootloader_receive_edac_error_counters(
     }
     return common_edac_error_counters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_COMMUNICATION_STATUS)
 /** Requests Communication Status, as icd_client_request(). */
 static inline icd_status_t bootloader_request_communication_status(bootloader_client_t *client, uint32_t now)
 {
@@ -865,7 +940,9 @@ static inline icd_status_t bootloader_receive_communication_status(
     }
     return common_communication_status_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SD_CARD_FORMAT_ERASE_PROGRESS)
 /** Requests SD card format/erase progress, as icd_client_request(). */
 static inline icd_status_t bootloader_request_sd_card_format_erase_progress(bootloader_client_t *client, uint32_t now)
 {
@@ -882,7 +959,9 @@ static inline icd_status_t bootloader_receive_sd_card_format_erase_progress(
     }
     return common_sd_card_format_erase_progress_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_TELECOMMAND_ACKNOWLEDGE)
 /** Requests Telecommand Acknowledge, as icd_client_request(). */
 static inline icd_status_t bootloader_request_telecommand_acknowledge(bootloader_client_t *client, uint32_t now)
 {
@@ -899,7 +978,9 @@ static inline icd_status_t bootloader_receive_telecommand_acknowledge(
     }
     return common_telecommand_acknowledge_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
 /** Requests File Download Buffer with File Contents, as icd_client_request(). */
 static inline icd_status_t bootloader_request_file_download_buffer_with_file_contents(
     bootloader_client_t *client,
@@ -921,7 +1002,9 @@ static inline icd_status_t bootloader_receive_file_download_buffer_with_file_con
     }
     return common_file_download_buffer_with_file_contents_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_DOWNLOAD_BLOCK_READY)
 /** Requests Download Block Ready, as icd_client_request(). */
 static inline icd_status_t bootloader_request_download_block_ready(bootloader_client_t *client, uint32_t now)
 {
@@ -938,7 +1021,9 @@ static inline icd_status_t bootloader_receive_download_block_ready(
     }
     return common_download_block_ready_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FILE_INFORMATION)
 /** Requests File Information, as icd_client_request(). */
 static inline icd_status_t bootloader_request_file_information(bootloader_client_t *client, uint32_t now)
 {
@@ -955,7 +1040,9 @@ static inline icd_status_t bootloader_receive_file_information(
     }
     return common_file_information_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_INITIALIZE_UPLOAD_COMPLETE)
 /** Requests Initialize Upload Complete, as icd_client_request(). */
 static inline icd_status_t bootloader_request_initialize_upload_complete(bootloader_client_t *client, uint32_t now)
 {
@@ -972,7 +1059,9 @@ static inline icd_status_t bootloader_receive_initialize_upload_complete(
     }
     return common_initialize_upload_complete_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_UPLOAD_BLOCK_COMPLETE)
 /** Requests Upload Block Complete, as icd_client_request(). */
 static inline icd_status_t bootloader_request_upload_block_complete(bootloader_client_t *client, uint32_t now)
 {
@@ -989,7 +1078,9 @@ static inline icd_status_t bootloader_receive_upload_block_complete(
     }
     return common_upload_block_complete_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_BLOCK_CHECKSUM)
 /** Requests Block Checksum, as icd_client_request(). */
 static inline icd_status_t bootloader_request_block_checksum(bootloader_client_t *client, uint32_t now)
 {
@@ -1004,7 +1095,9 @@ static inline icd_status_t bootloader_receive_block_checksum(common_block_checks
     }
     return common_block_checksum_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CACHE_ENABLED_STATE)
 /** Requests Cache enabled state, as icd_client_request(). */
 static inline icd_status_t bootloader_request_cache_enabled_state(bootloader_client_t *client, uint32_t now)
 {
@@ -1021,7 +1114,9 @@ static inline icd_status_t bootloader_receive_cache_enabled_state(
     }
     return common_cache_enabled_state_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SRAM_SCRUB_PARAMETERS)
 /** Requests SRAM Scrub Parameters, as icd_client_request(). */
 static inline icd_status_t bootloader_request_sram_scrub_parameters(bootloader_client_t *client, uint32_t now)
 {
@@ -1038,7 +1133,9 @@ static inline icd_status_t bootloader_receive_sram_scrub_parameters(
     }
     return common_sram_scrub_parameters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CURRENT_UNIX_TIME)
 /** Requests Current Unix Time, as icd_client_request(). */
 static inline icd_status_t bootloader_request_current_unix_time(bootloader_client_t *client, uint32_t now)
 {
@@ -1055,7 +1152,9 @@ static inline icd_status_t bootloader_receive_current_unix_time(
     }
     return common_current_unix_time_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_UNIX_TIME_SAVE_TO_FLASH)
 /** Requests Unix Time Save to Flash, as icd_client_request(). */
 static inline icd_status_t bootloader_request_unix_time_save_to_flash(bootloader_client_t *client, uint32_t now)
 {
@@ -1072,7 +1171,9 @@ static inline icd_status_t bootloader_receive_unix_time_save_to_flash(
     }
     return common_unix_time_save_to_flash_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_1)
 /** Requests Hole Map 1, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_1(bootloader_client_t *client, uint32_t now)
 {
@@ -1087,7 +1188,9 @@ static inline icd_status_t bootloader_receive_hole_map_1(common_hole_map_1_t *me
     }
     return common_hole_map_1_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_2)
 /** Requests Hole Map 2, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_2(bootloader_client_t *client, uint32_t now)
 {
@@ -1102,7 +1205,9 @@ static inline icd_status_t bootloader_receive_hole_map_2(common_hole_map_2_t *me
     }
     return common_hole_map_2_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_3)
 /** Requests Hole Map 3, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_3(bootloader_client_t *client, uint32_t now)
 {
@@ -1117,7 +1222,9 @@ static inline icd_status_t bootloader_receive_hole_map_3(common_hole_map_3_t *me
     }
     return common_hole_map_3_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_4)
 /** Requests Hole Map 4, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_4(bootloader_client_t *client, uint32_t now)
 {
@@ -1132,7 +1239,9 @@ static inline icd_status_t bootloader_receive_hole_map_4(common_hole_map_4_t *me
     }
     return common_hole_map_4_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_5)
 /** Requests Hole Map 5, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_5(bootloader_client_t *client, uint32_t now)
 {
@@ -1147,7 +1256,9 @@ static inline icd_status_t bootloader_receive_hole_map_5(common_hole_map_5_t *me
     }
     return common_hole_map_5_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_6)
 /** Requests Hole Map 6, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_6(bootloader_client_t *client, uint32_t now)
 {
@@ -1162,7 +1273,9 @@ static inline icd_status_t bootloader_receive_hole_map_6(common_hole_map_6_t *me
     }
     return common_hole_map_6_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_7)
 /** Requests Hole Map 7, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_7(bootloader_client_t *client, uint32_t now)
 {
@@ -1177,7 +1290,9 @@ static inline icd_status_t bootloader_receive_hole_map_7(common_hole_map_7_t *me
     }
     return common_hole_map_7_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_8)
 /** Requests Hole Map 8, as icd_client_request(). */
 static inline icd_status_t bootloader_request_hole_map_8(bootloader_client_t *client, uint32_t now)
 {
@@ -1192,7 +1307,9 @@ static inline icd_status_t bootloader_receive_hole_map_8(common_hole_map_8_t *me
     }
     return common_hole_map_8_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_STATE)
 /** Requests Bootloader State, as icd_client_request(). */
 static inline icd_status_t bootloader_request_state(bootloader_client_t *client, uint32_t now)
 {
@@ -1207,7 +1324,9 @@ static inline icd_status_t bootloader_receive_state(bootloader_state_t *message,
     }
     return bootloader_state_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_PROGRAM_INFORMATION)
 /** Requests Program Information, as icd_client_request(). */
 static inline icd_status_t bootloader_request_program_information(bootloader_client_t *client, uint32_t now)
 {
@@ -1224,7 +1343,9 @@ static inline icd_status_t bootloader_receive_program_information(
     }
     return bootloader_program_information_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_COPY_TO_INTERNAL_FLASH_PROGRESS)
 /** Requests Copy To Internal Flash Progress, as icd_client_request(). */
 static inline icd_status_t bootloader_request_copy_to_internal_flash_progress(bootloader_client_t *client, uint32_t now)
 {
@@ -1241,5 +1362,6 @@ static inline icd_status_t bootloader_receive_copy_to_internal_flash_progress(
     }
     return bootloader_copy_to_internal_flash_progress_decode(message, event->data, event->length);
 }
+#endif
 
 #endif /* BOOTLOADER_CLIENT_H */

@@ -19,74 +19,194 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         "common",
     };
     static const icd_message_t telecommands[] = {
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET)
         /*
          * Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for, and
          * one that comes is accepted.
          */
         {1u, ICD_EXPECTS_RESET, 1u}, /* Reset */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CURRENT_UNIX_TIME)
         {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Current Unix Time */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CACHE_ENABLED_STATE)
         {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u}, /* Cache enabled state */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_LOG_POINTER)
         {4u, ICD_ACKNOWLEDGED, 0u}, /* Reset Log Pointer */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_ADVANCE_LOG_POINTER)
         {5u, ICD_ACKNOWLEDGED, 0u}, /* Advance Log Pointer */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_BOOT_REGISTERS)
         {6u, ICD_ACKNOWLEDGED, 0u}, /* Reset Boot Registers */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CLEAR_ERROR_FLAGS)
         {7u, ICD_ACKNOWLEDGED, 0u}, /* Clear Error Flags */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SRAM_SCRUB_PARAMETERS)
         {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* SRAM Scrub Parameters */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_UNIX_TIME_SAVE_TO_FLASH)
         {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* Unix Time Save to Flash */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FORMAT_SD_CARD) || !defined(ICDGEN_NO_FILES)
         {33u, ICD_ACKNOWLEDGED, 1u}, /* Format SD card */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SET_BOOT_INDEX)
         {100u, ICD_ACKNOWLEDGED, 1u}, /* Set Boot Index */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RUN_SELECTED_PROGRAM)
         /* Assumed acknowledge: As for Reset. */
         {101u, ICD_EXPECTS_RESET, 0u}, /* Run Selected Program */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_READ_PROGRAM_INFORMATION) || !defined(ICDGEN_NO_FILES)
         {102u, ICD_ACKNOWLEDGED, 1u}, /* Read Program Information */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_COPY_TO_INTERNAL_FLASH) || !defined(ICDGEN_NO_FILES)
         {103u, ICD_ACKNOWLEDGED, 2u}, /* Copy Program to Internal Flash */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_ERASE_FILE) || !defined(ICDGEN_NO_FILES)
         {108u, ICD_ACKNOWLEDGED, 3u}, /* Erase File */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_LOAD_FILE_DOWNLOAD_BLOCK) || !defined(ICDGEN_NO_FILES)
         {112u, ICD_ACKNOWLEDGED, 8u}, /* Load File Download Block */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_ADVANCE_FILE_LIST_READ_POINTER) || !defined(ICDGEN_NO_FILES)
         {113u, ICD_ACKNOWLEDGED, 0u}, /* Advance File List Read Pointer */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_INITIATE_FILE_UPLOAD) || !defined(ICDGEN_NO_FILES)
         {114u, ICD_ACKNOWLEDGED, 2u}, /* Initiate File Upload */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FILE_UPLOAD_PACKET) || !defined(ICDGEN_NO_FILES)
         {115u, 0u, 22u}, /* File Upload Packet */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FINALIZE_UPLOAD_BLOCK) || !defined(ICDGEN_NO_FILES)
         {116u, ICD_ACKNOWLEDGED, 7u}, /* Finalize Upload Block */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_UPLOAD_BLOCK) || !defined(ICDGEN_NO_FILES)
         {117u, ICD_ACKNOWLEDGED, 0u}, /* Reset Upload Block */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_RESET_FILE_LIST_READ_POINTER) || !defined(ICDGEN_NO_FILES)
         {118u, ICD_ACKNOWLEDGED, 0u}, /* Reset File List Read Pointer */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_INITIATE_DOWNLOAD_BURST) || !defined(ICDGEN_NO_FILES)
         {119u, ICD_ACKNOWLEDGED, 2u}, /* Initiate Download Burst */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_1) || !defined(ICDGEN_NO_FILES)
         {120u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 1 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_2) || !defined(ICDGEN_NO_FILES)
         {121u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 2 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_3) || !defined(ICDGEN_NO_FILES)
         {122u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 3 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_4) || !defined(ICDGEN_NO_FILES)
         {123u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 4 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_5) || !defined(ICDGEN_NO_FILES)
         {124u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 5 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_6) || !defined(ICDGEN_NO_FILES)
         {125u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 6 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_7) || !defined(ICDGEN_NO_FILES)
         {126u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 7 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_8) || !defined(ICDGEN_NO_FILES)
         {127u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 8 */
+#endif
+        {0u, 0u, 0u}, /* the end */
     };
     static const icd_message_t telemetry[] = {
         {128u, 0u, 8u}, /* Identification */
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
         {129u, 0u, 6u}, /* Boot And Running Program Status */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_BOOT_INDEX_AND_STATUS)
         {130u, 0u, 2u}, /* Boot Index and Status */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CACHE_ENABLED_STATE)
         {131u, 0u, 1u}, /* Cache enabled state */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_STATE)
         {132u, 0u, 6u}, /* Bootloader State */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SRAM_SCRUB_PARAMETERS)
         {134u, 0u, 2u}, /* SRAM Scrub Parameters */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_CURRENT_UNIX_TIME)
         {140u, 0u, 6u}, /* Current Unix Time */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_LAST_LOGGED_EVENT)
         {141u, 0u, 6u}, /* Last Logged Event */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SRAM_LATCHUP_COUNTERS)
         {142u, 0u, 6u}, /* SRAM Latchup counters */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_EDAC_ERROR_COUNTERS)
         {143u, 0u, 6u}, /* EDAC Error Counters */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_COMMUNICATION_STATUS)
         {144u, 0u, 6u}, /* Communication Status */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_UNIX_TIME_SAVE_TO_FLASH)
         {145u, 0u, 2u}, /* Unix Time Save to Flash */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_PROGRAM_INFORMATION) || !defined(ICDGEN_NO_FILES)
         {232u, 0u, 8u}, /* Program Information */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_COPY_TO_INTERNAL_FLASH_PROGRESS) || !defined(ICDGEN_NO_FILES)
         {233u, 0u, 1u}, /* Copy To Internal Flash Progress */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_SD_CARD_FORMAT_ERASE_PROGRESS) || !defined(ICDGEN_NO_FILES)
         {234u, 0u, 1u}, /* SD card format/erase progress */
+#endif
         {240u, 0u, 4u}, /* Telecommand Acknowledge */
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
         {241u, 0u, 22u}, /* File Download Buffer with File Contents */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_DOWNLOAD_BLOCK_READY) || !defined(ICDGEN_NO_FILES)
         {242u, 0u, 5u}, /* Download Block Ready */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_FILE_INFORMATION) || !defined(ICDGEN_NO_FILES)
         {243u, 0u, 12u}, /* File Information */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_INITIALIZE_UPLOAD_COMPLETE) || !defined(ICDGEN_NO_FILES)
         {244u, 0u, 1u}, /* Initialize Upload Complete */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_UPLOAD_BLOCK_COMPLETE) || !defined(ICDGEN_NO_FILES)
         {245u, 0u, 1u}, /* Upload Block Complete */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_BLOCK_CHECKSUM) || !defined(ICDGEN_NO_FILES)
         {246u, 0u, 2u}, /* Block Checksum */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_1) || !defined(ICDGEN_NO_FILES)
         {247u, 0u, 16u}, /* Hole Map 1 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_2) || !defined(ICDGEN_NO_FILES)
         {248u, 0u, 16u}, /* Hole Map 2 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_3) || !defined(ICDGEN_NO_FILES)
         {249u, 0u, 16u}, /* Hole Map 3 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_4) || !defined(ICDGEN_NO_FILES)
         {250u, 0u, 16u}, /* Hole Map 4 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_5) || !defined(ICDGEN_NO_FILES)
         {251u, 0u, 16u}, /* Hole Map 5 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_6) || !defined(ICDGEN_NO_FILES)
         {252u, 0u, 16u}, /* Hole Map 6 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_7) || !defined(ICDGEN_NO_FILES)
         {253u, 0u, 16u}, /* Hole Map 7 */
+#endif
+#if !defined(BOOTLOADER_CHOSEN) || defined(BOOTLOADER_WITH_HOLE_MAP_8) || !defined(ICDGEN_NO_FILES)
         {254u, 0u, 16u}, /* Hole Map 8 */
+#endif
+        {0u, 0u, 0u}, /* the end */
     };
     static const icd_error_code_t errors[] = {
         {ICD_REASON_NONE, 0u},
@@ -189,6 +309,7 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, table */
         16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, ICDGEN_TABLE(crc16_table),
     };
+#ifndef ICDGEN_NO_FILES
     static const icd_time_form_t packed_time = {
         {25u, 7u, 1u, 1980u}, /* year */
         {21u, 4u, 1u, 0u}, /* month */
@@ -197,6 +318,8 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         {5u, 6u, 1u, 0u}, /* minute */
         {0u, 5u, 2u, 0u}, /* second */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_index_form_t index_entry = {
         37u, /* entry_bytes */
         15, /* file_type */
@@ -207,6 +330,8 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         {8u, 4u}, /* time */
         {12u, 25u}, /* meta */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_hole_map_message_t hole_maps[] = {
         {120, 247, 16u, 0u}, /* Hole Map 1 */
         {121, 248, 16u, 0u}, /* Hole Map 2 */
@@ -217,6 +342,8 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         {126, 253, 16u, 0u}, /* Hole Map 7 */
         {127, 254, 16u, 0u}, /* Hole Map 8 */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /**
      * Assumed beyond_end: What the bits beyond the end of a short block are is not said. Marked as received, nothing is
      * sent for them; from the node they are ignored.
@@ -229,6 +356,8 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         true, /* beyond_end */
         8u, hole_maps, /* messages */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /**
      * Assumed first_packet: Where the count begins is not said. Bit 0 of the hole map is the first packet. Assumed
      * fill: The value is not defined. Erased flash memory reads 0xFF.
@@ -242,6 +371,8 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         20480u, /* block_bytes */
         {119, 241, 241}, /* ids of download packets */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t list_information_places[] = {
         {ICD_ROLE_BUSY, 4u, 1u}, /* Busy Updating */
         {ICD_ROLE_TYPE, 0u, 4u}, /* File Type */
@@ -250,6 +381,8 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         {ICD_ROLE_TIME, 48u, 32u}, /* File Date and Time */
         {ICD_ROLE_CHECKSUM, 80u, 16u}, /* File CRC16 Checksum */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /**
      * Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. The checksum of a large file
      * has to be computed meanwhile.
@@ -261,22 +394,30 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         50u, /* poll_interval in ms */
         10000u, /* timeout in ms */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t download_load_places[] = {
         {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
         {ICD_ROLE_COUNTER, 8u, 8u}, /* Counter */
         {ICD_ROLE_OFFSET, 16u, 32u}, /* Offset */
         {ICD_ROLE_LENGTH, 48u, 16u}, /* BlockLength */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t download_ready_places[] = {
         {ICD_ROLE_READY, 0u, 1u}, /* Ready */
         {ICD_ROLE_ERROR, 1u, 1u}, /* ParameterError */
         {ICD_ROLE_CHECKSUM, 8u, 16u}, /* Block CRC16 Checksum */
         {ICD_ROLE_LENGTH, 24u, 16u}, /* Block Length */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t download_burst_places[] = {
         {ICD_ROLE_LENGTH, 0u, 8u}, /* Message Length */
         {ICD_ROLE_IGNORE_HOLE_MAP, 8u, 1u}, /* Ignore Hole Map */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /**
      * Assumed message_length: The field is not explained. Drivers in use send 20, the bytes of the file in a packet.
      * Assumed checksum_covers_fill: Not said. The checksum comes with the length of the block, which does not count the
@@ -298,32 +439,48 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         500u, /* silence in ms */
         32u, /* rounds */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t upload_initiate_places[] = {
         {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
         {ICD_ROLE_BLOCK_SIZE, 8u, 8u}, /* BlockSize */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t upload_initiated_places[] = {
         {ICD_ROLE_BUSY, 0u, 1u}, /* Busy */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t upload_packet_places[] = {
         {ICD_ROLE_NUMBER, 0u, 16u}, /* Packet Number */
         {ICD_ROLE_BYTES, 16u, 160u}, /* File Bytes */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t upload_checksum_places[] = {
         {ICD_ROLE_CHECKSUM, 0u, 16u}, /* Checksum */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t upload_finalize_places[] = {
         {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
         {ICD_ROLE_OFFSET, 8u, 32u}, /* Offset */
         {ICD_ROLE_LENGTH, 40u, 16u}, /* Block Length */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t upload_finalized_places[] = {
         {ICD_ROLE_BUSY, 0u, 1u}, /* Busy */
         {ICD_ROLE_ERROR, 1u, 1u}, /* Error */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const uint8_t upload_destinations[] = {
         3u, 4u, 5u, 6u, 7u, 8u, 9u,
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /**
      * Assumed poll_interval_ms: No time is given. Assumed rounds: Nothing is said about giving up. Assumed
      * checksum_covers_fill: Not said. The node learns the length of the block only when the block is committed, after
@@ -347,14 +504,20 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         524288u, /* destination_bytes */
         upload_destinations, 7u, /* destinations */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t erase_request_places[] = {
         {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
         {ICD_ROLE_COUNTER, 8u, 8u}, /* File Counter */
         {ICD_ROLE_ALL, 16u, 1u}, /* Erase All */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t erase_progress_places[] = {
         {ICD_ROLE_BUSY, 1u, 1u}, /* Erase All Busy */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
     static const icd_erase_form_t erase = {
         {108, -1, 3u, 3u, erase_request_places, NULL}, /* Erase File */
@@ -362,12 +525,18 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         200u, /* poll_interval in ms */
         60000u, /* timeout in ms */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const uint8_t format_request_fresh[] = {
         0x5au,
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t format_progress_places[] = {
         {ICD_ROLE_BUSY, 0u, 1u}, /* Format Busy */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
     static const icd_erase_form_t format = {
         {33, -1, 1u, 0u, NULL, format_request_fresh}, /* Format SD card */
@@ -375,16 +544,24 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         200u, /* poll_interval in ms */
         60000u, /* timeout in ms */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t program_copy_request_places[] = {
         {ICD_ROLE_PROGRAM, 0u, 8u}, /* Source Program Index */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t program_copy_progress_places[] = {
         {ICD_ROLE_BUSY, 0u, 1u}, /* Busy */
         {ICD_ROLE_ERROR, 1u, 1u}, /* Error */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const uint8_t program_copy_programs[] = {
         3u, 4u, 5u, 6u, 7u, 8u, 9u,
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /**
      * Assumed programs: A copy is described from external flash only. What the other programs of the enumeration would
      * do is not said. Assumed poll_interval_ms: No time is given. Assumed timeout_s: No time is given. The same area is
@@ -397,15 +574,21 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         10000u, /* timeout in ms */
         program_copy_programs, 7u, /* programs */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t program_information_request_places[] = {
         {ICD_ROLE_PROGRAM, 0u, 8u}, /* Program Index */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t program_information_progress_places[] = {
         {ICD_ROLE_PROGRAM, 0u, 8u}, /* Program Index */
         {ICD_ROLE_BUSY, 8u, 1u}, /* Busy */
         {ICD_ROLE_SIZE, 16u, 32u}, /* File Size */
         {ICD_ROLE_CHECKSUM, 48u, 16u}, /* Checksum */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /** Assumed poll_interval_ms: No time is given. */
     static const icd_operation_form_t program_information = {
         {102, -1, 1u, 1u, program_information_request_places, NULL}, /* Read Program Information */
@@ -414,6 +597,7 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         2000u, /* timeout in ms */
         NULL, 0u, /* programs */
     };
+#endif
     static const icd_place_t identification_places[] = {
         {ICD_ROLE_NODE_TYPE, 0u, 8u}, /* Node type */
         {ICD_ROLE_INTERFACE_VERSION, 8u, 8u}, /* Interface version */
@@ -435,7 +619,8 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         128u, 255u, /* ids of telemetry */
         telecommands, /* what can be sent */
         telemetry, /* what can be requested */
-        31u, 30u, /* how many */
+        ICDGEN_U16((sizeof(telecommands) / sizeof(telecommands[0])) - 1u), /* how many can be sent */
+        ICDGEN_U16((sizeof(telemetry) / sizeof(telemetry[0])) - 1u), /* how many can be requested */
         23u, 23u, 23u, /* longest telecommand, reply, any */
         22u, /* longest without id and checksum */
         110, /* node type */
@@ -454,17 +639,17 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         NULL, /* mask of logs */
         NULL, /* log files */
         NULL, /* unsolicited logs */
-        &packed_time, /* packed times */
-        &index_entry, /* index of files */
-        &hole_map, /* hole map */
-        &files, /* file transfer */
-        &list, /* list */
-        &download, /* download */
-        &upload, /* upload */
-        &erase, /* erase */
-        &format, /* format */
-        &program_copy, /* program copy */
-        &program_information, /* program information */
+        ICDGEN_OF_FILES(&packed_time), /* packed times */
+        ICDGEN_OF_FILES(&index_entry), /* index of files */
+        ICDGEN_OF_FILES(&hole_map), /* hole map */
+        ICDGEN_OF_FILES(&files), /* file transfer */
+        ICDGEN_OF_FILES(&list), /* list */
+        ICDGEN_OF_FILES(&download), /* download */
+        ICDGEN_OF_FILES(&upload), /* upload */
+        ICDGEN_OF_FILES(&erase), /* erase */
+        ICDGEN_OF_FILES(&format), /* format */
+        ICDGEN_OF_FILES(&program_copy), /* program copy */
+        ICDGEN_OF_FILES(&program_information), /* program information */
         &identification, /* identification */
     };
     /* clang-format on */

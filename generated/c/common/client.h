@@ -74,6 +74,7 @@ static inline icd_status_t common_client_can(common_client_t *client, uint8_t ad
     return icd_client_can(&client->client, common_link(), address, buffer, size);
 }
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET)
 /**
  * Sends Reset, as icd_client_send().
  * Dangerous: The program that runs is stopped, and what it has not saved is lost.
@@ -92,7 +93,9 @@ static inline icd_status_t common_send_reset(
     }
     return icd_client_send(&client->client, now, COMMON_RESET_ID, data, COMMON_RESET_LENGTH, false, on_event, context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET_LOG_POINTER)
 /** Sends Reset Log Pointer, as icd_client_send(). */
 static inline icd_status_t common_send_reset_log_pointer(
     common_client_t *client,
@@ -110,7 +113,9 @@ static inline icd_status_t common_send_reset_log_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_ADVANCE_LOG_POINTER)
 /** Sends Advance Log Pointer, as icd_client_send(). */
 static inline icd_status_t common_send_advance_log_pointer(
     common_client_t *client,
@@ -128,7 +133,9 @@ static inline icd_status_t common_send_advance_log_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET_BOOT_REGISTERS)
 /** Sends Reset Boot Registers, as icd_client_send(). */
 static inline icd_status_t common_send_reset_boot_registers(
     common_client_t *client,
@@ -146,7 +153,9 @@ static inline icd_status_t common_send_reset_boot_registers(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FORMAT_SD_CARD)
 /**
  * Sends Format SD card, as icd_client_send().
  * Dangerous: All files on the SD card are lost.
@@ -173,7 +182,9 @@ static inline icd_status_t common_send_format_sd_card(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_ERASE_FILE)
 /**
  * Sends Erase File, as icd_client_send().
  * Dangerous: The file is lost; all files are with Erase All.
@@ -200,7 +211,9 @@ static inline icd_status_t common_send_erase_file(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_LOAD_FILE_DOWNLOAD_BLOCK)
 /** Sends Load File Download Block, as icd_client_send(). */
 static inline icd_status_t common_send_load_file_download_block(
     common_client_t *client,
@@ -224,7 +237,9 @@ static inline icd_status_t common_send_load_file_download_block(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_ADVANCE_FILE_LIST_READ_POINTER)
 /** Sends Advance File List Read Pointer, as icd_client_send(). */
 static inline icd_status_t common_send_advance_file_list_read_pointer(
     common_client_t *client,
@@ -242,7 +257,9 @@ static inline icd_status_t common_send_advance_file_list_read_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_INITIATE_FILE_UPLOAD)
 /**
  * Sends Initiate File Upload, as icd_client_send().
  * Dangerous: The program in the destination is lost.
@@ -269,7 +286,9 @@ static inline icd_status_t common_send_initiate_file_upload(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FILE_UPLOAD_PACKET)
 /** Sends File Upload Packet, as icd_client_send(). */
 static inline icd_status_t common_send_file_upload_packet(
     common_client_t *client,
@@ -293,7 +312,9 @@ static inline icd_status_t common_send_file_upload_packet(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FINALIZE_UPLOAD_BLOCK)
 /** Sends Finalize Upload Block, as icd_client_send(). */
 static inline icd_status_t common_send_finalize_upload_block(
     common_client_t *client,
@@ -317,7 +338,9 @@ static inline icd_status_t common_send_finalize_upload_block(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET_UPLOAD_BLOCK)
 /** Sends Reset Upload Block, as icd_client_send(). */
 static inline icd_status_t common_send_reset_upload_block(
     common_client_t *client,
@@ -335,7 +358,9 @@ static inline icd_status_t common_send_reset_upload_block(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_RESET_FILE_LIST_READ_POINTER)
 /** Sends Reset File List Read Pointer, as icd_client_send(). */
 static inline icd_status_t common_send_reset_file_list_read_pointer(
     common_client_t *client,
@@ -353,7 +378,9 @@ static inline icd_status_t common_send_reset_file_list_read_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_INITIATE_DOWNLOAD_BURST)
 /** Sends Initiate Download Burst, as icd_client_send(). */
 static inline icd_status_t common_send_initiate_download_burst(
     common_client_t *client,
@@ -377,7 +404,9 @@ static inline icd_status_t common_send_initiate_download_burst(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CACHE_ENABLED_STATE)
 /** Sends Cache enabled state, as icd_client_send(). */
 static inline icd_status_t common_send_cache_enabled_state(
     common_client_t *client,
@@ -401,7 +430,9 @@ static inline icd_status_t common_send_cache_enabled_state(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SRAM_SCRUB_PARAMETERS)
 /** Sends SRAM Scrub Parameters, as icd_client_send(). */
 static inline icd_status_t common_send_sram_scrub_parameters(
     common_client_t *client,
@@ -425,7 +456,9 @@ static inline icd_status_t common_send_sram_scrub_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CURRENT_UNIX_TIME)
 /** Sends Current Unix Time, as icd_client_send(). */
 static inline icd_status_t common_send_current_unix_time(
     common_client_t *client,
@@ -449,7 +482,9 @@ static inline icd_status_t common_send_current_unix_time(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_UNIX_TIME_SAVE_TO_FLASH)
 /** Sends Unix Time Save to Flash, as icd_client_send(). */
 static inline icd_status_t common_send_unix_time_save_to_flash(
     common_client_t *client,
@@ -473,7 +508,9 @@ static inline icd_status_t common_send_unix_time_save_to_flash(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_1)
 /** Sends Hole Map 1, as icd_client_send(). */
 static inline icd_status_t common_send_hole_map_1(
     common_client_t *client,
@@ -497,7 +534,9 @@ static inline icd_status_t common_send_hole_map_1(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_2)
 /** Sends Hole Map 2, as icd_client_send(). */
 static inline icd_status_t common_send_hole_map_2(
     common_client_t *client,
@@ -521,7 +560,9 @@ static inline icd_status_t common_send_hole_map_2(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_3)
 /** Sends Hole Map 3, as icd_client_send(). */
 static inline icd_status_t common_send_hole_map_3(
     common_client_t *client,
@@ -545,7 +586,9 @@ static inline icd_status_t common_send_hole_map_3(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_4)
 /** Sends Hole Map 4, as icd_client_send(). */
 static inline icd_status_t common_send_hole_map_4(
     common_client_t *client,
@@ -569,7 +612,9 @@ static inline icd_status_t common_send_hole_map_4(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_5)
 /** Sends Hole Map 5, as icd_client_send(). */
 static inline icd_status_t common_send_hole_map_5(
     common_client_t *client,
@@ -593,7 +638,9 @@ static inline icd_status_t common_send_hole_map_5(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_6)
 /** Sends Hole Map 6, as icd_client_send(). */
 static inline icd_status_t common_send_hole_map_6(
     common_client_t *client,
@@ -617,7 +664,9 @@ static inline icd_status_t common_send_hole_map_6(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_7)
 /** Sends Hole Map 7, as icd_client_send(). */
 static inline icd_status_t common_send_hole_map_7(
     common_client_t *client,
@@ -641,7 +690,9 @@ static inline icd_status_t common_send_hole_map_7(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_8)
 /** Sends Hole Map 8, as icd_client_send(). */
 static inline icd_status_t common_send_hole_map_8(
     common_client_t *client,
@@ -665,7 +716,9 @@ static inline icd_status_t common_send_hole_map_8(
         on_event,
         context);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_IDENTIFICATION)
 /** Requests Identification, as icd_client_request(). */
 static inline icd_status_t common_request_identification(common_client_t *client, uint32_t now)
 {
@@ -680,7 +733,9 @@ static inline icd_status_t common_receive_identification(common_identification_t
     }
     return common_identification_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
 /** Requests Boot And Running Program Status, as icd_client_request(). */
 static inline icd_status_t common_request_boot_and_running_program_status(common_client_t *client, uint32_t now)
 {
@@ -697,7 +752,9 @@ static inline icd_status_t common_receive_boot_and_running_program_status(
     }
     return common_boot_and_running_program_status_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_BOOT_INDEX_AND_STATUS)
 /** Requests Boot Index and Status, as icd_client_request(). */
 static inline icd_status_t common_request_boot_index_and_status(common_client_t *client, uint32_t now)
 {
@@ -714,7 +771,9 @@ static inline icd_status_t common_receive_boot_index_and_status(
     }
     return common_boot_index_and_status_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_LAST_LOGGED_EVENT)
 /** Requests Last Logged Event, as icd_client_request(). */
 static inline icd_status_t common_request_last_logged_event(common_client_t *client, uint32_t now)
 {
@@ -731,7 +790,9 @@ static inline icd_status_t common_receive_last_logged_event(
     }
     return common_last_logged_event_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SRAM_LATCHUP_COUNTERS)
 /** Requests SRAM Latchup counters, as icd_client_request(). */
 static inline icd_status_t common_request_sram_latchup_counters(common_client_t *client, uint32_t now)
 {
@@ -748,7 +809,9 @@ static inline icd_status_t common_receive_sram_latchup_counters(
     }
     return common_sram_latchup_counters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_EDAC_ERROR_COUNTERS)
 /** Requests EDAC Error Counters, as icd_client_request(). */
 static inline icd_status_t common_request_edac_error_counters(common_client_t *client, uint32_t now)
 {
@@ -765,7 +828,9 @@ static inline icd_status_t common_receive_edac_error_counters(
     }
     return common_edac_error_counters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_COMMUNICATION_STATUS)
 /** Requests Communication Status, as icd_client_request(). */
 static inline icd_status_t common_request_communication_status(common_client_t *client, uint32_t now)
 {
@@ -782,7 +847,9 @@ static inline icd_status_t common_receive_communication_status(
     }
     return common_communication_status_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SD_CARD_FORMAT_ERASE_PROGRESS)
 /** Requests SD card format/erase progress, as icd_client_request(). */
 static inline icd_status_t common_request_sd_card_format_erase_progress(common_client_t *client, uint32_t now)
 {
@@ -799,7 +866,9 @@ static inline icd_status_t common_receive_sd_card_format_erase_progress(
     }
     return common_sd_card_format_erase_progress_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_TELECOMMAND_ACKNOWLEDGE)
 /** Requests Telecommand Acknowledge, as icd_client_request(). */
 static inline icd_status_t common_request_telecommand_acknowledge(common_client_t *client, uint32_t now)
 {
@@ -816,7 +885,9 @@ static inline icd_status_t common_receive_telecommand_acknowledge(
     }
     return common_telecommand_acknowledge_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
 /** Requests File Download Buffer with File Contents, as icd_client_request(). */
 static inline icd_status_t common_request_file_download_buffer_with_file_contents(common_client_t *client, uint32_t now)
 {
@@ -836,7 +907,9 @@ static inline icd_status_t common_receive_file_download_buffer_with_file_content
     }
     return common_file_download_buffer_with_file_contents_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_DOWNLOAD_BLOCK_READY)
 /** Requests Download Block Ready, as icd_client_request(). */
 static inline icd_status_t common_request_download_block_ready(common_client_t *client, uint32_t now)
 {
@@ -853,7 +926,9 @@ static inline icd_status_t common_receive_download_block_ready(
     }
     return common_download_block_ready_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_FILE_INFORMATION)
 /** Requests File Information, as icd_client_request(). */
 static inline icd_status_t common_request_file_information(common_client_t *client, uint32_t now)
 {
@@ -868,7 +943,9 @@ static inline icd_status_t common_receive_file_information(common_file_informati
     }
     return common_file_information_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_INITIALIZE_UPLOAD_COMPLETE)
 /** Requests Initialize Upload Complete, as icd_client_request(). */
 static inline icd_status_t common_request_initialize_upload_complete(common_client_t *client, uint32_t now)
 {
@@ -885,7 +962,9 @@ static inline icd_status_t common_receive_initialize_upload_complete(
     }
     return common_initialize_upload_complete_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_UPLOAD_BLOCK_COMPLETE)
 /** Requests Upload Block Complete, as icd_client_request(). */
 static inline icd_status_t common_request_upload_block_complete(common_client_t *client, uint32_t now)
 {
@@ -902,7 +981,9 @@ static inline icd_status_t common_receive_upload_block_complete(
     }
     return common_upload_block_complete_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_BLOCK_CHECKSUM)
 /** Requests Block Checksum, as icd_client_request(). */
 static inline icd_status_t common_request_block_checksum(common_client_t *client, uint32_t now)
 {
@@ -917,7 +998,9 @@ static inline icd_status_t common_receive_block_checksum(common_block_checksum_t
     }
     return common_block_checksum_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CACHE_ENABLED_STATE)
 /** Requests Cache enabled state, as icd_client_request(). */
 static inline icd_status_t common_request_cache_enabled_state(common_client_t *client, uint32_t now)
 {
@@ -934,7 +1017,9 @@ static inline icd_status_t common_receive_cache_enabled_state(
     }
     return common_cache_enabled_state_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_SRAM_SCRUB_PARAMETERS)
 /** Requests SRAM Scrub Parameters, as icd_client_request(). */
 static inline icd_status_t common_request_sram_scrub_parameters(common_client_t *client, uint32_t now)
 {
@@ -951,7 +1036,9 @@ static inline icd_status_t common_receive_sram_scrub_parameters(
     }
     return common_sram_scrub_parameters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_CURRENT_UNIX_TIME)
 /** Requests Current Unix Time, as icd_client_request(). */
 static inline icd_status_t common_request_current_unix_time(common_client_t *client, uint32_t now)
 {
@@ -968,7 +1055,9 @@ static inline icd_status_t common_receive_current_unix_time(
     }
     return common_current_unix_time_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_UNIX_TIME_SAVE_TO_FLASH)
 /** Requests Unix Time Save to Flash, as icd_client_request(). */
 static inline icd_status_t common_request_unix_time_save_to_flash(common_client_t *client, uint32_t now)
 {
@@ -985,7 +1074,9 @@ static inline icd_status_t common_receive_unix_time_save_to_flash(
     }
     return common_unix_time_save_to_flash_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_1)
 /** Requests Hole Map 1, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_1(common_client_t *client, uint32_t now)
 {
@@ -1000,7 +1091,9 @@ static inline icd_status_t common_receive_hole_map_1(common_hole_map_1_t *messag
     }
     return common_hole_map_1_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_2)
 /** Requests Hole Map 2, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_2(common_client_t *client, uint32_t now)
 {
@@ -1015,7 +1108,9 @@ static inline icd_status_t common_receive_hole_map_2(common_hole_map_2_t *messag
     }
     return common_hole_map_2_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_3)
 /** Requests Hole Map 3, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_3(common_client_t *client, uint32_t now)
 {
@@ -1030,7 +1125,9 @@ static inline icd_status_t common_receive_hole_map_3(common_hole_map_3_t *messag
     }
     return common_hole_map_3_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_4)
 /** Requests Hole Map 4, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_4(common_client_t *client, uint32_t now)
 {
@@ -1045,7 +1142,9 @@ static inline icd_status_t common_receive_hole_map_4(common_hole_map_4_t *messag
     }
     return common_hole_map_4_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_5)
 /** Requests Hole Map 5, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_5(common_client_t *client, uint32_t now)
 {
@@ -1060,7 +1159,9 @@ static inline icd_status_t common_receive_hole_map_5(common_hole_map_5_t *messag
     }
     return common_hole_map_5_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_6)
 /** Requests Hole Map 6, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_6(common_client_t *client, uint32_t now)
 {
@@ -1075,7 +1176,9 @@ static inline icd_status_t common_receive_hole_map_6(common_hole_map_6_t *messag
     }
     return common_hole_map_6_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_7)
 /** Requests Hole Map 7, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_7(common_client_t *client, uint32_t now)
 {
@@ -1090,7 +1193,9 @@ static inline icd_status_t common_receive_hole_map_7(common_hole_map_7_t *messag
     }
     return common_hole_map_7_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(COMMON_CHOSEN) || defined(COMMON_WITH_HOLE_MAP_8)
 /** Requests Hole Map 8, as icd_client_request(). */
 static inline icd_status_t common_request_hole_map_8(common_client_t *client, uint32_t now)
 {
@@ -1105,5 +1210,6 @@ static inline icd_status_t common_receive_hole_map_8(common_hole_map_8_t *messag
     }
     return common_hole_map_8_decode(message, event->data, event->length);
 }
+#endif
 
 #endif /* COMMON_CLIENT_H */

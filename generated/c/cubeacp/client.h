@@ -149,6 +149,7 @@ static inline icd_status_t cubeacp_client_can(cubeacp_client_t *client, uint8_t 
     return icd_client_can(&client->client, cubeacp_link(), address, buffer, size);
 }
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET)
 /**
  * Sends Reset, as icd_client_send().
  * Dangerous: The program that runs is stopped, and what it has not saved is lost.
@@ -167,7 +168,9 @@ static inline icd_status_t cubeacp_send_reset(
     }
     return icd_client_send(&client->client, now, COMMON_RESET_ID, data, COMMON_RESET_LENGTH, false, on_event, context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_LOG_POINTER)
 /** Sends Reset Log Pointer, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_reset_log_pointer(
     cubeacp_client_t *client,
@@ -185,7 +188,9 @@ static inline icd_status_t cubeacp_send_reset_log_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADVANCE_LOG_POINTER)
 /** Sends Advance Log Pointer, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_advance_log_pointer(
     cubeacp_client_t *client,
@@ -203,7 +208,9 @@ static inline icd_status_t cubeacp_send_advance_log_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_BOOT_REGISTERS)
 /** Sends Reset Boot Registers, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_reset_boot_registers(
     cubeacp_client_t *client,
@@ -221,7 +228,9 @@ static inline icd_status_t cubeacp_send_reset_boot_registers(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FORMAT_SD_CARD)
 /**
  * Sends Format SD card, as icd_client_send().
  * Dangerous: All files on the SD card are lost.
@@ -248,7 +257,9 @@ static inline icd_status_t cubeacp_send_format_sd_card(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ERASE_FILE)
 /**
  * Sends Erase File, as icd_client_send().
  * Dangerous: The file is lost; all files are with Erase All.
@@ -275,7 +286,9 @@ static inline icd_status_t cubeacp_send_erase_file(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_LOAD_FILE_DOWNLOAD_BLOCK)
 /** Sends Load File Download Block, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_load_file_download_block(
     cubeacp_client_t *client,
@@ -299,7 +312,9 @@ static inline icd_status_t cubeacp_send_load_file_download_block(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADVANCE_FILE_LIST_READ_POINTER)
 /** Sends Advance File List Read Pointer, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_advance_file_list_read_pointer(
     cubeacp_client_t *client,
@@ -317,7 +332,9 @@ static inline icd_status_t cubeacp_send_advance_file_list_read_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INITIATE_FILE_UPLOAD)
 /**
  * Sends Initiate File Upload, as icd_client_send().
  * Dangerous: The program in the destination is lost.
@@ -344,7 +361,9 @@ static inline icd_status_t cubeacp_send_initiate_file_upload(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_UPLOAD_PACKET)
 /** Sends File Upload Packet, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_file_upload_packet(
     cubeacp_client_t *client,
@@ -368,7 +387,9 @@ static inline icd_status_t cubeacp_send_file_upload_packet(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINALIZE_UPLOAD_BLOCK)
 /** Sends Finalize Upload Block, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_finalize_upload_block(
     cubeacp_client_t *client,
@@ -392,7 +413,9 @@ static inline icd_status_t cubeacp_send_finalize_upload_block(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_UPLOAD_BLOCK)
 /** Sends Reset Upload Block, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_reset_upload_block(
     cubeacp_client_t *client,
@@ -410,7 +433,9 @@ static inline icd_status_t cubeacp_send_reset_upload_block(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_FILE_LIST_READ_POINTER)
 /** Sends Reset File List Read Pointer, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_reset_file_list_read_pointer(
     cubeacp_client_t *client,
@@ -428,7 +453,9 @@ static inline icd_status_t cubeacp_send_reset_file_list_read_pointer(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INITIATE_DOWNLOAD_BURST)
 /** Sends Initiate Download Burst, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_initiate_download_burst(
     cubeacp_client_t *client,
@@ -452,7 +479,9 @@ static inline icd_status_t cubeacp_send_initiate_download_burst(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CACHE_ENABLED_STATE)
 /** Sends Cache enabled state, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_cache_enabled_state(
     cubeacp_client_t *client,
@@ -476,7 +505,9 @@ static inline icd_status_t cubeacp_send_cache_enabled_state(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_SCRUB_PARAMETERS)
 /** Sends SRAM Scrub Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_sram_scrub_parameters(
     cubeacp_client_t *client,
@@ -500,7 +531,9 @@ static inline icd_status_t cubeacp_send_sram_scrub_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_UNIX_TIME)
 /** Sends Current Unix Time, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_current_unix_time(
     cubeacp_client_t *client,
@@ -524,7 +557,9 @@ static inline icd_status_t cubeacp_send_current_unix_time(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UNIX_TIME_SAVE_TO_FLASH)
 /** Sends Unix Time Save to Flash, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_unix_time_save_to_flash(
     cubeacp_client_t *client,
@@ -548,7 +583,9 @@ static inline icd_status_t cubeacp_send_unix_time_save_to_flash(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_1)
 /** Sends Hole Map 1, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_1(
     cubeacp_client_t *client,
@@ -572,7 +609,9 @@ static inline icd_status_t cubeacp_send_hole_map_1(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_2)
 /** Sends Hole Map 2, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_2(
     cubeacp_client_t *client,
@@ -596,7 +635,9 @@ static inline icd_status_t cubeacp_send_hole_map_2(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_3)
 /** Sends Hole Map 3, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_3(
     cubeacp_client_t *client,
@@ -620,7 +661,9 @@ static inline icd_status_t cubeacp_send_hole_map_3(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_4)
 /** Sends Hole Map 4, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_4(
     cubeacp_client_t *client,
@@ -644,7 +687,9 @@ static inline icd_status_t cubeacp_send_hole_map_4(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_5)
 /** Sends Hole Map 5, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_5(
     cubeacp_client_t *client,
@@ -668,7 +713,9 @@ static inline icd_status_t cubeacp_send_hole_map_5(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_6)
 /** Sends Hole Map 6, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_6(
     cubeacp_client_t *client,
@@ -692,7 +739,9 @@ static inline icd_status_t cubeacp_send_hole_map_6(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_7)
 /** Sends Hole Map 7, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_7(
     cubeacp_client_t *client,
@@ -716,7 +765,9 @@ static inline icd_status_t cubeacp_send_hole_map_7(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_8)
 /** Sends Hole Map 8, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_hole_map_8(
     cubeacp_client_t *client,
@@ -740,7 +791,9 @@ static inline icd_status_t cubeacp_send_hole_map_8(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_DEPLOY_MAGNETOMETER_BOOM)
 /**
  * Sends Deploy Magnetometer Boom, as icd_client_send().
  * Dangerous: The boom stays deployed.
@@ -767,7 +820,9 @@ static inline icd_status_t cubeacp_send_deploy_magnetometer_boom(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_ADCS_RUN_MODE)
 /** Sends ADCS Run Mode, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_adcs_run_mode(
     cubeacp_client_t *client,
@@ -791,7 +846,9 @@ static inline icd_status_t cubeacp_send_set_adcs_run_mode(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CLEAR_ERRORS)
 /** Sends Clear Errors, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_clear_errors(
     cubeacp_client_t *client,
@@ -815,7 +872,9 @@ static inline icd_status_t cubeacp_send_clear_errors(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_ATTITUDE_CONTROL_MODE)
 /** Sends Set Attitude Control Mode, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_attitude_control_mode(
     cubeacp_client_t *client,
@@ -839,7 +898,9 @@ static inline icd_status_t cubeacp_send_set_attitude_control_mode(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_ATTITUDE_ESTIMATION_MODE)
 /** Sends Set Attitude Estimation Mode, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_attitude_estimation_mode(
     cubeacp_client_t *client,
@@ -863,7 +924,9 @@ static inline icd_status_t cubeacp_send_set_attitude_estimation_mode(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MAGNETORQUER_OUTPUT)
 /** Sends Set Magnetorquer Output, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_magnetorquer_output(
     cubeacp_client_t *client,
@@ -887,7 +950,9 @@ static inline icd_status_t cubeacp_send_set_magnetorquer_output(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_WHEEL_SPEED)
 /** Sends Set Wheel Speed, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_wheel_speed(
     cubeacp_client_t *client,
@@ -911,7 +976,9 @@ static inline icd_status_t cubeacp_send_set_wheel_speed(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRIGGER_ADCS_LOOP)
 /** Sends Trigger ADCS Loop, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_trigger_adcs_loop(
     cubeacp_client_t *client,
@@ -929,7 +996,9 @@ static inline icd_status_t cubeacp_send_trigger_adcs_loop(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRIGGER_SIMULATED_LOOP)
 /** Sends Trigger ADCS Loop with Simulated Sensor Data, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_trigger_simulated_loop(
     cubeacp_client_t *client,
@@ -953,7 +1022,9 @@ static inline icd_status_t cubeacp_send_trigger_simulated_loop(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_RUN_MODE)
 /** Sends ASGP4 Run Mode, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_asgp4_run_mode(
     cubeacp_client_t *client,
@@ -977,7 +1048,9 @@ static inline icd_status_t cubeacp_send_asgp4_run_mode(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_TRIGGER)
 /** Sends ASGP4 Trigger, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_asgp4_trigger(
     cubeacp_client_t *client,
@@ -995,7 +1068,9 @@ static inline icd_status_t cubeacp_send_asgp4_trigger(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MODE_OF_MAGNETOMETER_OPERATION)
 /** Sends Set Mode of Magnetometer Operation, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_mode_of_magnetometer_operation(
     cubeacp_client_t *client,
@@ -1019,7 +1094,9 @@ static inline icd_status_t cubeacp_send_set_mode_of_magnetometer_operation(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CONVERT_TO_JPG_FILE)
 /** Sends Convert to JPG file, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_convert_to_jpg_file(
     cubeacp_client_t *client,
@@ -1043,7 +1120,9 @@ static inline icd_status_t cubeacp_send_convert_to_jpg_file(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_CONFIGURATION)
 /** Sends Save Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_save_configuration(
     cubeacp_client_t *client,
@@ -1061,7 +1140,9 @@ static inline icd_status_t cubeacp_send_save_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_ORBIT_PARAMETERS)
 /** Sends Save Orbit Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_save_orbit_parameters(
     cubeacp_client_t *client,
@@ -1079,7 +1160,9 @@ static inline icd_status_t cubeacp_send_save_orbit_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_IMAGE)
 /** Sends Save Image, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_save_image(
     cubeacp_client_t *client,
@@ -1103,7 +1186,9 @@ static inline icd_status_t cubeacp_send_save_image(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MAGNETORQUER_CONFIGURATION)
 /** Sends Set Magnetorquer Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_magnetorquer_configuration(
     cubeacp_client_t *client,
@@ -1127,7 +1212,9 @@ static inline icd_status_t cubeacp_send_set_magnetorquer_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_WHEEL_CONFIGURATION)
 /** Sends Set Wheel Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_wheel_configuration(
     cubeacp_client_t *client,
@@ -1151,7 +1238,9 @@ static inline icd_status_t cubeacp_send_set_wheel_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_RATE_GYRO_CONFIGURATION)
 /** Sends Set Rate Gyro Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_rate_gyro_configuration(
     cubeacp_client_t *client,
@@ -1175,7 +1264,9 @@ static inline icd_status_t cubeacp_send_set_rate_gyro_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CSS_CONFIGURATION)
 /** Sends CSS Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_css_configuration(
     cubeacp_client_t *client,
@@ -1199,7 +1290,9 @@ static inline icd_status_t cubeacp_send_css_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_POWER_CONTROL)
 /** Sends ADCS Power Control, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_adcs_power_control(
     cubeacp_client_t *client,
@@ -1223,7 +1316,9 @@ static inline icd_status_t cubeacp_send_adcs_power_control(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMANDED_ATTITUDE_ANGLES)
 /** Sends Commanded Attitude Angles, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_commanded_attitude_angles(
     cubeacp_client_t *client,
@@ -1247,7 +1342,9 @@ static inline icd_status_t cubeacp_send_commanded_attitude_angles(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRACKING_CONTROLLER_TARGET_REFERENCE)
 /** Sends Tracking Controller Target Reference, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_tracking_controller_target_reference(
     cubeacp_client_t *client,
@@ -1271,7 +1368,9 @@ static inline icd_status_t cubeacp_send_tracking_controller_target_reference(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_STAR_TRACKER_CONFIGURATION)
 /** Sends Set Star Tracker Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_star_tracker_configuration(
     cubeacp_client_t *client,
@@ -1295,7 +1394,9 @@ static inline icd_status_t cubeacp_send_set_star_tracker_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE_CONFIGURATION)
 /** Sends CubeSense Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_cubesense_configuration(
     cubeacp_client_t *client,
@@ -1319,7 +1420,9 @@ static inline icd_status_t cubeacp_send_cubesense_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETOMETER_CONFIGURATION)
 /** Sends Magnetometer Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_magnetometer_configuration(
     cubeacp_client_t *client,
@@ -1343,7 +1446,9 @@ static inline icd_status_t cubeacp_send_magnetometer_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_REDUNDANT_MAG_CONFIGURATION)
 /** Sends Redundant Magnetometer Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_redundant_mag_configuration(
     cubeacp_client_t *client,
@@ -1367,7 +1472,9 @@ static inline icd_status_t cubeacp_send_redundant_mag_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_CONFIGURATION)
 /** Sends ADCS Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_adcs_configuration(
     cubeacp_client_t *client,
@@ -1391,7 +1498,9 @@ static inline icd_status_t cubeacp_send_adcs_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SGP4_ORBIT_PARAMETERS)
 /** Sends SGP4 Orbit Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_sgp4_orbit_parameters(
     cubeacp_client_t *client,
@@ -1415,7 +1524,9 @@ static inline icd_status_t cubeacp_send_sgp4_orbit_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_DETUMBLING_CONTROL_PARAMETERS)
 /** Sends Set Detumbling Control Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_detumbling_control_parameters(
     cubeacp_client_t *client,
@@ -1439,7 +1550,9 @@ static inline icd_status_t cubeacp_send_set_detumbling_control_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_Y_WHEEL_CONTROL_PARAMETERS)
 /** Sends Set Y-Wheel Control Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_y_wheel_control_parameters(
     cubeacp_client_t *client,
@@ -1463,7 +1576,9 @@ static inline icd_status_t cubeacp_send_set_y_wheel_control_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_REACTION_WHEEL_CONTROL_PARAMETERS)
 /** Sends Set Reaction Wheel Control Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_reaction_wheel_control_parameters(
     cubeacp_client_t *client,
@@ -1487,7 +1602,9 @@ static inline icd_status_t cubeacp_send_set_reaction_wheel_control_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS)
 /** Sends Set Tracking Controller Gain Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_set_tracking_controller_gain_parameters(
     cubeacp_client_t *client,
@@ -1511,7 +1628,9 @@ static inline icd_status_t cubeacp_send_set_tracking_controller_gain_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MOMENT_OF_INERTIA_MATRIX)
 /** Sends Moment of Inertia Matrix, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_moment_of_inertia_matrix(
     cubeacp_client_t *client,
@@ -1535,7 +1654,9 @@ static inline icd_status_t cubeacp_send_moment_of_inertia_matrix(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_PARAMETERS)
 /** Sends Estimation Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_estimation_parameters(
     cubeacp_client_t *client,
@@ -1559,7 +1680,9 @@ static inline icd_status_t cubeacp_send_estimation_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_SYSTEM_CONFIGURATION)
 /** Sends ADCS System Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_adcs_system_configuration(
     cubeacp_client_t *client,
@@ -1583,7 +1706,9 @@ static inline icd_status_t cubeacp_send_adcs_system_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS)
 /** Sends User-coded Controller and Estimator Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_user_coded_controller_and_estimator_parameters(
     cubeacp_client_t *client,
@@ -1610,7 +1735,9 @@ static inline icd_status_t cubeacp_send_user_coded_controller_and_estimator_para
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_AUGMENTED_SGP4_PARAMETERS)
 /** Sends Augmented-SGP4 Parameters, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_augmented_sgp4_parameters(
     cubeacp_client_t *client,
@@ -1634,7 +1761,9 @@ static inline icd_status_t cubeacp_send_augmented_sgp4_parameters(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG1_CONFIGURATION)
 /** Sends SD Log1 Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_sd_log1_configuration(
     cubeacp_client_t *client,
@@ -1658,7 +1787,9 @@ static inline icd_status_t cubeacp_send_sd_log1_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG2_CONFIGURATION)
 /** Sends SD Log2 Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_sd_log2_configuration(
     cubeacp_client_t *client,
@@ -1682,7 +1813,9 @@ static inline icd_status_t cubeacp_send_sd_log2_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UART_LOG_CONFIGURATION)
 /** Sends UART Log Configuration, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_uart_log_configuration(
     cubeacp_client_t *client,
@@ -1706,7 +1839,9 @@ static inline icd_status_t cubeacp_send_uart_log_configuration(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INERTIAL_POINTING_REFERENCE_VECTOR)
 /** Sends Inertial Pointing Reference Vector, as icd_client_send(). */
 static inline icd_status_t cubeacp_send_inertial_pointing_reference_vector(
     cubeacp_client_t *client,
@@ -1730,7 +1865,9 @@ static inline icd_status_t cubeacp_send_inertial_pointing_reference_vector(
         on_event,
         context);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_IDENTIFICATION)
 /** Requests Identification, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_identification(cubeacp_client_t *client, uint32_t now)
 {
@@ -1745,7 +1882,9 @@ static inline icd_status_t cubeacp_receive_identification(common_identification_
     }
     return common_identification_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
 /** Requests Boot And Running Program Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_boot_and_running_program_status(cubeacp_client_t *client, uint32_t now)
 {
@@ -1762,7 +1901,9 @@ static inline icd_status_t cubeacp_receive_boot_and_running_program_status(
     }
     return common_boot_and_running_program_status_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BOOT_INDEX_AND_STATUS)
 /** Requests Boot Index and Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_boot_index_and_status(cubeacp_client_t *client, uint32_t now)
 {
@@ -1779,7 +1920,9 @@ static inline icd_status_t cubeacp_receive_boot_index_and_status(
     }
     return common_boot_index_and_status_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_LAST_LOGGED_EVENT)
 /** Requests Last Logged Event, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_last_logged_event(cubeacp_client_t *client, uint32_t now)
 {
@@ -1796,7 +1939,9 @@ static inline icd_status_t cubeacp_receive_last_logged_event(
     }
     return common_last_logged_event_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_LATCHUP_COUNTERS)
 /** Requests SRAM Latchup counters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sram_latchup_counters(cubeacp_client_t *client, uint32_t now)
 {
@@ -1813,7 +1958,9 @@ static inline icd_status_t cubeacp_receive_sram_latchup_counters(
     }
     return common_sram_latchup_counters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_EDAC_ERROR_COUNTERS)
 /** Requests EDAC Error Counters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_edac_error_counters(cubeacp_client_t *client, uint32_t now)
 {
@@ -1830,7 +1977,9 @@ static inline icd_status_t cubeacp_receive_edac_error_counters(
     }
     return common_edac_error_counters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMUNICATION_STATUS)
 /** Requests Communication Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_communication_status(cubeacp_client_t *client, uint32_t now)
 {
@@ -1847,7 +1996,9 @@ static inline icd_status_t cubeacp_receive_communication_status(
     }
     return common_communication_status_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_CARD_FORMAT_ERASE_PROGRESS)
 /** Requests SD card format/erase progress, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_card_format_erase_progress(cubeacp_client_t *client, uint32_t now)
 {
@@ -1864,7 +2015,9 @@ static inline icd_status_t cubeacp_receive_sd_card_format_erase_progress(
     }
     return common_sd_card_format_erase_progress_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TELECOMMAND_ACKNOWLEDGE)
 /** Requests Telecommand Acknowledge, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_telecommand_acknowledge(cubeacp_client_t *client, uint32_t now)
 {
@@ -1881,7 +2034,9 @@ static inline icd_status_t cubeacp_receive_telecommand_acknowledge(
     }
     return common_telecommand_acknowledge_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
 /** Requests File Download Buffer with File Contents, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_file_download_buffer_with_file_contents(
     cubeacp_client_t *client,
@@ -1903,7 +2058,9 @@ static inline icd_status_t cubeacp_receive_file_download_buffer_with_file_conten
     }
     return common_file_download_buffer_with_file_contents_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_DOWNLOAD_BLOCK_READY)
 /** Requests Download Block Ready, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_download_block_ready(cubeacp_client_t *client, uint32_t now)
 {
@@ -1920,7 +2077,9 @@ static inline icd_status_t cubeacp_receive_download_block_ready(
     }
     return common_download_block_ready_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_INFORMATION)
 /** Requests File Information, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_file_information(cubeacp_client_t *client, uint32_t now)
 {
@@ -1937,7 +2096,9 @@ static inline icd_status_t cubeacp_receive_file_information(
     }
     return common_file_information_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INITIALIZE_UPLOAD_COMPLETE)
 /** Requests Initialize Upload Complete, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_initialize_upload_complete(cubeacp_client_t *client, uint32_t now)
 {
@@ -1954,7 +2115,9 @@ static inline icd_status_t cubeacp_receive_initialize_upload_complete(
     }
     return common_initialize_upload_complete_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UPLOAD_BLOCK_COMPLETE)
 /** Requests Upload Block Complete, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_upload_block_complete(cubeacp_client_t *client, uint32_t now)
 {
@@ -1971,7 +2134,9 @@ static inline icd_status_t cubeacp_receive_upload_block_complete(
     }
     return common_upload_block_complete_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BLOCK_CHECKSUM)
 /** Requests Block Checksum, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_block_checksum(cubeacp_client_t *client, uint32_t now)
 {
@@ -1986,7 +2151,9 @@ static inline icd_status_t cubeacp_receive_block_checksum(common_block_checksum_
     }
     return common_block_checksum_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CACHE_ENABLED_STATE)
 /** Requests Cache enabled state, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cache_enabled_state(cubeacp_client_t *client, uint32_t now)
 {
@@ -2003,7 +2170,9 @@ static inline icd_status_t cubeacp_receive_cache_enabled_state(
     }
     return common_cache_enabled_state_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_SCRUB_PARAMETERS)
 /** Requests SRAM Scrub Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sram_scrub_parameters(cubeacp_client_t *client, uint32_t now)
 {
@@ -2020,7 +2189,9 @@ static inline icd_status_t cubeacp_receive_sram_scrub_parameters(
     }
     return common_sram_scrub_parameters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_UNIX_TIME)
 /** Requests Current Unix Time, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_unix_time(cubeacp_client_t *client, uint32_t now)
 {
@@ -2037,7 +2208,9 @@ static inline icd_status_t cubeacp_receive_current_unix_time(
     }
     return common_current_unix_time_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UNIX_TIME_SAVE_TO_FLASH)
 /** Requests Unix Time Save to Flash, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_unix_time_save_to_flash(cubeacp_client_t *client, uint32_t now)
 {
@@ -2054,7 +2227,9 @@ static inline icd_status_t cubeacp_receive_unix_time_save_to_flash(
     }
     return common_unix_time_save_to_flash_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_1)
 /** Requests Hole Map 1, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_1(cubeacp_client_t *client, uint32_t now)
 {
@@ -2069,7 +2244,9 @@ static inline icd_status_t cubeacp_receive_hole_map_1(common_hole_map_1_t *messa
     }
     return common_hole_map_1_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_2)
 /** Requests Hole Map 2, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_2(cubeacp_client_t *client, uint32_t now)
 {
@@ -2084,7 +2261,9 @@ static inline icd_status_t cubeacp_receive_hole_map_2(common_hole_map_2_t *messa
     }
     return common_hole_map_2_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_3)
 /** Requests Hole Map 3, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_3(cubeacp_client_t *client, uint32_t now)
 {
@@ -2099,7 +2278,9 @@ static inline icd_status_t cubeacp_receive_hole_map_3(common_hole_map_3_t *messa
     }
     return common_hole_map_3_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_4)
 /** Requests Hole Map 4, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_4(cubeacp_client_t *client, uint32_t now)
 {
@@ -2114,7 +2295,9 @@ static inline icd_status_t cubeacp_receive_hole_map_4(common_hole_map_4_t *messa
     }
     return common_hole_map_4_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_5)
 /** Requests Hole Map 5, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_5(cubeacp_client_t *client, uint32_t now)
 {
@@ -2129,7 +2312,9 @@ static inline icd_status_t cubeacp_receive_hole_map_5(common_hole_map_5_t *messa
     }
     return common_hole_map_5_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_6)
 /** Requests Hole Map 6, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_6(cubeacp_client_t *client, uint32_t now)
 {
@@ -2144,7 +2329,9 @@ static inline icd_status_t cubeacp_receive_hole_map_6(common_hole_map_6_t *messa
     }
     return common_hole_map_6_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_7)
 /** Requests Hole Map 7, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_7(cubeacp_client_t *client, uint32_t now)
 {
@@ -2159,7 +2346,9 @@ static inline icd_status_t cubeacp_receive_hole_map_7(common_hole_map_7_t *messa
     }
     return common_hole_map_7_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_8)
 /** Requests Hole Map 8, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_hole_map_8(cubeacp_client_t *client, uint32_t now)
 {
@@ -2174,7 +2363,9 @@ static inline icd_status_t cubeacp_receive_hole_map_8(common_hole_map_8_t *messa
     }
     return common_hole_map_8_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_ADCS_STATE)
 /** Requests Current ADCS State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_adcs_state(cubeacp_client_t *client, uint32_t now)
 {
@@ -2191,7 +2382,9 @@ static inline icd_status_t cubeacp_receive_current_adcs_state(
     }
     return cubeacp_current_adcs_state_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_JPG_CONVERSION_PROGRESS)
 /** Requests JPG Conversion Progress, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_jpg_conversion_progress(cubeacp_client_t *client, uint32_t now)
 {
@@ -2208,7 +2401,9 @@ static inline icd_status_t cubeacp_receive_jpg_conversion_progress(
     }
     return cubeacp_jpg_conversion_progress_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STATE)
 /** Requests CubeACP State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_state(cubeacp_client_t *client, uint32_t now)
 {
@@ -2223,7 +2418,9 @@ static inline icd_status_t cubeacp_receive_state(cubeacp_state_t *message, const
     }
     return cubeacp_state_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_ATTITUDE_ANGLES)
 /** Requests Estimated Attitude Angles, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_attitude_angles(cubeacp_client_t *client, uint32_t now)
 {
@@ -2240,7 +2437,9 @@ static inline icd_status_t cubeacp_receive_estimated_attitude_angles(
     }
     return cubeacp_estimated_attitude_angles_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_ANGULAR_RATES)
 /** Requests Estimated Angular Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_angular_rates(cubeacp_client_t *client, uint32_t now)
 {
@@ -2257,7 +2456,9 @@ static inline icd_status_t cubeacp_receive_estimated_angular_rates(
     }
     return cubeacp_estimated_angular_rates_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_POSITION_ECI)
 /** Requests Satellite Position (ECI), as icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_position_eci(cubeacp_client_t *client, uint32_t now)
 {
@@ -2274,7 +2475,9 @@ static inline icd_status_t cubeacp_receive_satellite_position_eci(
     }
     return cubeacp_satellite_position_eci_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_VELOCITY_ECI)
 /** Requests Satellite Velocity (ECI), as icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_velocity_eci(cubeacp_client_t *client, uint32_t now)
 {
@@ -2291,7 +2494,9 @@ static inline icd_status_t cubeacp_receive_satellite_velocity_eci(
     }
     return cubeacp_satellite_velocity_eci_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_POSITION_LLH)
 /** Requests Satellite Position (LLH), as icd_client_request(). */
 static inline icd_status_t cubeacp_request_satellite_position_llh(cubeacp_client_t *client, uint32_t now)
 {
@@ -2308,7 +2513,9 @@ static inline icd_status_t cubeacp_receive_satellite_position_llh(
     }
     return cubeacp_satellite_position_llh_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETIC_FIELD_VECTOR)
 /** Requests Magnetic Field Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetic_field_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2325,7 +2532,9 @@ static inline icd_status_t cubeacp_receive_magnetic_field_vector(
     }
     return cubeacp_magnetic_field_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COARSE_SUN_VECTOR)
 /** Requests Coarse Sun Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_coarse_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2342,7 +2551,9 @@ static inline icd_status_t cubeacp_receive_coarse_sun_vector(
     }
     return cubeacp_coarse_sun_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINE_SUN_VECTOR)
 /** Requests Fine Sun Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_fine_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2357,7 +2568,9 @@ static inline icd_status_t cubeacp_receive_fine_sun_vector(cubeacp_fine_sun_vect
     }
     return cubeacp_fine_sun_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_NADIR_VECTOR)
 /** Requests Nadir Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_nadir_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2372,7 +2585,9 @@ static inline icd_status_t cubeacp_receive_nadir_vector(cubeacp_nadir_vector_t *
     }
     return cubeacp_nadir_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RATE_SENSOR_RATES)
 /** Requests Rate Sensor Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_rate_sensor_rates(cubeacp_client_t *client, uint32_t now)
 {
@@ -2389,7 +2604,9 @@ static inline icd_status_t cubeacp_receive_rate_sensor_rates(
     }
     return cubeacp_rate_sensor_rates_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_SPEED)
 /** Requests Wheel Speed, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_speed(cubeacp_client_t *client, uint32_t now)
 {
@@ -2404,7 +2621,9 @@ static inline icd_status_t cubeacp_receive_wheel_speed(cubeacp_wheel_speed_t *me
     }
     return cubeacp_wheel_speed_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETORQUER_COMMAND)
 /** Requests Magnetorquer Command, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetorquer_command(cubeacp_client_t *client, uint32_t now)
 {
@@ -2421,7 +2640,9 @@ static inline icd_status_t cubeacp_receive_magnetorquer_command(
     }
     return cubeacp_magnetorquer_command_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_SPEED_COMMANDS)
 /** Requests Wheel Speed Commands, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_speed_commands(cubeacp_client_t *client, uint32_t now)
 {
@@ -2438,7 +2659,9 @@ static inline icd_status_t cubeacp_receive_wheel_speed_commands(
     }
     return cubeacp_wheel_speed_commands_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR)
 /** Requests IGRF Modelled Magnetic Field Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_igrf_modelled_magnetic_field_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2457,7 +2680,9 @@ static inline icd_status_t cubeacp_receive_igrf_modelled_magnetic_field_vector(
     }
     return cubeacp_igrf_modelled_magnetic_field_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MODELLED_SUN_VECTOR)
 /** Requests Modelled Sun Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_modelled_sun_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2474,7 +2699,9 @@ static inline icd_status_t cubeacp_receive_modelled_sun_vector(
     }
     return cubeacp_modelled_sun_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_GYRO_BIAS)
 /** Requests Estimated Gyro Bias, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_gyro_bias(cubeacp_client_t *client, uint32_t now)
 {
@@ -2491,7 +2718,9 @@ static inline icd_status_t cubeacp_receive_estimated_gyro_bias(
     }
     return cubeacp_estimated_gyro_bias_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_INNOVATION_VECTOR)
 /** Requests Estimation Innovation Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_innovation_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2508,7 +2737,9 @@ static inline icd_status_t cubeacp_receive_estimation_innovation_vector(
     }
     return cubeacp_estimation_innovation_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_QUATERNION_ERROR_VECTOR)
 /** Requests Quaternion Error Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_quaternion_error_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2525,7 +2756,9 @@ static inline icd_status_t cubeacp_receive_quaternion_error_vector(
     }
     return cubeacp_quaternion_error_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_QUATERNION_COVARIANCE)
 /** Requests Quaternion Covariance, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_quaternion_covariance(cubeacp_client_t *client, uint32_t now)
 {
@@ -2542,7 +2775,9 @@ static inline icd_status_t cubeacp_receive_quaternion_covariance(
     }
     return cubeacp_quaternion_covariance_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ANGULAR_RATE_COVARIANCE)
 /** Requests Angular Rate Covariance, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_angular_rate_covariance(cubeacp_client_t *client, uint32_t now)
 {
@@ -2559,7 +2794,9 @@ static inline icd_status_t cubeacp_receive_angular_rate_covariance(
     }
     return cubeacp_angular_rate_covariance_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CAM2_SENSOR)
 /** Requests Raw Cam2 Sensor, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_cam2_sensor(cubeacp_client_t *client, uint32_t now)
 {
@@ -2574,7 +2811,9 @@ static inline icd_status_t cubeacp_receive_raw_cam2_sensor(cubeacp_raw_cam2_sens
     }
     return cubeacp_raw_cam2_sensor_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CAM1_SENSOR)
 /** Requests Raw Cam1 Sensor, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_cam1_sensor(cubeacp_client_t *client, uint32_t now)
 {
@@ -2589,7 +2828,9 @@ static inline icd_status_t cubeacp_receive_raw_cam1_sensor(cubeacp_raw_cam1_sens
     }
     return cubeacp_raw_cam1_sensor_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CSS_1_TO_6)
 /** Requests Raw CSS 1 to 6, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_css_1_to_6(cubeacp_client_t *client, uint32_t now)
 {
@@ -2604,7 +2845,9 @@ static inline icd_status_t cubeacp_receive_raw_css_1_to_6(cubeacp_raw_css_1_to_6
     }
     return cubeacp_raw_css_1_to_6_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CSS_7_TO_10)
 /** Requests Raw CSS 7 to 10, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_css_7_to_10(cubeacp_client_t *client, uint32_t now)
 {
@@ -2619,7 +2862,9 @@ static inline icd_status_t cubeacp_receive_raw_css_7_to_10(cubeacp_raw_css_7_to_
     }
     return cubeacp_raw_css_7_to_10_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_MAGNETOMETER)
 /** Requests Raw Magnetometer, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_magnetometer(cubeacp_client_t *client, uint32_t now)
 {
@@ -2636,7 +2881,9 @@ static inline icd_status_t cubeacp_receive_raw_magnetometer(
     }
     return cubeacp_raw_magnetometer_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE1_CURRENTS)
 /** Requests CubeSense1 Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense1_currents(cubeacp_client_t *client, uint32_t now)
 {
@@ -2653,7 +2900,9 @@ static inline icd_status_t cubeacp_receive_cubesense1_currents(
     }
     return cubeacp_cubesense1_currents_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBECONTROL_CURRENTS)
 /** Requests CubeControl Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubecontrol_currents(cubeacp_client_t *client, uint32_t now)
 {
@@ -2672,7 +2921,9 @@ static inline icd_status_t cubeacp_receive_cubecontrol_currents(
     }
     return cubeacp_cubecontrol_currents_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_CURRENTS)
 /** Requests Wheel Currents, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_wheel_currents(cubeacp_client_t *client, uint32_t now)
 {
@@ -2687,7 +2938,9 @@ static inline icd_status_t cubeacp_receive_wheel_currents(cubeacp_wheel_currents
     }
     return cubeacp_wheel_currents_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_TEMPERATURES)
 /** Requests ADCS Temperatures, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_temperatures(cubeacp_client_t *client, uint32_t now)
 {
@@ -2704,7 +2957,9 @@ static inline icd_status_t cubeacp_receive_adcs_temperatures(
     }
     return cubeacp_adcs_temperatures_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RATE_SENSOR_TEMPERATURES)
 /** Requests Rate sensor temperatures, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_rate_sensor_temperatures(cubeacp_client_t *client, uint32_t now)
 {
@@ -2721,7 +2976,9 @@ static inline icd_status_t cubeacp_receive_rate_sensor_temperatures(
     }
     return cubeacp_rate_sensor_temperatures_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_STATUS)
 /** Requests Raw GPS Status, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_status(cubeacp_client_t *client, uint32_t now)
 {
@@ -2736,7 +2993,9 @@ static inline icd_status_t cubeacp_receive_raw_gps_status(cubeacp_raw_gps_status
     }
     return cubeacp_raw_gps_status_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_TIME)
 /** Requests Raw GPS Time, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_time(cubeacp_client_t *client, uint32_t now)
 {
@@ -2751,7 +3010,9 @@ static inline icd_status_t cubeacp_receive_raw_gps_time(cubeacp_raw_gps_time_t *
     }
     return cubeacp_raw_gps_time_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_X)
 /** Requests Raw GPS X, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_x(cubeacp_client_t *client, uint32_t now)
 {
@@ -2766,7 +3027,9 @@ static inline icd_status_t cubeacp_receive_raw_gps_x(cubeacp_raw_gps_x_t *messag
     }
     return cubeacp_raw_gps_x_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_Y)
 /** Requests Raw GPS Y, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_y(cubeacp_client_t *client, uint32_t now)
 {
@@ -2781,7 +3044,9 @@ static inline icd_status_t cubeacp_receive_raw_gps_y(cubeacp_raw_gps_y_t *messag
     }
     return cubeacp_raw_gps_y_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_Z)
 /** Requests Raw GPS Z, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_z(cubeacp_client_t *client, uint32_t now)
 {
@@ -2796,7 +3061,9 @@ static inline icd_status_t cubeacp_receive_raw_gps_z(cubeacp_raw_gps_z_t *messag
     }
     return cubeacp_raw_gps_z_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_BODY_VECTOR)
 /** Requests Star 1 Body Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_body_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2813,7 +3080,9 @@ static inline icd_status_t cubeacp_receive_star_1_body_vector(
     }
     return cubeacp_star_1_body_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_BODY_VECTOR)
 /** Requests Star 2 Body Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_body_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2830,7 +3099,9 @@ static inline icd_status_t cubeacp_receive_star_2_body_vector(
     }
     return cubeacp_star_2_body_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_BODY_VECTOR)
 /** Requests Star 3 Body Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_body_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2847,7 +3118,9 @@ static inline icd_status_t cubeacp_receive_star_3_body_vector(
     }
     return cubeacp_star_3_body_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_ORBIT_VECTOR)
 /** Requests Star 1 Orbit Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2864,7 +3137,9 @@ static inline icd_status_t cubeacp_receive_star_1_orbit_vector(
     }
     return cubeacp_star_1_orbit_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_ORBIT_VECTOR)
 /** Requests Star 2 Orbit Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2881,7 +3156,9 @@ static inline icd_status_t cubeacp_receive_star_2_orbit_vector(
     }
     return cubeacp_star_2_orbit_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_ORBIT_VECTOR)
 /** Requests Star 3 Orbit Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_orbit_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -2898,7 +3175,9 @@ static inline icd_status_t cubeacp_receive_star_3_orbit_vector(
     }
     return cubeacp_star_3_orbit_vector_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_MAGNITUDE)
 /** Requests Star Magnitude, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_magnitude(cubeacp_client_t *client, uint32_t now)
 {
@@ -2913,7 +3192,9 @@ static inline icd_status_t cubeacp_receive_star_magnitude(cubeacp_star_magnitude
     }
     return cubeacp_star_magnitude_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_PERFORMANCE1)
 /** Requests Star Performance1, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_performance1(cubeacp_client_t *client, uint32_t now)
 {
@@ -2930,7 +3211,9 @@ static inline icd_status_t cubeacp_receive_star_performance1(
     }
     return cubeacp_star_performance1_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_TIMING)
 /** Requests Star Timing, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_timing(cubeacp_client_t *client, uint32_t now)
 {
@@ -2945,7 +3228,9 @@ static inline icd_status_t cubeacp_receive_star_timing(cubeacp_star_timing_t *me
     }
     return cubeacp_star_timing_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_STATE)
 /** Requests ADCS State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_state(cubeacp_client_t *client, uint32_t now)
 {
@@ -2960,7 +3245,9 @@ static inline icd_status_t cubeacp_receive_adcs_state(cubeacp_adcs_state_t *mess
     }
     return cubeacp_adcs_state_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_MEASUREMENTS)
 /** Requests ADCS Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_measurements(cubeacp_client_t *client, uint32_t now)
 {
@@ -2977,7 +3264,9 @@ static inline icd_status_t cubeacp_receive_adcs_measurements(
     }
     return cubeacp_adcs_measurements_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ACTUATOR_COMMANDS)
 /** Requests Actuator Commands, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_actuator_commands(cubeacp_client_t *client, uint32_t now)
 {
@@ -2994,7 +3283,9 @@ static inline icd_status_t cubeacp_receive_actuator_commands(
     }
     return cubeacp_actuator_commands_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_DATA)
 /** Requests Estimation Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_data(cubeacp_client_t *client, uint32_t now)
 {
@@ -3009,7 +3300,9 @@ static inline icd_status_t cubeacp_receive_estimation_data(cubeacp_estimation_da
     }
     return cubeacp_estimation_data_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_SENSOR_MEASUREMENTS)
 /** Requests Raw Sensor Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_sensor_measurements(cubeacp_client_t *client, uint32_t now)
 {
@@ -3026,7 +3319,9 @@ static inline icd_status_t cubeacp_receive_raw_sensor_measurements(
     }
     return cubeacp_raw_sensor_measurements_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_POWER_AND_TEMPERATURE)
 /** Requests Power and Temperature Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_power_and_temperature(cubeacp_client_t *client, uint32_t now)
 {
@@ -3045,7 +3340,9 @@ static inline icd_status_t cubeacp_receive_power_and_temperature(
     }
     return cubeacp_power_and_temperature_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_EXECUTION_TIMES)
 /** Requests Adcs Execution Times, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_execution_times(cubeacp_client_t *client, uint32_t now)
 {
@@ -3062,7 +3359,9 @@ static inline icd_status_t cubeacp_receive_adcs_execution_times(
     }
     return cubeacp_adcs_execution_times_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_MISC_CURRENTS)
 /** Requests ADCS Misc Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_misc_currents(cubeacp_client_t *client, uint32_t now)
 {
@@ -3079,7 +3378,9 @@ static inline icd_status_t cubeacp_receive_adcs_misc_currents(
     }
     return cubeacp_adcs_misc_currents_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINE_ANGULAR_RATES)
 /** Requests Fine Estimated Angular Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_fine_angular_rates(cubeacp_client_t *client, uint32_t now)
 {
@@ -3096,7 +3397,9 @@ static inline icd_status_t cubeacp_receive_fine_angular_rates(
     }
     return cubeacp_fine_angular_rates_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_MEASUREMENTS)
 /** Requests Raw GPS Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_gps_measurements(cubeacp_client_t *client, uint32_t now)
 {
@@ -3113,7 +3416,9 @@ static inline icd_status_t cubeacp_receive_raw_gps_measurements(
     }
     return cubeacp_raw_gps_measurements_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_STAR_TRACKER)
 /** Requests Raw Star Tracker, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_star_tracker(cubeacp_client_t *client, uint32_t now)
 {
@@ -3130,7 +3435,9 @@ static inline icd_status_t cubeacp_receive_raw_star_tracker(
     }
     return cubeacp_raw_star_tracker_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_RAW_DATA)
 /** Requests Star 1 Raw Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_1_raw_data(cubeacp_client_t *client, uint32_t now)
 {
@@ -3145,7 +3452,9 @@ static inline icd_status_t cubeacp_receive_star_1_raw_data(cubeacp_star_1_raw_da
     }
     return cubeacp_star_1_raw_data_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_RAW_DATA)
 /** Requests Star 2 Raw Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_2_raw_data(cubeacp_client_t *client, uint32_t now)
 {
@@ -3160,7 +3469,9 @@ static inline icd_status_t cubeacp_receive_star_2_raw_data(cubeacp_star_2_raw_da
     }
     return cubeacp_star_2_raw_data_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_RAW_DATA)
 /** Requests Star 3 Raw Data, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_3_raw_data(cubeacp_client_t *client, uint32_t now)
 {
@@ -3175,7 +3486,9 @@ static inline icd_status_t cubeacp_receive_star_3_raw_data(cubeacp_star_3_raw_da
     }
     return cubeacp_star_3_raw_data_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS)
 /** Requests Secondary Magnetometer Raw Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_secondary_magnetometer_raw_measurements(
     cubeacp_client_t *client,
@@ -3197,7 +3510,9 @@ static inline icd_status_t cubeacp_receive_secondary_magnetometer_raw_measuremen
     }
     return cubeacp_secondary_magnetometer_raw_measurements_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_RATE_SENSOR)
 /** Requests Raw Rate Sensor, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_raw_rate_sensor(cubeacp_client_t *client, uint32_t now)
 {
@@ -3212,7 +3527,9 @@ static inline icd_status_t cubeacp_receive_raw_rate_sensor(cubeacp_raw_rate_sens
     }
     return cubeacp_raw_rate_sensor_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_QUATERNION)
 /** Requests Estimated Quaternion, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimated_quaternion(cubeacp_client_t *client, uint32_t now)
 {
@@ -3229,7 +3546,9 @@ static inline icd_status_t cubeacp_receive_estimated_quaternion(
     }
     return cubeacp_estimated_quaternion_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ECEF_POSITION)
 /** Requests ECEF Position, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_ecef_position(cubeacp_client_t *client, uint32_t now)
 {
@@ -3244,7 +3563,9 @@ static inline icd_status_t cubeacp_receive_ecef_position(cubeacp_ecef_position_t
     }
     return cubeacp_ecef_position_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ACP_EXECUTION_STATE)
 /** Requests ACP Execution State, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_acp_execution_state(cubeacp_client_t *client, uint32_t now)
 {
@@ -3261,7 +3582,9 @@ static inline icd_status_t cubeacp_receive_acp_execution_state(
     }
     return cubeacp_acp_execution_state_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_ADCS_STATE_2)
 /** Requests Current ADCS State 2, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_current_adcs_state_2(cubeacp_client_t *client, uint32_t now)
 {
@@ -3278,7 +3601,9 @@ static inline icd_status_t cubeacp_receive_current_adcs_state_2(
     }
     return cubeacp_current_adcs_state_2_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_TLES)
 /** Requests ASGP4 TLEs, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_asgp4_tles(cubeacp_client_t *client, uint32_t now)
 {
@@ -3293,7 +3618,9 @@ static inline icd_status_t cubeacp_receive_asgp4_tles(cubeacp_asgp4_tles_t *mess
     }
     return cubeacp_asgp4_tles_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESTAR_ESTIMATED_RATES)
 /** Requests CubeStar Estimated Rates, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubestar_estimated_rates(cubeacp_client_t *client, uint32_t now)
 {
@@ -3310,7 +3637,9 @@ static inline icd_status_t cubeacp_receive_cubestar_estimated_rates(
     }
     return cubeacp_cubestar_estimated_rates_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESTAR_ESTIMATED_QUATERNION)
 /** Requests CubeStar Estimated Quaternion, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubestar_estimated_quaternion(cubeacp_client_t *client, uint32_t now)
 {
@@ -3327,7 +3656,9 @@ static inline icd_status_t cubeacp_receive_cubestar_estimated_quaternion(
     }
     return cubeacp_cubestar_estimated_quaternion_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_PERFORMANCE2)
 /** Requests Star Performance2, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_star_performance2(cubeacp_client_t *client, uint32_t now)
 {
@@ -3344,7 +3675,9 @@ static inline icd_status_t cubeacp_receive_star_performance2(
     }
     return cubeacp_star_performance2_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE2_CURRENTS)
 /** Requests CubeSense2 Current Measurements, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense2_currents(cubeacp_client_t *client, uint32_t now)
 {
@@ -3361,7 +3694,9 @@ static inline icd_status_t cubeacp_receive_cubesense2_currents(
     }
     return cubeacp_cubesense2_currents_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION)
 /** Requests Status of Image Capture and Save Operation, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_status_of_image_capture_and_save_operation(
     cubeacp_client_t *client,
@@ -3383,7 +3718,9 @@ static inline icd_status_t cubeacp_receive_status_of_image_capture_and_save_oper
     }
     return cubeacp_status_of_image_capture_and_save_operation_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MAGNETORQUER_CONFIGURATION)
 /** Requests Set Magnetorquer Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_magnetorquer_configuration(cubeacp_client_t *client, uint32_t now)
 {
@@ -3400,7 +3737,9 @@ static inline icd_status_t cubeacp_receive_set_magnetorquer_configuration(
     }
     return cubeacp_set_magnetorquer_configuration_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_WHEEL_CONFIGURATION)
 /** Requests Set Wheel Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_wheel_configuration(cubeacp_client_t *client, uint32_t now)
 {
@@ -3417,7 +3756,9 @@ static inline icd_status_t cubeacp_receive_set_wheel_configuration(
     }
     return cubeacp_set_wheel_configuration_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_RATE_GYRO_CONFIGURATION)
 /** Requests Set Rate Gyro Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_rate_gyro_configuration(cubeacp_client_t *client, uint32_t now)
 {
@@ -3434,7 +3775,9 @@ static inline icd_status_t cubeacp_receive_set_rate_gyro_configuration(
     }
     return cubeacp_set_rate_gyro_configuration_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CSS_CONFIGURATION)
 /** Requests CSS Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_css_configuration(cubeacp_client_t *client, uint32_t now)
 {
@@ -3451,7 +3794,9 @@ static inline icd_status_t cubeacp_receive_css_configuration(
     }
     return cubeacp_css_configuration_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_POWER_CONTROL)
 /** Requests ADCS Power Control, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_power_control(cubeacp_client_t *client, uint32_t now)
 {
@@ -3468,7 +3813,9 @@ static inline icd_status_t cubeacp_receive_adcs_power_control(
     }
     return cubeacp_adcs_power_control_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMANDED_ATTITUDE_ANGLES)
 /** Requests Commanded Attitude Angles, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_commanded_attitude_angles(cubeacp_client_t *client, uint32_t now)
 {
@@ -3485,7 +3832,9 @@ static inline icd_status_t cubeacp_receive_commanded_attitude_angles(
     }
     return cubeacp_commanded_attitude_angles_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRACKING_CONTROLLER_TARGET_REFERENCE)
 /** Requests Tracking Controller Target Reference, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_tracking_controller_target_reference(cubeacp_client_t *client, uint32_t now)
 {
@@ -3505,7 +3854,9 @@ static inline icd_status_t cubeacp_receive_tracking_controller_target_reference(
     }
     return cubeacp_tracking_controller_target_reference_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_STAR_TRACKER_CONFIGURATION)
 /** Requests Set Star Tracker Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_star_tracker_configuration(cubeacp_client_t *client, uint32_t now)
 {
@@ -3522,7 +3873,9 @@ static inline icd_status_t cubeacp_receive_set_star_tracker_configuration(
     }
     return cubeacp_set_star_tracker_configuration_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE_CONFIGURATION)
 /** Requests CubeSense Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_cubesense_configuration(cubeacp_client_t *client, uint32_t now)
 {
@@ -3539,7 +3892,9 @@ static inline icd_status_t cubeacp_receive_cubesense_configuration(
     }
     return cubeacp_cubesense_configuration_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETOMETER_CONFIGURATION)
 /** Requests Magnetometer Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_magnetometer_configuration(cubeacp_client_t *client, uint32_t now)
 {
@@ -3556,7 +3911,9 @@ static inline icd_status_t cubeacp_receive_magnetometer_configuration(
     }
     return cubeacp_magnetometer_configuration_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_REDUNDANT_MAG_CONFIGURATION)
 /** Requests Redundant Magnetometer Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_redundant_mag_configuration(cubeacp_client_t *client, uint32_t now)
 {
@@ -3576,7 +3933,9 @@ static inline icd_status_t cubeacp_receive_redundant_mag_configuration(
     }
     return cubeacp_redundant_mag_configuration_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_CONFIGURATION)
 /** Requests ADCS Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_configuration(cubeacp_client_t *client, uint32_t now)
 {
@@ -3593,7 +3952,9 @@ static inline icd_status_t cubeacp_receive_adcs_configuration(
     }
     return cubeacp_adcs_configuration_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SGP4_ORBIT_PARAMETERS)
 /** Requests SGP4 Orbit Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sgp4_orbit_parameters(cubeacp_client_t *client, uint32_t now)
 {
@@ -3610,7 +3971,9 @@ static inline icd_status_t cubeacp_receive_sgp4_orbit_parameters(
     }
     return cubeacp_sgp4_orbit_parameters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_DETUMBLING_CONTROL_PARAMETERS)
 /** Requests Set Detumbling Control Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_detumbling_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
@@ -3629,7 +3992,9 @@ static inline icd_status_t cubeacp_receive_set_detumbling_control_parameters(
     }
     return cubeacp_set_detumbling_control_parameters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_Y_WHEEL_CONTROL_PARAMETERS)
 /** Requests Set Y-Wheel Control Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_y_wheel_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
@@ -3646,7 +4011,9 @@ static inline icd_status_t cubeacp_receive_set_y_wheel_control_parameters(
     }
     return cubeacp_set_y_wheel_control_parameters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_REACTION_WHEEL_CONTROL_PARAMETERS)
 /** Requests Set Reaction Wheel Control Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_reaction_wheel_control_parameters(cubeacp_client_t *client, uint32_t now)
 {
@@ -3666,7 +4033,9 @@ static inline icd_status_t cubeacp_receive_set_reaction_wheel_control_parameters
     }
     return cubeacp_set_reaction_wheel_control_parameters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS)
 /** Requests Set Tracking Controller Gain Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_set_tracking_controller_gain_parameters(
     cubeacp_client_t *client,
@@ -3688,7 +4057,9 @@ static inline icd_status_t cubeacp_receive_set_tracking_controller_gain_paramete
     }
     return cubeacp_set_tracking_controller_gain_parameters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MOMENT_OF_INERTIA_MATRIX)
 /** Requests Moment of Inertia Matrix, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_moment_of_inertia_matrix(cubeacp_client_t *client, uint32_t now)
 {
@@ -3705,7 +4076,9 @@ static inline icd_status_t cubeacp_receive_moment_of_inertia_matrix(
     }
     return cubeacp_moment_of_inertia_matrix_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_PARAMETERS)
 /** Requests Estimation Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_estimation_parameters(cubeacp_client_t *client, uint32_t now)
 {
@@ -3722,7 +4095,9 @@ static inline icd_status_t cubeacp_receive_estimation_parameters(
     }
     return cubeacp_estimation_parameters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_SYSTEM_CONFIGURATION)
 /** Requests ADCS System Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_adcs_system_configuration(cubeacp_client_t *client, uint32_t now)
 {
@@ -3739,7 +4114,9 @@ static inline icd_status_t cubeacp_receive_adcs_system_configuration(
     }
     return cubeacp_adcs_system_configuration_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS)
 /** Requests User-coded Controller and Estimator Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_user_coded_controller_and_estimator_parameters(
     cubeacp_client_t *client,
@@ -3761,7 +4138,9 @@ static inline icd_status_t cubeacp_receive_user_coded_controller_and_estimator_p
     }
     return cubeacp_user_coded_controller_and_estimator_parameters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_AUGMENTED_SGP4_PARAMETERS)
 /** Requests Augmented-SGP4 Parameters, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_augmented_sgp4_parameters(cubeacp_client_t *client, uint32_t now)
 {
@@ -3778,7 +4157,9 @@ static inline icd_status_t cubeacp_receive_augmented_sgp4_parameters(
     }
     return cubeacp_augmented_sgp4_parameters_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG1_CONFIGURATION)
 /** Requests SD Log1 Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_log1_configuration(cubeacp_client_t *client, uint32_t now)
 {
@@ -3795,7 +4176,9 @@ static inline icd_status_t cubeacp_receive_sd_log1_configuration(
     }
     return cubeacp_sd_log1_configuration_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG2_CONFIGURATION)
 /** Requests SD Log2 Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_sd_log2_configuration(cubeacp_client_t *client, uint32_t now)
 {
@@ -3812,7 +4195,9 @@ static inline icd_status_t cubeacp_receive_sd_log2_configuration(
     }
     return cubeacp_sd_log2_configuration_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UART_LOG_CONFIGURATION)
 /** Requests UART Log Configuration, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_uart_log_configuration(cubeacp_client_t *client, uint32_t now)
 {
@@ -3829,7 +4214,9 @@ static inline icd_status_t cubeacp_receive_uart_log_configuration(
     }
     return cubeacp_uart_log_configuration_decode(message, event->data, event->length);
 }
+#endif
 
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INERTIAL_POINTING_REFERENCE_VECTOR)
 /** Requests Inertial Pointing Reference Vector, as icd_client_request(). */
 static inline icd_status_t cubeacp_request_inertial_pointing_reference_vector(cubeacp_client_t *client, uint32_t now)
 {
@@ -3848,5 +4235,6 @@ static inline icd_status_t cubeacp_receive_inertial_pointing_reference_vector(
     }
     return cubeacp_inertial_pointing_reference_vector_decode(message, event->data, event->length);
 }
+#endif
 
 #endif /* CUBEACP_CLIENT_H */

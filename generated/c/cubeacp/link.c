@@ -19,206 +19,592 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         "common",
     };
     static const icd_message_t telecommands[] = {
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET)
         /*
          * Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for, and
          * one that comes is accepted.
          */
         {1u, ICD_EXPECTS_RESET, 1u}, /* Reset */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_UNIX_TIME)
         {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Current Unix Time */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CACHE_ENABLED_STATE)
         {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u}, /* Cache enabled state */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_LOG_POINTER)
         {4u, ICD_ACKNOWLEDGED, 0u}, /* Reset Log Pointer */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADVANCE_LOG_POINTER)
         {5u, ICD_ACKNOWLEDGED, 0u}, /* Advance Log Pointer */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_BOOT_REGISTERS)
         {6u, ICD_ACKNOWLEDGED, 0u}, /* Reset Boot Registers */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_DEPLOY_MAGNETOMETER_BOOM)
         {7u, ICD_ACKNOWLEDGED, 1u}, /* Deploy Magnetometer Boom */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_SCRUB_PARAMETERS)
         {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* SRAM Scrub Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UNIX_TIME_SAVE_TO_FLASH)
         {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* Unix Time Save to Flash */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_ADCS_RUN_MODE)
         {10u, ICD_ACKNOWLEDGED, 1u}, /* ADCS Run Mode */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_POWER_CONTROL)
         {11u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u}, /* ADCS Power Control */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CLEAR_ERRORS)
         {12u, ICD_ACKNOWLEDGED, 1u}, /* Clear Errors */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_ATTITUDE_CONTROL_MODE)
         {13u, ICD_ACKNOWLEDGED, 3u}, /* Set Attitude Control Mode */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_ATTITUDE_ESTIMATION_MODE)
         {14u, ICD_ACKNOWLEDGED, 1u}, /* Set Attitude Estimation Mode */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMANDED_ATTITUDE_ANGLES)
         {15u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Commanded Attitude Angles */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MAGNETORQUER_OUTPUT)
         {16u, ICD_ACKNOWLEDGED, 6u}, /* Set Magnetorquer Output */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_WHEEL_SPEED)
         {17u, ICD_ACKNOWLEDGED, 6u}, /* Set Wheel Speed */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRIGGER_ADCS_LOOP)
         {18u, ICD_ACKNOWLEDGED, 0u}, /* Trigger ADCS Loop */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRIGGER_SIMULATED_LOOP)
         {19u, ICD_ACKNOWLEDGED, 127u}, /* Trigger ADCS Loop with Simulated Sensor Data */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_CONFIGURATION)
         {20u, ICD_ACKNOWLEDGED | ICD_SETTING, 504u}, /* ADCS Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MAGNETORQUER_CONFIGURATION)
         {21u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u}, /* Set Magnetorquer Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_WHEEL_CONFIGURATION)
         {22u, ICD_ACKNOWLEDGED | ICD_SETTING, 4u}, /* Set Wheel Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_RATE_GYRO_CONFIGURATION)
         {23u, ICD_ACKNOWLEDGED | ICD_SETTING, 10u}, /* Set Rate Gyro Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CSS_CONFIGURATION)
         {24u, ICD_ACKNOWLEDGED | ICD_SETTING, 21u}, /* CSS Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE_CONFIGURATION)
         {25u, ICD_ACKNOWLEDGED | ICD_SETTING, 112u}, /* CubeSense Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETOMETER_CONFIGURATION)
         {26u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Magnetometer Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_PARAMETERS)
         {27u, ICD_ACKNOWLEDGED | ICD_SETTING, 31u}, /* Estimation Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_AUGMENTED_SGP4_PARAMETERS)
         {28u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Augmented-SGP4 Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS)
         {29u, ICD_ACKNOWLEDGED | ICD_SETTING, 96u}, /* User-coded Controller and Estimator Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_SYSTEM_CONFIGURATION)
         {30u, ICD_ACKNOWLEDGED | ICD_SETTING, 173u}, /* ADCS System Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_RUN_MODE)
         {31u, ICD_ACKNOWLEDGED, 1u}, /* ASGP4 Run Mode */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_TRIGGER)
         {32u, ICD_ACKNOWLEDGED, 0u}, /* ASGP4 Trigger */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FORMAT_SD_CARD) || !defined(ICDGEN_NO_FILES)
         {33u, ICD_ACKNOWLEDGED, 1u}, /* Format SD card */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INERTIAL_POINTING_REFERENCE_VECTOR)
         {34u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Inertial Pointing Reference Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_REDUNDANT_MAG_CONFIGURATION)
         {36u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Redundant Magnetometer Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_STAR_TRACKER_CONFIGURATION)
         {37u, ICD_ACKNOWLEDGED | ICD_SETTING, 53u}, /* Set Star Tracker Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_DETUMBLING_CONTROL_PARAMETERS)
         {38u, ICD_ACKNOWLEDGED | ICD_SETTING, 14u}, /* Set Detumbling Control Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_Y_WHEEL_CONTROL_PARAMETERS)
         {39u, ICD_ACKNOWLEDGED | ICD_SETTING, 20u}, /* Set Y-Wheel Control Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_REACTION_WHEEL_CONTROL_PARAMETERS)
         {40u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* Set Reaction Wheel Control Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MOMENT_OF_INERTIA_MATRIX)
         {41u, ICD_ACKNOWLEDGED | ICD_SETTING, 24u}, /* Moment of Inertia Matrix */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SGP4_ORBIT_PARAMETERS)
         {45u, ICD_ACKNOWLEDGED | ICD_SETTING, 64u}, /* SGP4 Orbit Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS)
         {54u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* Set Tracking Controller Gain Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRACKING_CONTROLLER_TARGET_REFERENCE)
         {55u, ICD_ACKNOWLEDGED | ICD_SETTING, 12u}, /* Tracking Controller Target Reference */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MODE_OF_MAGNETOMETER_OPERATION)
         {56u, ICD_ACKNOWLEDGED, 1u}, /* Set Mode of Magnetometer Operation */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CONVERT_TO_JPG_FILE)
         {57u, ICD_ACKNOWLEDGED, 3u}, /* Convert to JPG file */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_CONFIGURATION)
         {63u, ICD_ACKNOWLEDGED, 0u}, /* Save Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_ORBIT_PARAMETERS)
         {64u, ICD_ACKNOWLEDGED, 0u}, /* Save Orbit Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SAVE_IMAGE)
         {80u, ICD_ACKNOWLEDGED, 2u}, /* Save Image */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG1_CONFIGURATION)
         {104u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* SD Log1 Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG2_CONFIGURATION)
         {105u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* SD Log2 Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UART_LOG_CONFIGURATION)
         {106u, ICD_ACKNOWLEDGED | ICD_SETTING, 12u}, /* UART Log Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ERASE_FILE) || !defined(ICDGEN_NO_FILES)
         {108u, ICD_ACKNOWLEDGED, 3u}, /* Erase File */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_LOAD_FILE_DOWNLOAD_BLOCK) || !defined(ICDGEN_NO_FILES)
         {112u, ICD_ACKNOWLEDGED, 8u}, /* Load File Download Block */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADVANCE_FILE_LIST_READ_POINTER) || !defined(ICDGEN_NO_FILES)
         {113u, ICD_ACKNOWLEDGED, 0u}, /* Advance File List Read Pointer */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INITIATE_FILE_UPLOAD)
         {114u, ICD_ACKNOWLEDGED, 2u}, /* Initiate File Upload */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_UPLOAD_PACKET)
         {115u, 0u, 22u}, /* File Upload Packet */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINALIZE_UPLOAD_BLOCK)
         {116u, ICD_ACKNOWLEDGED, 7u}, /* Finalize Upload Block */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_UPLOAD_BLOCK)
         {117u, ICD_ACKNOWLEDGED, 0u}, /* Reset Upload Block */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RESET_FILE_LIST_READ_POINTER) || !defined(ICDGEN_NO_FILES)
         {118u, ICD_ACKNOWLEDGED, 0u}, /* Reset File List Read Pointer */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INITIATE_DOWNLOAD_BURST) || !defined(ICDGEN_NO_FILES)
         {119u, ICD_ACKNOWLEDGED, 2u}, /* Initiate Download Burst */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_1) || !defined(ICDGEN_NO_FILES)
         {120u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 1 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_2) || !defined(ICDGEN_NO_FILES)
         {121u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 2 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_3) || !defined(ICDGEN_NO_FILES)
         {122u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 3 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_4) || !defined(ICDGEN_NO_FILES)
         {123u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 4 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_5) || !defined(ICDGEN_NO_FILES)
         {124u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 5 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_6) || !defined(ICDGEN_NO_FILES)
         {125u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 6 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_7) || !defined(ICDGEN_NO_FILES)
         {126u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 7 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_8) || !defined(ICDGEN_NO_FILES)
         {127u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 8 */
+#endif
+        {0u, 0u, 0u}, /* the end */
     };
     static const icd_message_t telemetry[] = {
         {128u, 0u, 8u}, /* Identification */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BOOT_AND_RUNNING_PROGRAM_STATUS)
         {129u, 0u, 6u}, /* Boot And Running Program Status */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BOOT_INDEX_AND_STATUS)
         {130u, 0u, 2u}, /* Boot Index and Status */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CACHE_ENABLED_STATE)
         {131u, 0u, 1u}, /* Cache enabled state */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_ADCS_STATE)
         {132u, 0u, 6u}, /* Current ADCS State */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_JPG_CONVERSION_PROGRESS)
         {133u, 0u, 3u}, /* JPG Conversion Progress */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_SCRUB_PARAMETERS)
         {134u, 0u, 2u}, /* SRAM Scrub Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STATE)
         {135u, 0u, 1u}, /* CubeACP State */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_MAGNETORQUER_CONFIGURATION)
         {136u, 0u, 3u}, /* Set Magnetorquer Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_WHEEL_CONFIGURATION)
         {137u, 0u, 4u}, /* Set Wheel Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_RATE_GYRO_CONFIGURATION)
         {138u, 0u, 10u}, /* Set Rate Gyro Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CSS_CONFIGURATION)
         {139u, 0u, 21u}, /* CSS Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_UNIX_TIME)
         {140u, 0u, 6u}, /* Current Unix Time */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_LAST_LOGGED_EVENT)
         {141u, 0u, 6u}, /* Last Logged Event */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SRAM_LATCHUP_COUNTERS)
         {142u, 0u, 6u}, /* SRAM Latchup counters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_EDAC_ERROR_COUNTERS)
         {143u, 0u, 6u}, /* EDAC Error Counters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMUNICATION_STATUS)
         {144u, 0u, 6u}, /* Communication Status */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UNIX_TIME_SAVE_TO_FLASH)
         {145u, 0u, 2u}, /* Unix Time Save to Flash */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_ATTITUDE_ANGLES)
         {146u, 0u, 6u}, /* Estimated Attitude Angles */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_ANGULAR_RATES)
         {147u, 0u, 6u}, /* Estimated Angular Rates */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_POSITION_ECI)
         {148u, 0u, 6u}, /* Satellite Position (ECI) */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_VELOCITY_ECI)
         {149u, 0u, 6u}, /* Satellite Velocity (ECI) */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SATELLITE_POSITION_LLH)
         {150u, 0u, 6u}, /* Satellite Position (LLH) */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETIC_FIELD_VECTOR)
         {151u, 0u, 6u}, /* Magnetic Field Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COARSE_SUN_VECTOR)
         {152u, 0u, 6u}, /* Coarse Sun Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINE_SUN_VECTOR)
         {153u, 0u, 6u}, /* Fine Sun Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_NADIR_VECTOR)
         {154u, 0u, 6u}, /* Nadir Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RATE_SENSOR_RATES)
         {155u, 0u, 6u}, /* Rate Sensor Rates */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_SPEED)
         {156u, 0u, 6u}, /* Wheel Speed */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETORQUER_COMMAND)
         {157u, 0u, 6u}, /* Magnetorquer Command */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_SPEED_COMMANDS)
         {158u, 0u, 6u}, /* Wheel Speed Commands */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR)
         {159u, 0u, 6u}, /* IGRF Modelled Magnetic Field Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MODELLED_SUN_VECTOR)
         {160u, 0u, 6u}, /* Modelled Sun Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_GYRO_BIAS)
         {161u, 0u, 6u}, /* Estimated Gyro Bias */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_INNOVATION_VECTOR)
         {162u, 0u, 6u}, /* Estimation Innovation Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_QUATERNION_ERROR_VECTOR)
         {163u, 0u, 6u}, /* Quaternion Error Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_QUATERNION_COVARIANCE)
         {164u, 0u, 6u}, /* Quaternion Covariance */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ANGULAR_RATE_COVARIANCE)
         {165u, 0u, 6u}, /* Angular Rate Covariance */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CAM2_SENSOR)
         {166u, 0u, 6u}, /* Raw Cam2 Sensor */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CAM1_SENSOR)
         {167u, 0u, 6u}, /* Raw Cam1 Sensor */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CSS_1_TO_6)
         {168u, 0u, 6u}, /* Raw CSS 1 to 6 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_CSS_7_TO_10)
         {169u, 0u, 6u}, /* Raw CSS 7 to 10 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_MAGNETOMETER)
         {170u, 0u, 6u}, /* Raw Magnetometer */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE1_CURRENTS)
         {171u, 0u, 4u}, /* CubeSense1 Current Measurements */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBECONTROL_CURRENTS)
         {172u, 0u, 6u}, /* CubeControl Current Measurements */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_WHEEL_CURRENTS)
         {173u, 0u, 6u}, /* Wheel Currents */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_TEMPERATURES)
         {174u, 0u, 6u}, /* ADCS Temperatures */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RATE_SENSOR_TEMPERATURES)
         {175u, 0u, 6u}, /* Rate sensor temperatures */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_STATUS)
         {176u, 0u, 6u}, /* Raw GPS Status */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_TIME)
         {177u, 0u, 6u}, /* Raw GPS Time */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_X)
         {178u, 0u, 6u}, /* Raw GPS X */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_Y)
         {179u, 0u, 6u}, /* Raw GPS Y */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_Z)
         {180u, 0u, 6u}, /* Raw GPS Z */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_BODY_VECTOR)
         {181u, 0u, 6u}, /* Star 1 Body Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_BODY_VECTOR)
         {182u, 0u, 6u}, /* Star 2 Body Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_BODY_VECTOR)
         {183u, 0u, 6u}, /* Star 3 Body Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_ORBIT_VECTOR)
         {184u, 0u, 6u}, /* Star 1 Orbit Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_ORBIT_VECTOR)
         {185u, 0u, 6u}, /* Star 2 Orbit Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_ORBIT_VECTOR)
         {186u, 0u, 6u}, /* Star 3 Orbit Vector */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_MAGNITUDE)
         {187u, 0u, 6u}, /* Star Magnitude */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_PERFORMANCE1)
         {188u, 0u, 6u}, /* Star Performance1 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_TIMING)
         {189u, 0u, 6u}, /* Star Timing */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_STATE)
         {190u, 0u, 54u}, /* ADCS State */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_MEASUREMENTS)
         {191u, 0u, 72u}, /* ADCS Measurements */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ACTUATOR_COMMANDS)
         {192u, 0u, 12u}, /* Actuator Commands */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_DATA)
         {193u, 0u, 42u}, /* Estimation Data */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_SENSOR_MEASUREMENTS)
         {194u, 0u, 34u}, /* Raw Sensor Measurements */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_POWER_AND_TEMPERATURE)
         {195u, 0u, 38u}, /* Power and Temperature Measurements */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_EXECUTION_TIMES)
         {196u, 0u, 8u}, /* Adcs Execution Times */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_POWER_CONTROL)
         {197u, 0u, 3u}, /* ADCS Power Control */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_MISC_CURRENTS)
         {198u, 0u, 6u}, /* ADCS Misc Current Measurements */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_COMMANDED_ATTITUDE_ANGLES)
         {199u, 0u, 6u}, /* Commanded Attitude Angles */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_TRACKING_CONTROLLER_TARGET_REFERENCE)
         {200u, 0u, 12u}, /* Tracking Controller Target Reference */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FINE_ANGULAR_RATES)
         {201u, 0u, 6u}, /* Fine Estimated Angular Rates */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_STAR_TRACKER_CONFIGURATION)
         {202u, 0u, 53u}, /* Set Star Tracker Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE_CONFIGURATION)
         {203u, 0u, 112u}, /* CubeSense Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MAGNETOMETER_CONFIGURATION)
         {204u, 0u, 30u}, /* Magnetometer Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_REDUNDANT_MAG_CONFIGURATION)
         {205u, 0u, 30u}, /* Redundant Magnetometer Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_CONFIGURATION)
         {206u, 0u, 504u}, /* ADCS Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SGP4_ORBIT_PARAMETERS)
         {207u, 0u, 64u}, /* SGP4 Orbit Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_DETUMBLING_CONTROL_PARAMETERS)
         {208u, 0u, 14u}, /* Set Detumbling Control Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_Y_WHEEL_CONTROL_PARAMETERS)
         {209u, 0u, 20u}, /* Set Y-Wheel Control Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_GPS_MEASUREMENTS)
         {210u, 0u, 36u}, /* Raw GPS Measurements */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_STAR_TRACKER)
         {211u, 0u, 54u}, /* Raw Star Tracker */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_1_RAW_DATA)
         {212u, 0u, 6u}, /* Star 1 Raw Data */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_2_RAW_DATA)
         {213u, 0u, 6u}, /* Star 2 Raw Data */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_3_RAW_DATA)
         {214u, 0u, 6u}, /* Star 3 Raw Data */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS)
         {215u, 0u, 6u}, /* Secondary Magnetometer Raw Measurements */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_RAW_RATE_SENSOR)
         {216u, 0u, 6u}, /* Raw Rate Sensor */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_REACTION_WHEEL_CONTROL_PARAMETERS)
         {217u, 0u, 13u}, /* Set Reaction Wheel Control Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATED_QUATERNION)
         {218u, 0u, 6u}, /* Estimated Quaternion */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ECEF_POSITION)
         {219u, 0u, 6u}, /* ECEF Position */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ACP_EXECUTION_STATE)
         {220u, 0u, 3u}, /* ACP Execution State */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS)
         {221u, 0u, 13u}, /* Set Tracking Controller Gain Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_MOMENT_OF_INERTIA_MATRIX)
         {222u, 0u, 24u}, /* Moment of Inertia Matrix */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ESTIMATION_PARAMETERS)
         {223u, 0u, 31u}, /* Estimation Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CURRENT_ADCS_STATE_2)
         {224u, 0u, 6u}, /* Current ADCS State 2 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ADCS_SYSTEM_CONFIGURATION)
         {225u, 0u, 173u}, /* ADCS System Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS)
         {226u, 0u, 96u}, /* User-coded Controller and Estimator Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_AUGMENTED_SGP4_PARAMETERS)
         {227u, 0u, 30u}, /* Augmented-SGP4 Parameters */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_ASGP4_TLES)
         {228u, 0u, 33u}, /* ASGP4 TLEs */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESTAR_ESTIMATED_RATES)
         {229u, 0u, 6u}, /* CubeStar Estimated Rates */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESTAR_ESTIMATED_QUATERNION)
         {230u, 0u, 6u}, /* CubeStar Estimated Quaternion */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STAR_PERFORMANCE2)
         {231u, 0u, 6u}, /* Star Performance2 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_CUBESENSE2_CURRENTS)
         {232u, 0u, 4u}, /* CubeSense2 Current Measurements */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION)
         {233u, 0u, 2u}, /* Status of Image Capture and Save Operation */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_CARD_FORMAT_ERASE_PROGRESS) || !defined(ICDGEN_NO_FILES)
         {234u, 0u, 1u}, /* SD card format/erase progress */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG1_CONFIGURATION)
         {235u, 0u, 13u}, /* SD Log1 Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_SD_LOG2_CONFIGURATION)
         {236u, 0u, 13u}, /* SD Log2 Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UART_LOG_CONFIGURATION)
         {237u, 0u, 12u}, /* UART Log Configuration */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INERTIAL_POINTING_REFERENCE_VECTOR)
         {238u, 0u, 6u}, /* Inertial Pointing Reference Vector */
+#endif
         {240u, 0u, 4u}, /* Telecommand Acknowledge */
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS)
         {241u, 0u, 22u}, /* File Download Buffer with File Contents */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_DOWNLOAD_BLOCK_READY) || !defined(ICDGEN_NO_FILES)
         {242u, 0u, 5u}, /* Download Block Ready */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_FILE_INFORMATION) || !defined(ICDGEN_NO_FILES)
         {243u, 0u, 12u}, /* File Information */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_INITIALIZE_UPLOAD_COMPLETE)
         {244u, 0u, 1u}, /* Initialize Upload Complete */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_UPLOAD_BLOCK_COMPLETE)
         {245u, 0u, 1u}, /* Upload Block Complete */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_BLOCK_CHECKSUM)
         {246u, 0u, 2u}, /* Block Checksum */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_1) || !defined(ICDGEN_NO_FILES)
         {247u, 0u, 16u}, /* Hole Map 1 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_2) || !defined(ICDGEN_NO_FILES)
         {248u, 0u, 16u}, /* Hole Map 2 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_3) || !defined(ICDGEN_NO_FILES)
         {249u, 0u, 16u}, /* Hole Map 3 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_4) || !defined(ICDGEN_NO_FILES)
         {250u, 0u, 16u}, /* Hole Map 4 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_5) || !defined(ICDGEN_NO_FILES)
         {251u, 0u, 16u}, /* Hole Map 5 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_6) || !defined(ICDGEN_NO_FILES)
         {252u, 0u, 16u}, /* Hole Map 6 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_7) || !defined(ICDGEN_NO_FILES)
         {253u, 0u, 16u}, /* Hole Map 7 */
+#endif
+#if !defined(CUBEACP_CHOSEN) || defined(CUBEACP_WITH_HOLE_MAP_8) || !defined(ICDGEN_NO_FILES)
         {254u, 0u, 16u}, /* Hole Map 8 */
+#endif
+        {0u, 0u, 0u}, /* the end */
     };
     static const icd_error_code_t errors[] = {
         {ICD_REASON_NONE, 0u},
@@ -370,6 +756,7 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, table */
         16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, ICDGEN_TABLE(crc16_table),
     };
+#ifndef ICDGEN_NO_LOGS
     static const icd_log_bit_t log_bits[] = {
         {144, 6u}, /* bit 0: Communication Status */
         {143, 6u}, /* bit 1: EDAC Error Counters */
@@ -452,6 +839,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         {-1, 6u}, /* bit 78 */
         {-1, 6u}, /* bit 79 */
     };
+#endif
+#ifndef ICDGEN_NO_LOGS
     /**
      * Assumed frame_order: The order of the frames in an entry is not said. They follow the bits of the mask, bit 0 of
      * the first byte first. Assumed short_frames: All loggable frames are said to have 6 bytes, two have 4. They are
@@ -466,6 +855,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         0x00u, /* fill */
         log_bits,
     };
+#endif
+#ifndef ICDGEN_NO_LOGS
     static const icd_log_file_form_t log_file = {
         0u, /* mask_at */
         10u, /* header_bytes */
@@ -474,6 +865,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         6u, /* frames_at */
         2, /* file_type */
     };
+#endif
+#ifndef ICDGEN_NO_LOGS
     /**
      * Assumed framed: Section 5.2 has start, end and escapes for all that goes over the UART, and makes no exception
      * for these messages.
@@ -483,6 +876,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         1u, /* mask_at */
         11u, /* frames_at */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_time_form_t packed_time = {
         {25u, 7u, 1u, 1980u}, /* year */
         {21u, 4u, 1u, 0u}, /* month */
@@ -491,6 +886,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         {5u, 6u, 1u, 0u}, /* minute */
         {0u, 5u, 2u, 0u}, /* second */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_index_form_t index_entry = {
         37u, /* entry_bytes */
         15, /* file_type */
@@ -501,6 +898,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         {8u, 4u}, /* time */
         {12u, 25u}, /* meta */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_hole_map_message_t hole_maps[] = {
         {120, 247, 16u, 0u}, /* Hole Map 1 */
         {121, 248, 16u, 0u}, /* Hole Map 2 */
@@ -511,6 +910,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         {126, 253, 16u, 0u}, /* Hole Map 7 */
         {127, 254, 16u, 0u}, /* Hole Map 8 */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /**
      * Assumed beyond_end: What the bits beyond the end of a short block are is not said. Marked as received, nothing is
      * sent for them; from the node they are ignored.
@@ -523,6 +924,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         true, /* beyond_end */
         8u, hole_maps, /* messages */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /**
      * Assumed first_packet: Where the count begins is not said. Bit 0 of the hole map is the first packet. Assumed
      * fill: The value is not defined. Erased flash memory reads 0xFF.
@@ -536,6 +939,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         20480u, /* block_bytes */
         {119, 241, 241}, /* ids of download packets */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t list_information_places[] = {
         {ICD_ROLE_BUSY, 4u, 1u}, /* Busy Updating */
         {ICD_ROLE_TYPE, 0u, 4u}, /* File Type */
@@ -544,6 +949,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         {ICD_ROLE_TIME, 48u, 32u}, /* File Date and Time */
         {ICD_ROLE_CHECKSUM, 80u, 16u}, /* File CRC16 Checksum */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /**
      * Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. The checksum of a large file
      * has to be computed meanwhile.
@@ -555,22 +962,30 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         50u, /* poll_interval in ms */
         10000u, /* timeout in ms */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t download_load_places[] = {
         {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
         {ICD_ROLE_COUNTER, 8u, 8u}, /* Counter */
         {ICD_ROLE_OFFSET, 16u, 32u}, /* Offset */
         {ICD_ROLE_LENGTH, 48u, 16u}, /* BlockLength */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t download_ready_places[] = {
         {ICD_ROLE_READY, 0u, 1u}, /* Ready */
         {ICD_ROLE_ERROR, 1u, 1u}, /* ParameterError */
         {ICD_ROLE_CHECKSUM, 8u, 16u}, /* Block CRC16 Checksum */
         {ICD_ROLE_LENGTH, 24u, 16u}, /* Block Length */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t download_burst_places[] = {
         {ICD_ROLE_LENGTH, 0u, 8u}, /* Message Length */
         {ICD_ROLE_IGNORE_HOLE_MAP, 8u, 1u}, /* Ignore Hole Map */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /**
      * Assumed message_length: The field is not explained. Drivers in use send 20, the bytes of the file in a packet.
      * Assumed checksum_covers_fill: Not said. The checksum comes with the length of the block, which does not count the
@@ -592,14 +1007,20 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         500u, /* silence in ms */
         32u, /* rounds */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t erase_request_places[] = {
         {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
         {ICD_ROLE_COUNTER, 8u, 8u}, /* File Counter */
         {ICD_ROLE_ALL, 16u, 1u}, /* Erase All */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t erase_progress_places[] = {
         {ICD_ROLE_BUSY, 1u, 1u}, /* Erase All Busy */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
     static const icd_erase_form_t erase = {
         {108, -1, 3u, 3u, erase_request_places, NULL}, /* Erase File */
@@ -607,12 +1028,18 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         200u, /* poll_interval in ms */
         60000u, /* timeout in ms */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const uint8_t format_request_fresh[] = {
         0x5au,
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     static const icd_place_t format_progress_places[] = {
         {ICD_ROLE_BUSY, 0u, 1u}, /* Format Busy */
     };
+#endif
+#ifndef ICDGEN_NO_FILES
     /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
     static const icd_erase_form_t format = {
         {33, -1, 1u, 0u, NULL, format_request_fresh}, /* Format SD card */
@@ -620,6 +1047,7 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         200u, /* poll_interval in ms */
         60000u, /* timeout in ms */
     };
+#endif
     static const icd_place_t identification_places[] = {
         {ICD_ROLE_NODE_TYPE, 0u, 8u}, /* Node type */
         {ICD_ROLE_INTERFACE_VERSION, 8u, 8u}, /* Interface version */
@@ -646,7 +1074,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         128u, 255u, /* ids of telemetry */
         telecommands, /* what can be sent */
         telemetry, /* what can be requested */
-        68u, 126u, /* how many */
+        ICDGEN_U16((sizeof(telecommands) / sizeof(telecommands[0])) - 1u), /* how many can be sent */
+        ICDGEN_U16((sizeof(telemetry) / sizeof(telemetry[0])) - 1u), /* how many can be requested */
         506u, 506u, 506u, /* longest telecommand, reply, any */
         504u, /* longest without id and checksum */
         10, /* node type */
@@ -662,18 +1091,18 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         &can, /* CAN */
         &checksum, /* checksums of messages */
         &crc16, /* CRC of files */
-        &log_mask, /* mask of logs */
-        &log_file, /* log files */
-        &log_message, /* unsolicited logs */
-        &packed_time, /* packed times */
-        &index_entry, /* index of files */
-        &hole_map, /* hole map */
-        &files, /* file transfer */
-        &list, /* list */
-        &download, /* download */
+        ICDGEN_OF_LOGS(&log_mask), /* mask of logs */
+        ICDGEN_OF_LOGS(&log_file), /* log files */
+        ICDGEN_OF_LOGS(&log_message), /* unsolicited logs */
+        ICDGEN_OF_FILES(&packed_time), /* packed times */
+        ICDGEN_OF_FILES(&index_entry), /* index of files */
+        ICDGEN_OF_FILES(&hole_map), /* hole map */
+        ICDGEN_OF_FILES(&files), /* file transfer */
+        ICDGEN_OF_FILES(&list), /* list */
+        ICDGEN_OF_FILES(&download), /* download */
         NULL, /* upload */
-        &erase, /* erase */
-        &format, /* format */
+        ICDGEN_OF_FILES(&erase), /* erase */
+        ICDGEN_OF_FILES(&format), /* format */
         NULL, /* program copy */
         NULL, /* program information */
         &identification, /* identification */

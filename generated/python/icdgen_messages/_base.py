@@ -5,12 +5,13 @@ from __future__ import annotations
 
 # Itself: what annotations name is loaded when they are evaluated.
 from . import _lazy
-from ._fields import FieldInfo, Form, field, scaled, text, whole
+from ._fields import FieldInfo, Form, Tail, field, scaled, text, whole
 
 __all__ = [
     "FieldInfo",
     "Message",
     "MessageType",
+    "Tail",
     "field",
     "scaled",
     "text",
@@ -107,7 +108,9 @@ class Message(metaclass=MessageType):
         KIND: ClassVar[str]
         """``telecommand``, ``telemetry`` or ``configuration`` (which is both)."""
         LENGTH: ClassVar[int]
-        """Bytes of a frame, without the id."""
+        """Bytes of a frame, without the id; of the longest, where frames differ."""
+        TAIL: ClassVar[Tail | None]
+        """The end of frames that differ in length."""
         IDS: ClassVar[tuple[int, ...]]
         """Its ids: one, or the id to set it and the id to get it."""
         TABLE: ClassVar[int | None]
@@ -124,7 +127,7 @@ class Message(metaclass=MessageType):
         BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
     else:
         IDS = FIELDS = VIEWS = PARTS = ()
-        TABLE = None
+        TABLE = TAIL = None
         ACKNOWLEDGED = True
         BYTE_ORDER, BIT_ORDER = "little", "lsb0"
         __dataclass_fields__ = _DataclassFields()
@@ -168,7 +171,7 @@ class Message(metaclass=MessageType):
 
     @classmethod
     def from_bytes(cls: type[_lazy.M], data: _lazy.Buffer) -> _lazy.M:
-        """The message in a frame of exactly ``LENGTH`` bytes. Raises `LengthError`."""
+        """The message in a frame of a length that it has. Raises `LengthError`."""
         from ._compiled import compiled
 
         made: _lazy.M = compiled(cls, "from_bytes")(cls, data)
@@ -236,20 +239,21 @@ class Message(metaclass=MessageType):
 
     @classmethod
     def decode_many(
-        cls, frames: _lazy.Buffer, physical: bool = False
+        cls, frames: _lazy.Frames, physical: bool = False
     ) -> dict[str, _lazy.Any]:
         """Frames that follow each other, as one numpy array a field.
 
         The names are those of `as_dict`. What stands on whole bytes is a view of the
         frames, or of a copy of them if they can change. Raises `LengthError` if they
-        are not whole frames. Needs numpy.
+        are not whole frames. Frames that differ in length are given one by one, as a
+        list; what ends them is an array of arrays, or of bytes. Needs numpy.
         """
         from . import _columns
 
         return _columns.decode_many(cls, frames, physical)
 
     @classmethod
-    def decode_table(cls, frames: _lazy.Buffer, physical: bool = True) -> _lazy.Any:
+    def decode_table(cls, frames: _lazy.Frames, physical: bool = True) -> _lazy.Any:
         """Frames that follow each other, as a `pyarrow.Table`.
 
         Units, the manual's names and those of enumerations are metadata of its fields:

@@ -7,6 +7,7 @@ import struct
 
 from . import _lazy
 from ._errors import LengthError, RangeError
+from ._fields import elements_of, has_elements
 
 REFUSED = (
     struct.error,
@@ -139,17 +140,13 @@ def range_error(message: _lazy.Message) -> RangeError:
     """What to raise for a message that has a value that does not fit."""
     for info in message.FIELDS:
         value: _lazy.Any = getattr(message, info.attribute, None)
-        if info.elements and not _has_elements(info, value):
-            return RangeError(info.attribute, f"{info.elements} values", value)
+        if info.elements and not has_elements(info, value):
+            return RangeError(info.attribute, elements_of(info), value)
         for one, each in zip(info.parts, value if info.elements else (value,)):
             allowed, fits = _FITS[info.type](one, each)
             if not fits:
                 return RangeError(one.attribute, allowed, each)
     return RangeError("a field", "a value of its type", None)
-
-
-def _has_elements(info: _lazy.FieldInfo, value: _lazy.Any) -> bool:
-    return hasattr(value, "__getitem__") and len(value) == info.elements
 
 
 def seen(message: _lazy.Message, attribute: str, kind: _lazy.Any) -> _lazy.Any:
@@ -193,10 +190,11 @@ def _fits_float(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
 
 def _fits_bytes(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
     try:
-        fits = memoryview(value).nbytes == info.bits // 8
+        size, most = memoryview(value).nbytes, info.bits // 8
+        fits = size <= most if info.is_open else size == most
     except TypeError:
         fits = False
-    return f"{info.bits // 8} bytes", fits
+    return f"{'up to ' if info.is_open else ''}{info.bits // 8} bytes", fits
 
 
 _FITS: dict[str, _lazy.Callable[[_lazy.FieldInfo, _lazy.Any], tuple[str, bool]]] = {

@@ -22,7 +22,7 @@ class FieldInfo:
     __slots__ = (
         "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
         "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
-        "elements",
+        "elements", "is_open",
     )  # fmt: skip
 
     def __init__(
@@ -47,6 +47,7 @@ class FieldInfo:
         whole: str = "",
         default: _lazy.Any = None,
         elements: int = 0,
+        is_open: bool = False,
     ) -> None:
         self.attribute = attribute
         """The attribute that holds the raw value."""
@@ -90,6 +91,8 @@ class FieldInfo:
 
         0 if it is no array.
         """
+        self.is_open = is_open
+        """Whether frames hold up to so many elements, or bytes: see `Message.TAIL`."""
 
     @property
     def signed(self) -> bool:
@@ -126,7 +129,7 @@ class FieldInfo:
         for key in ("attribute", "name"):
             told[key] += f"[{index}]"
         told["at"] += index * self.bits
-        told["default"] = self.default[index]
+        told["default"] = None if self.is_open else self.default[index]
         return FieldInfo(**{**told, "elements": 0})
 
     def _values(self) -> tuple[_lazy.Any, ...]:
@@ -143,6 +146,41 @@ class FieldInfo:
     def __repr__(self) -> str:
         values = (f"{name}={getattr(self, name)!r}" for name in self.__slots__)
         return f"FieldInfo({', '.join(values)})"
+
+
+def has_elements(info: FieldInfo, values: _lazy.Any) -> bool:
+    """Whether there are as many values as an array takes."""
+    if not hasattr(values, "__getitem__") or not hasattr(values, "__len__"):
+        return False
+    count = len(values)
+    return count <= info.elements if info.is_open else count == info.elements
+
+
+def elements_of(info: FieldInfo) -> str:
+    """``6 values``: how many an array takes."""
+    return f"{'up to ' if info.is_open else ''}{info.elements} values"
+
+
+class Tail:
+    """The end of a message whose frames differ in length.
+
+    A frame is the beginning of the longest one, which has ``LENGTH`` bytes.
+    """
+
+    __slots__ = ("part", "counter", "step", "most")
+
+    def __init__(self, part: str, counter: str, step: int, most: int) -> None:
+        self.part = part
+        """The attribute that holds it: a tuple, or `bytes`."""
+        self.counter = counter
+        """The attribute that says how many elements it has.
+
+        Empty if only the length of the frame does.
+        """
+        self.step = step
+        """Bytes of an element."""
+        self.most = most
+        """The most elements."""
 
 
 class Form:
@@ -198,8 +236,8 @@ def _array_property(info: FieldInfo, form: Form) -> property:
         return tuple((raw * p + c) / q for raw in getattr(self, attribute))
 
     def set_nearest(self: Any, values: Any) -> None:
-        if not hasattr(values, "__len__") or len(values) != info.elements:
-            raise RangeError(attribute, f"{info.elements} values", values)
+        if not has_elements(info, values):
+            raise RangeError(attribute, elements_of(info), values)
         found = (
             nearest_raw(value, f"{attribute}[{index}]", terms, info.raw_range)
             for index, value in enumerate(values)
@@ -220,7 +258,8 @@ def _text_property(info: FieldInfo) -> property:
     def set_text(self: Any, value: str) -> None:
         from ._codec import text_bytes
 
-        setattr(self, attribute, text_bytes(value, attribute, size))
+        raw = text_bytes(value, attribute, size)
+        setattr(self, attribute, raw[: len(value)] if info.is_open else raw)
 
     return property(get_text, set_text)
 
@@ -231,9 +270,9 @@ def field(
     """A field: the manual's name, offset and width in bits, type, and its first value.
 
     What else is told of it goes by the names of `FieldInfo`; the enumeration is that of
-    the default.
+    the default, unless it is told, too.
     """
-    if type == "enum":
+    if type == "enum" and "enum" not in told:
         one = default[0] if told.get("elements") else default
         told["enum"] = one.__class__
     return FieldInfo("", name, at, bits, type, default=default, **told)

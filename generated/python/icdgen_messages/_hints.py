@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, TypeVar, Union
 
 if TYPE_CHECKING:
@@ -10,6 +11,9 @@ if TYPE_CHECKING:
 
 Buffer = Union[bytes, bytearray, memoryview]
 """What a frame may be given as."""
+
+Frames = Union[Buffer, Iterable[Buffer]]
+"""Many frames: one after the other, or a list of them."""
 
 M = TypeVar("M", bound="Message")
 T = TypeVar("T")

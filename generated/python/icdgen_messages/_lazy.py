@@ -15,6 +15,7 @@ __all__ = [
     "Callable",
     "Candidate",
     "FieldInfo",
+    "Frames",
     "Iterator",
     "Literal",
     "M",
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
     from ._base import Message
     from ._enumeration import OpenEnum
     from ._fields import FieldInfo
-    from ._hints import Buffer, Candidate, M, T
+    from ._hints import Buffer, Candidate, Frames, M, T
 else:
     _NAMED = {
         "Any": "typing",
@@ -43,6 +44,7 @@ else:
         "Callable": "collections.abc",
         "Candidate": "._hints",
         "FieldInfo": "._fields",
+        "Frames": "._hints",
         "Iterator": "collections.abc",
         "Literal": "typing",
         "M": "._hints",

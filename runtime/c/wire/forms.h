@@ -70,6 +70,18 @@ typedef struct {
 #define ICDGEN_TABLE(table) (table)
 #endif
 
+/* Parts that a program may leave out: for it the ICD does not describe them. */
+#ifdef ICDGEN_NO_FILES
+#define ICDGEN_OF_FILES(part) NULL
+#else
+#define ICDGEN_OF_FILES(part) (part)
+#endif
+#ifdef ICDGEN_NO_LOGS
+#define ICDGEN_OF_LOGS(part) NULL
+#else
+#define ICDGEN_OF_LOGS(part) (part)
+#endif
+
 /** Parameters of a CRC in the notation of the usual catalogues. */
 typedef struct {
     /** Bits of the checksum. */

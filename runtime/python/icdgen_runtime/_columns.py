@@ -9,20 +9,36 @@ from typing import Any, NamedTuple
 from ._base import Message
 from ._codec import text
 from ._dicts import OCTETS
-from ._errors import LengthError
+from ._errors import IcdError, LengthError
 from ._fields import FieldInfo
-from ._hints import Buffer
+from ._hints import Buffer, Frames
 from ._layout import Piece, byte_order, pieces
+from ._tails import padded
 
 _EXACT = 1 << 53  # integers below this are exact as 64-bit floats
 
 
 def decode_many(
-    message: type[Message], frames: Buffer, physical: bool
+    message: type[Message], frames: Frames, physical: bool
 ) -> dict[str, Any]:
     """See `Message.decode_many`."""
     numpy: Any = import_module("numpy")
-    decoder = _Decoder(numpy, message, frames)
+    columns, counts = _columns(numpy, message, frames, physical)
+    for info, (name, column) in zip((*message.FIELDS, *message.VIEWS), columns.items()):
+        if info.is_open and column.ndim == 2:
+            columns[name] = rows = numpy.empty(len(counts), object)
+            for row, count in enumerate(counts):
+                one = column[row, :count]
+                rows[row] = one.tobytes() if info.type in OCTETS else one
+    return columns
+
+
+def _columns(
+    numpy: Any, message: type[Message], frames: Frames, physical: bool
+) -> tuple[dict[str, Any], Any]:
+    """Columns by name, and how many elements the end of each frame has; its others are 0."""
+    joined, counts = _together(message, frames)
+    decoder = _Decoder(numpy, message, joined)
     columns = {}
     for info in (*message.FIELDS, *message.VIEWS):
         if info.elements:
@@ -38,18 +54,35 @@ def decode_many(
             columns[info.physical] = values.reshape(column.shape)
         else:
             columns[info.attribute] = column
-    return columns
+    return columns, numpy.array(counts, numpy.int32)
 
 
-def decode_table(message: type[Message], frames: Buffer, physical: bool) -> Any:
+def _together(message: type[Message], frames: Frames) -> tuple[Buffer, list[int]]:
+    """Frames that follow each other; where they differ in length, the longest, and the elements of each."""
+    is_one = isinstance(frames, (bytes, bytearray, memoryview))
+    if message.TAIL is None:
+        return (frames if is_one else b"".join(frames)), []  # type: ignore[return-value, arg-type]
+    if is_one:
+        raise IcdError(
+            f"frames of {message.NAME} differ in length: give them as a list"
+        )
+    kept: list[Any] = list(frames)
+    made = [message.from_bytes(frame) for frame in kept]  # if it is one
+    counts = [len(getattr(one, message.TAIL.part)) for one in made]
+    return b"".join(padded(message, frame) for frame in kept), counts
+
+
+def decode_table(message: type[Message], frames: Frames, physical: bool) -> Any:
     """See `Message.decode_table`."""
     numpy: Any = import_module("numpy")
     pyarrow: Any = import_module("pyarrow")
-    columns = decode_many(message, frames, physical)
+    columns, counts = _columns(numpy, message, frames, physical)
     fields, arrays = [], []
     for info, (name, column) in zip((*message.FIELDS, *message.VIEWS), columns.items()):
         column = numpy.ascontiguousarray(column)
-        if info.type in OCTETS and column.ndim == 2:
+        if info.is_open and column.ndim == 2:
+            array = _lists(numpy, pyarrow, column, counts, info.type in OCTETS)
+        elif info.type in OCTETS and column.ndim == 2:
             kind = pyarrow.binary(info.bits // 8)
             buffers = [None, pyarrow.py_buffer(column)]
             array = pyarrow.Array.from_buffers(kind, len(column), buffers)
@@ -67,6 +100,17 @@ def decode_table(message: type[Message], frames: Buffer, physical: bool) -> Any:
     }
     schema = pyarrow.schema(fields, metadata=about)
     return pyarrow.Table.from_arrays(arrays, schema=schema)
+
+
+def _lists(numpy: Any, pyarrow: Any, rows: Any, counts: Any, is_octets: bool) -> Any:
+    """The first elements of each row, as lists or as bytes."""
+    there = numpy.arange(rows.shape[1]) < counts[:, None]
+    values = rows[there]
+    ends = numpy.concatenate(([0], numpy.cumsum(counts))).astype(numpy.int32)
+    if is_octets:
+        buffers = [None, pyarrow.py_buffer(ends), pyarrow.py_buffer(values)]
+        return pyarrow.Array.from_buffers(pyarrow.binary(), len(rows), buffers)
+    return pyarrow.ListArray.from_arrays(pyarrow.array(ends), pyarrow.array(values))
 
 
 def _metadata(info: FieldInfo) -> dict[str, str]:

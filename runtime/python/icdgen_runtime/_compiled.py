@@ -40,12 +40,14 @@ def compiled(message: type[_lazy.Message], name: str) -> _lazy.Any:
     """The function ``name`` of the class that declares the fields, which from now on has it as its method."""
     owner = next(one for one in message.__mro__ if "FIELDS" in vars(one))
     if (owner, name) not in _functions:
-        codec = Codec(owner)
-        source = {"from_bytes": codec.decoder, "to_bytes": codec.encoder}[name]()
-        # All that stands in it are numbers and the names of attributes.
-        code = compile(source, f"<{owner.__qualname__}.{name}>", "exec")
-        exec(code, codec.names)  # noqa: S102
-        _functions[owner, name] = function = codec.names[name]
+        function = longest(owner, name)
+        if message.TAIL is not None:
+            from . import _tails
+
+            function = {"from_bytes": _tails.decoder, "to_bytes": _tails.encoder}[name](
+                owner, function
+            )
+        _functions[owner, name] = function
         told = getattr(_lazy.Message, name)
         function.__doc__, function.__module__ = told.__doc__, owner.__module__
         function.__qualname__ = f"{owner.__qualname__}.{name}"
@@ -54,6 +56,16 @@ def compiled(message: type[_lazy.Message], name: str) -> _lazy.Any:
                 owner, name, classmethod(function) if name == "from_bytes" else function
             )
     return _functions[owner, name]
+
+
+def longest(owner: type[_lazy.Message], name: str) -> _lazy.Any:
+    """The function ``name`` of the class, for frames of exactly ``LENGTH`` bytes."""
+    codec = Codec(owner)
+    source = {"from_bytes": codec.decoder, "to_bytes": codec.encoder}[name]()
+    # All that stands in it are numbers and the names of attributes.
+    code = compile(source, f"<{owner.__qualname__}.{name}>", "exec")
+    exec(code, codec.names)  # noqa: S102
+    return codec.names[name]
 
 
 class _Item:

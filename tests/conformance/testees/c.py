@@ -52,6 +52,7 @@ class MessageRow(NamedTuple):
     length: str
     ids: list[str]
     misfit: bool
+    is_open: bool
     fields: list[FieldRow]
 
 
@@ -78,6 +79,7 @@ class Dispatcher(NamedTuple):
     name: str
     is_shared: bool
     routes: list[Route]
+    is_open: bool  # frames of some of its messages differ in length
 
 
 class CTesteeBackend:
@@ -138,7 +140,8 @@ class _Rows:
             Route(names.constant(one, id), names.enumerator_of(name, one) if is_shared else "0u", names.stem(one))
             for one, id in messages
         ]
-        return Dispatcher(direction, name, is_shared, routes)
+        is_open = any(one.tail is not None for one, _ in messages)
+        return Dispatcher(direction, name, is_shared, routes, is_open)
 
     def message(self, message: MessageDescription) -> MessageRow:
         return MessageRow(
@@ -146,6 +149,7 @@ class _Rows:
             length=names.constant(message, "length"),
             ids=[names.constant(message, id.name) for id in message.ids],
             misfit=message.is_narrow,
+            is_open=message.tail is not None,
             fields=[self.field(field) for field in (*message.fields, *message.views)],
         )
 

@@ -34,7 +34,7 @@ class MessageWatch:
         """Lines that notice that a field is another, or ``node`` is that of the message."""
         old, node = self.message.fields[index], node or self.node
         found = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
-        alone = replace(self.message, fields=(now,))
+        alone = replace(self.message, fields=(now,), tail=None)
         rows = zip(self.lines.rows, self.vectors.rows, self._of_others[index], strict=True)
         return found + [number for number, row, others in rows if _notices(row, old, now, node, alone, others)]
 
@@ -51,6 +51,14 @@ class MessageWatch:
         pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
         return [number for number, row in pairs if _answer(node, changed, row.frame) != (row.raw, row.encoded)]
 
+    def end(self, now: Message) -> list[int]:
+        """Lines that notice that the open end is another."""
+        pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
+        found = [number for number, row in pairs if _answer(self.node, now, row.frame) != (row.raw, row.encoded)]
+        if any(length in now.lengths for length in self.vectors.lengths):
+            found.append(self.lines.lengths)
+        return found
+
     def id(self, key: str) -> list[int]:
         """Lines that notice another id: frames are asked for by the id, by the set id where there are two."""
         rows = self.lines.rows[:1] if key == "get_id" else self.lines.rows
@@ -66,6 +74,8 @@ class MessageWatch:
         if [one.value for one in old.special] != [one.value for one in now.special] or old.limits != now.limits:
             return True
         unfit = self.vectors.unfit.get(old.name, ())
+        if self.message.tail is not None and self.message.tail.counter == old.name:
+            unfit = [value for value in unfit if not old.raw_min <= value <= old.raw_max]
         if any(_attempt(codec.check_raw, now, value) is not _REFUSED for value in unfit):
             return True
         given = self.vectors.settings.get(old.name, [])
@@ -81,7 +91,7 @@ class MessageWatch:
         """Of each field, the bits that all other fields set in each row's frame."""
         columns = []
         for field in self.message.fields:
-            alone = replace(self.message, fields=(field,))
+            alone = replace(self.message, fields=(field,), tail=None)
             frames = (codec.encode(self.node, alone, {field.name: row.raw[field.name]}) for row in self.vectors.rows)
             columns.append([_number(frame) for frame in frames])
         by_row = []
@@ -94,12 +104,12 @@ class MessageWatch:
 
 def _notices(row: Row, old: Field, now: Field, node: Node, alone: Message, others: int) -> bool:
     """Whether a row demands what is not so of a field. ``alone``: the message with ``now`` only; ``others``: bits of the rest."""
-    answer = _answer(node, alone, row.frame)
+    answer = _answer(node, alone, row.frame.ljust(alone.length, b"\0"))  # the rest of the longest frame
     if answer is None:
         return True
     raw, read, frame = row.raw[old.name], answer[0][now.name], answer[1]
     if (
-        now.view and codec.decode(node, alone, row.encoded)[now.name] != raw
+        now.view and codec.decode(node, alone, row.encoded.ljust(alone.length, b"\0"))[now.name] != raw
     ):  # it is read from what the others are encoded to, too
         return True
     if _shown(now, read) != _shown(old, raw) or _name(now, read) != _name(old, raw):

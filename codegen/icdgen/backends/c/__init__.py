@@ -16,6 +16,7 @@ from icdgen.backends.c.text import FILE, comment, described, literal, noted, pro
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, text_comment, words
+from icdgen.describe.description import TailDescription
 from icdgen.describe.numbers import byte_count
 from icdgen.icd.model import Icd
 
@@ -87,11 +88,21 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "excess": bits.excess,
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message),
+        **(_tail(message, message.tail) if message.tail else {}),
         "views": [accessors.view(field) for field in message.views],
         "whole_accessors": accessors.whole_accessors(message),
         "accessors": accessors.accessors(message),
         "parts": parts.parts(message),
         "known": fields.fields(message),
+    }
+
+
+def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, object]:
+    """What the code of frames that differ in length needs."""
+    return {
+        "size": encoding.size(message),
+        "misfit_length": decoding.misfit_length(tail, names.constant(message, "length")),
+        "miscounted": decoding.miscounted(tail),
     }
 
 

@@ -113,15 +113,15 @@ def _raw(field: FieldDescription) -> str:
     return f"icdgen_bits_f{field.model.bits}(&{member})" if field.model.type == "float" else member
 
 
-def excess(field: FieldDescription) -> str:
-    """An expression that is 0 if and only if the raw value of a narrow field fits."""
-    storage, one = field.storage, field.model
+def excess(field: FieldDescription, member: str = "") -> str:
+    """An expression that is 0 if and only if the raw value of a narrow field fits; ``member`` if it is not the field's."""
+    storage, one, member = field.storage, field.model, member or field.member
     wide = 64 if storage.bits == 64 else 32
     if not storage.signed:
         beyond = ((1 << storage.bits) - 1) ^ one.raw_max
-        return f"message->{field.member} & {mask(beyond, storage.bits)}"
+        return f"message->{member} & {mask(beyond, storage.bits)}"
     beyond = ((1 << wide) - 1) ^ ((1 << one.bits) - 1)
-    return f"({cast(f'message->{field.member}', wide)} + {mask(1 << (one.bits - 1), wide)}) & {mask(beyond, wide)}"
+    return f"({cast(f'message->{member}', wide)} + {mask(1 << (one.bits - 1), wide)}) & {mask(beyond, wide)}"
 
 
 def excess_type(message: MessageDescription) -> str:

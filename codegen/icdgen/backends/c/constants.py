@@ -34,6 +34,7 @@ def initial(message: MessageDescription) -> list[str]:
     return [
         f"message->{element.member} = {names.constant(message, one.name)};"
         for field in message.members
+        if not field.is_open
         for one in field.constants
         if one.key == "const"
         for element in field.elements or (field,)

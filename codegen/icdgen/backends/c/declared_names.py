@@ -40,7 +40,7 @@ def _node(node: NodeDescription) -> Iterator[Identifier]:
     for end in ("ICD_DIGEST", "NODE_TYPE", "INTERFACE_VERSION", "H"):
         yield node.identifier(FILE, f"{node.name.upper()}_{end}")
     for kind in ("telemetry", "telecommand"):
-        for end in ("t", "name", "length", "decode", "encode"):
+        for end in ("t", "name", "length", "size", "decode", "encode"):
             owner = f"{kind} of node `{node.name}`"
             yield Identifier(FILE, f"{node.name}_{kind}_{end}", owner, node.model.source)
         if node.shares_ids(kind):
@@ -80,7 +80,8 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     yield message.identifier(FILES, f"{message.node.name}/{message.name}.h")
     for end in ("h", "length", *(id.name for id in message.ids)):
         yield message.identifier(FILE, names.constant(message, end))
-    for end in ("t", "init", "decode", "encode", "fields", *(("misfit",) if message.is_narrow else ())):
+    rare = (*(("misfit",) if message.is_narrow else ()), *(("size",) if message.tail else ()))
+    for end in ("t", "init", "decode", "encode", "fields", *rare):
         yield message.identifier(FILE, f"{stem}_{end}")
     for part in parts_of(message):
         yield message.identifier(FILE, f"{stem}_{part_name(part.message)}")

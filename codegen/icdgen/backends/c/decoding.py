@@ -7,8 +7,10 @@ from icdgen.backends.c.member_groups import Flags, Row, in_groups
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import call
 from icdgen.backends.c.text import WIDTH
+from icdgen.backends.c.types import cast, type_of
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe.description import TailDescription
 
 EMPTY = "empty"
 """Member of the struct of a message without fields: C has no empty structs."""
@@ -18,9 +20,45 @@ def statements(message: MessageDescription) -> list[str]:
     """One statement a field or a group, in the order of the struct."""
     if not message.fields:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
-    return [
-        _one(one) if isinstance(one, FieldDescription) else _group(one, message) for one in in_groups(message.fields)
+    found = [
+        _one(one) if isinstance(one, FieldDescription) else _group(one, message)
+        for one in in_groups(message.sent_fields)
     ]
+    if message.tail is not None and message.tail.counter.model.implied:
+        found.append(
+            f"message->{message.tail.counter.name} = {cast(_count(message.tail), message.tail.counter.storage.bits)};"
+        )
+    return found
+
+
+def _count(tail: TailDescription) -> str:
+    """How many elements there are in ``length`` bytes."""
+    rest = f"length - {tail.least}u" if tail.least else "length"
+    if tail.step == 1:
+        return rest
+    return f"({rest}) / {tail.step}u" if tail.least else f"{rest} / {tail.step}u"
+
+
+def misfit_length(tail: TailDescription, longest: str) -> str:
+    """What holds of a ``length`` that no frame has; ``longest`` is the macro of the longest."""
+    tests = [f"length < {tail.least}u"] if tail.least else []
+    tests.append(f"length > {longest}")
+    if tail.step > 1:
+        tests.append(f"({_rest(tail)} % {tail.step}u) != 0u")
+    return " || ".join(f"({test})" for test in tests) if len(tests) > 1 else tests[0]
+
+
+def _rest(tail: TailDescription) -> str:
+    return f"(length - {tail.least}u)" if tail.least else "length"
+
+
+def miscounted(tail: TailDescription) -> tuple[str, str, str] | None:
+    """Type and reading of the count that a frame holds, as ``value``, and what holds where it is not that of its length."""
+    if tail.counter.model.implied:
+        return None
+    bits = max(tail.counter.storage.bits, 32)
+    value = "value" if tail.counter.storage.bits == bits else cast("value", bits)
+    return type_of(tail.counter), _number(tail.counter, "value"), f"{value} != {cast(_count(tail), bits)}"
 
 
 def _group(group: Flags | Row, message: MessageDescription) -> str:

@@ -9,6 +9,16 @@ from icdgen.backends.c.statement import assigned_byte, call
 from icdgen.describe import FieldDescription, MessageDescription
 
 
+def size(message: MessageDescription) -> str:
+    """Bytes of the frame that a message makes."""
+    tail = message.tail
+    assert tail is not None
+    count = f"ICDGEN_SIZE(message->{tail.counter.name})"
+    if tail.step == 1:
+        return f"{tail.least}u + {count}" if tail.least else count
+    return f"{tail.least}u + ({count} * {tail.step}u)" if tail.least else f"{count} * {tail.step}u"
+
+
 def statements(message: MessageDescription) -> list[str]:
     """Statements that write every byte of the frame once, in order."""
     frame = _Frame(message)
@@ -26,7 +36,7 @@ class _Frame:
         self.whole: dict[int, tuple[int, str]] = {}  # first byte -> number of bytes, statement
         self.parts: dict[int, list[tuple[int, str]]] = {}  # byte -> (shift, term)
         self.joined: dict[int, list[str]] = {}  # byte -> statements that its terms need
-        for one in in_groups(message.fields):
+        for one in in_groups(message.sent_fields):
             if isinstance(one, FieldDescription):
                 self._one(one)
             else:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from icdgen.backends.c.facts import TYPES, boolean, or_none, spelled
@@ -28,13 +28,15 @@ class Table(NamedTuple):
 
 
 class Row(NamedTuple):
-    """A value of an initialiser, and what it is."""
+    """A value of an initialiser, and what it is; it is there only if a condition of the preprocessor holds."""
 
     value: str
     text: str = ""
+    condition: str = ""
 
     def __str__(self) -> str:
-        return f"{self.value}, /* {self.text} */" if self.text else f"{self.value},"
+        row = f"{self.value}, /* {self.text} */" if self.text else f"{self.value},"
+        return f"#if {self.condition}\n{STEP * 2}{row}\n#endif" if self.condition else row
 
 
 def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
@@ -78,12 +80,10 @@ class _Tables:
             Row(boolean(known.little), "byte order: little"),
             Row(boolean(known.node.bit_order == "msb0"), "bit 0 is the most significant one"),
             Row(f"{known.telemetry_ids.first}u, {known.telemetry_ids.last}u", "ids of telemetry"),
-            Row(self.array("telecommands", "icd_message_t", map(self.telecommand, telecommands)), "what can be sent"),
-            Row(
-                self.array("telemetry", "icd_message_t", (_message(one, "0u") for one in telemetry)),
-                "what can be requested",
-            ),
-            Row(f"{len(telecommands)}u, {len(telemetry)}u", "how many"),
+            Row(self.messages("telecommands", map(self.telecommand, telecommands)), "what can be sent"),
+            Row(self.messages("telemetry", (self.message(one, "0u") for one in telemetry)), "what can be requested"),
+            Row(_count("telecommands", telecommands), "how many can be sent"),
+            Row(_count("telemetry", telemetry), "how many can be requested"),
             Row(
                 f"{known.longest_telecommand}u, {known.longest_reply}u, {known.longest}u",
                 "longest telecommand, reply, any",
@@ -109,24 +109,52 @@ class _Tables:
             Row(self.can(), "CAN"),
             Row(self.checksum(), "checksums of messages"),
             Row(self.crc16(), "CRC of files"),
-            Row(self.log_mask(), "mask of logs"),
-            Row(self.part("log_file", known.log_file, "telemetry_log"), "log files"),
-            Row(self.part("log_message", known.mask and known.log_message, "unsolicited_log"), "unsolicited logs"),
-            Row(self.time(), "packed times"),
-            Row(self.index(), "index of files"),
-            Row(self.hole_map(), "hole map"),
-            Row(self.files(), "file transfer"),
-            *(Row(self.procedure(name), name) for name in PROCEDURES),
-            Row(self.part("program_copy", known.program_copy, "program_copy"), "program copy"),
-            Row(
-                self.part("program_information", known.program_information, "program_information"),
-                "program information",
-            ),
+            *self.optional("LOGS", self.logs()),
+            *self.optional("FILES", self.of_files()),
             Row(self.named_step("identification", link.identification), "identification"),
         ]
         others = (f"{key}: {why}" for section, key, why in self.assumed.others() if not section.startswith("message "))
         self.add("link", "icd_link_t", rows, map(plain, others))
         return self.tables
+
+    def logs(self) -> Iterator[Row]:
+        known = self.known
+        yield Row(self.log_mask(), "mask of logs")
+        yield Row(self.part("log_file", known.log_file, "telemetry_log"), "log files")
+        yield Row(self.part("log_message", known.mask and known.log_message, "unsolicited_log"), "unsolicited logs")
+
+    def of_files(self) -> Iterator[Row]:
+        known = self.known
+        yield Row(self.time(), "packed times")
+        yield Row(self.index(), "index of files")
+        yield Row(self.hole_map(), "hole map")
+        yield Row(self.files(), "file transfer")
+        yield from (Row(self.procedure(name), name) for name in PROCEDURES)
+        yield Row(self.part("program_copy", known.program_copy, "program_copy"), "program copy")
+        information = self.part("program_information", known.program_information, "program_information")
+        yield Row(information, "program information")
+
+    def optional(self, what: str, rows: Iterable[Row]) -> Iterator[Row]:
+        """Rows that a program may do without, and so without their tables."""
+        first = len(self.tables)
+        for row in rows:
+            yield row if row.value == "NULL" else row._replace(value=f"ICDGEN_OF_{what}({row.value})")
+        self.tables[first:] = [table._replace(unless=f"ICDGEN_NO_{what}") for table in self.tables[first:]]
+
+    def messages(self, name: str, rows: Iterable[Row]) -> str:
+        """The messages of a direction. The last one is none, for a program may leave out all others, but no table is empty."""
+        found = list(rows)
+        return self.array(name, "icd_message_t", [*found, Row("{0u, 0u, 0u}", "the end")] if found else ())
+
+    def message(self, one: SentMessage, flags: str) -> Row:
+        """The row of a message."""
+        conditions = []
+        if not any(one.message is needed for needed in self.link.always_needed):
+            node = self.known.node.name.upper()
+            conditions = [f"!defined({node}_CHOSEN)", f"defined({node}_WITH_{self.link.name_of(one.message).upper()})"]
+            if any(one.message is needed for needed in self.link.in_procedures):
+                conditions.append("!defined(ICDGEN_NO_FILES)")
+        return Row(f"{{{one.id}u, {flags}, {one.message.length}u}}", plain(one.message.name), " || ".join(conditions))
 
     def add(self, name: str, type: str, rows: Iterable[str | Row], assumed: Iterable[str] = ()) -> str:
         """Declares a table; above it stands what is assumed in it."""
@@ -193,7 +221,7 @@ class _Tables:
         flags = ["ICD_ACKNOWLEDGED"] if message.acknowledge else []
         flags += ["ICD_EXPECTS_RESET"] if message.expects_reset else []
         flags += ["ICD_SETTING"] if one.is_setting else []
-        row = _message(one, " | ".join(flags) or "0u")
+        row = self.message(one, " | ".join(flags) or "0u")
         why = self.assumed.why(f"message {message.name}", "acknowledge")
         about = comment([f"Assumed acknowledge: {plain(why)}"], STEP * 2).lstrip().replace("/**", "/*", 1)
         return row._replace(value=f"{about}\n{STEP * 2}{row.value}") if why else row
@@ -283,8 +311,8 @@ def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:
     return [one for one in messages if one.id <= _MOST_ID and one.message.length <= _MOST_LENGTH]
 
 
-def _message(one: SentMessage, flags: str) -> Row:
-    return Row(f"{{{one.id}u, {flags}, {one.message.length}u}}", plain(one.message.name))
+def _count(name: str, messages: list[SentMessage]) -> str:
+    return f"ICDGEN_U16((sizeof({name}) / sizeof({name}[0])) - 1u)" if messages else "0u"
 
 
 def crc_table(one: Crc) -> list[int]:

@@ -53,6 +53,17 @@ class FieldRow(NamedTuple):
     text: Accessors | None
 
 
+class TailRow(NamedTuple):
+    """What there is of a message whose frames differ in length."""
+
+    least: int
+    counter: int
+    most: int
+    lengths: list[str]
+    frames: list[str]
+    frame_lengths: list[int]
+
+
 class MessageRow(NamedTuple):
     """A message with its vectors: the reason for each, and its bytes, which are the frame, then the packed raw values."""
 
@@ -65,6 +76,7 @@ class MessageRow(NamedTuple):
     texts: list[str]
     fields: list[FieldRow]
     refused_lengths: list[int]
+    tail: TailRow | None
 
 
 def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
@@ -112,17 +124,18 @@ class _Rows:
     def dispatcher(self, direction: Direction, id_bits: int) -> tuple[str, list[str], bool, list[str]]:
         """Its name; some ids and the lengths of their messages, -1 where there is none; the frames of ids that are shared."""
         known = self.node.ids(direction.kind)
-        lengths = {one.id: one.first.message.model.length for one in known if not one.is_shared}
+        lengths = {one.id: one.first.message.model for one in known if not one.is_shared}
         shared = {one.id for one in known if one.is_shared}
         asked = (id for id in worth_asking((*lengths, *shared), id_bits) if id not in shared)
-        rows = [f"{{{id}u, {lengths.get(id, -1)}}}" for id in asked]
+        known_or_not = ((id, lengths.get(id)) for id in asked)
+        rows = [f"{{{id}u, {one.length}, {one.least}u}}" if one else f"{{{id}u, -1, 0u}}" for id, one in known_or_not]
         frames = [_frame(row) for row in self.vectors.shared if row.direction == direction.kind]
         return f"{self.node.name}_{direction.kind}", rows, bool(shared), frames
 
     def message(self, message: MessageDescription, vectors: MessageVectors) -> MessageRow:
         kept = bytes(message.model.length)
         for row in vectors.rows:  # reserved bits are those that no vector keeps
-            kept = bytes(a | b for a, b in zip(kept, row.encoded, strict=True))
+            kept = bytes(a | b for a, b in zip(kept, row.encoded.ljust(len(kept), b"\0"), strict=True))
         fields = [self.field(field, vectors) for field in message.all_fields]
         size = message.model.length + sum(field.packed for field in fields)
         doubles = (f"UINT64_C(0x{double})" for row in vectors.rows for double in row.doubles.values())
@@ -136,10 +149,11 @@ class _Rows:
             texts=[f"{_text(text)}," for row in vectors.rows for text in row.texts.values()],
             fields=fields,
             refused_lengths=list(vectors.lengths),
+            tail=_tail(message, vectors) if message.tail is not None else None,
         )
 
     def vector(self, row: Row, fields: list[FieldRow]) -> list[str]:
-        data = bytearray(row.frame)
+        data = bytearray(row.frame.ljust(fields[0].field.message.model.length if fields else 0, b"\0"))
         for field in fields:
             value = row.raw[field.field.model.name]
             if isinstance(value, bytes):
@@ -177,6 +191,20 @@ def _frame(row: SharedRow) -> str:
     refused = "ICD_ERROR_UNKNOWN_ID" if row.expected is None else "ICD_ERROR_LENGTH"
     status, name = ("ICD_OK", literal(row.message)) if row.message is not None else (refused, "NULL")
     return f"{{{row.id}u, {len(row.frame)}u, {octets}, {status}, {name}}}"
+
+
+def _tail(message: MessageDescription, vectors: MessageVectors) -> TailRow:
+    tail, length = message.tail, message.model.length
+    assert tail is not None
+    frames = b"".join(frame.ljust(length, b"\0") for frame in vectors.miscounted)
+    return TailRow(
+        least=tail.least,
+        counter=next(place for place, one in enumerate(message.all_fields) if one.model == tail.counter.model),
+        most=tail.most,
+        lengths=in_rows((str(len(row.frame)) for row in vectors.rows), BYTES_IN_ROW),
+        frames=_bytes(frames),
+        frame_lengths=[len(frame) for frame in vectors.miscounted],
+    )
 
 
 def _accessors(field: FieldDescription, end: str, type: str, rows: list[str]) -> Accessors:

@@ -32,8 +32,8 @@ def frames(message: Message, node: Node) -> list[tuple[str, str]]:
     """Name and bytes of every frame of the message's golden vectors, in their order."""
     if not message.length:
         return []
-    found = {frame: why for why, frame in reversed(list(patterns.frames(message)))}
-    ordered = dict.fromkeys(frame for _, frame in patterns.frames(message))
+    found = {frame: why for why, frame in reversed(list(patterns.frames(message, node)))}
+    ordered = dict.fromkeys(frame for _, frame in patterns.frames(message, node))
     for index, raw in enumerate(patterns.raw_columns(message)):
         frame = _encoded(message, node, raw)
         if frame not in ordered:
@@ -50,9 +50,9 @@ def _encoded(message: Message, node: Node, raw: dict[str, int | bytes]) -> bytes
         if isinstance(value, bytes):
             frame[field.at // 8 : field.at // 8 + len(value)] = value
             continue
-        for piece in layout.pieces(field, node):
+        for piece in () if field.implied else layout.pieces(field, node):
             frame[piece.byte] |= (value >> piece.at & (1 << piece.bits) - 1) << piece.shift
-    return bytes(frame)
+    return bytes(frame[: message.least + codec.count_of(message, raw) * message.tail.step] if message.tail else frame)
 
 
 def examples(message: Message, node: Node) -> list[Example]:
@@ -62,6 +62,8 @@ def examples(message: Message, node: Node) -> list[Example]:
     rows = [("random 0", patterns.random_frame(message, "vector 0")), ("all ones", b"\xff" * message.length)]
     found = []
     for why, frame in rows:
+        if message.tail is not None:
+            frame = patterns.cut(message, node, frame, message.tail.most)
         raw = codec.decode(node, message, frame) if len(message.fields) <= _MOST else {}
         cells = [_cell(field, raw[field.name]) for field in message.fields] if raw else []
         found.append(Example(why, frame.hex(" ").upper(), frame, cells))

@@ -66,7 +66,9 @@ def columns_of(rows: list[FieldRow]) -> list[tuple[str, str]]:
 
 def rows(message: Message, node: Node, links: Links, anchors: list[str]) -> list[FieldRow]:
     """Fields and reserved bits in the order of the frame."""
-    found = [_row(key, field, links, anchors[key - 1]) for key, field in enumerate(message.fields, 1)]
+    found = [
+        _row(key, field, links, anchors[key - 1]) for key, field in enumerate(message.fields, 1) if not field.implied
+    ]
     found += [FieldRow(0, gap.at, gap.bits) for gap in layout.gaps(message, node)]
     return sorted(found, key=lambda row: row.at)
 

@@ -7,6 +7,7 @@ import re
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import CHANGES, ERRATA, UNITS
 from icdgen.backends.html.relations import Relations, document
+from icdgen.describe.numbers import length_text
 
 
 def text(relations: Relations, compared: bool) -> str:
@@ -27,7 +28,7 @@ def text(relations: Relations, compared: bool) -> str:
         lines += [f"- [Overview]({links.node(node.name)})"]
         for message in node.messages:
             ids = "/".join(str(id) for _, id in texts.ids(message))
-            about = f"{message.kind} {ids}, {texts.count(message.length, 'byte')}. {message.summary}".rstrip()
+            about = f"{message.kind} {ids}, {length_text(message)}. {message.summary}".rstrip()
             lines.append(f"- [{_line(message.name)}]({links.message(message)}): {_line(about)}")
         lines += [f"- [{_line(enum.name)}]({links.enum(enum)}): enumeration" for enum in node.enums]
         lines.append("")

@@ -11,6 +11,7 @@ from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.usage import names, snippets
 from icdgen.describe import describe
 from icdgen.describe.errata import errata_of_message
+from icdgen.describe.numbers import length_text
 from icdgen.describe.shared_ids import sharing
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
@@ -56,7 +57,12 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
 
 def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str, str, str]]:
     """Label, text, and where a link leads."""
-    facts = [("Length", texts.count(message.length, "byte"), ""), ("Fields", str(len(message.fields)), "")]
+    facts = [("Length", length_text(message), ""), ("Fields", str(len(message.fields)), "")]
+    tail, counter = message.tail, message.counter
+    if tail is not None and counter is not None:
+        until = "up to the end" if counter.implied else f"as many as {counter.name} says"
+        what = "element" if tail.step > 1 or any(one.path for one in message.fields) else "byte"
+        facts.append(("Open end", f"{tail.name}: up to {texts.count(tail.most, what)}, {until}", ""))
     if message.reserved:
         facts.append(("Reserved", f"last {texts.count(message.reserved, 'byte')}", ""))
     shared = describe(relations.icd).node(node).known_ids

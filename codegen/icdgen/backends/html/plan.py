@@ -13,11 +13,17 @@ from icdgen.icd.model import Enum, Field, Message, Node
 
 def message_plan(message: Message, node: Node) -> dict[str, object]:
     """The plan of a message; ``node`` is the one that declares it. Fields stand in the order of the ICD."""
-    return {
+    plan: dict[str, object] = {
         "name": message.name,
         "length": message.length,
         "fields": [_field(field, node) for field in message.fields],
     }
+    if message.tail is not None:
+        tail = message.tail
+        plan["tail"] = {
+            "part": tail.name, "counter": tail.counter, "least": message.least, "step": tail.step, "most": tail.most,
+        }  # fmt: skip
+    return plan
 
 
 def enum_plan(enum: Enum) -> list[list[object]]:
@@ -36,7 +42,10 @@ def _field(field: Field, node: Node) -> dict[str, object]:
         plan["signed"] = True
     if field.view:
         plan["view"] = True
-    if field.is_bytes:
+    if field.implied:
+        plan["implied"] = True
+        plan["pieces"] = []
+    elif field.is_bytes:
         plan["type"] = "bytes"
         if field.type == "text":
             plan["text"] = True

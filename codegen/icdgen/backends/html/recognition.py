@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from icdgen import layout
 from icdgen.backends.html import wire
 from icdgen.backends.html.relations import Relations
 from icdgen.icd import wire_ids
@@ -19,9 +20,18 @@ def index(relations: Relations) -> dict[str, Any]:
     messages = [message for node in relations.icd.nodes for message in node.messages]
     numbers = {(message.node, message.name): number for number, message in enumerate(messages)}
     return {
-        "messages": [[m.name, relations.links.message(m), m.length, m.node] for m in messages],
+        "messages": [[m.name, relations.links.message(m), m.length, m.node, *_tail(relations, m)] for m in messages],
         "speakers": [_speaker(relations, node, numbers) for node in relations.icd.nodes],
     }
+
+
+def _tail(relations: Relations, message: Message) -> list[dict[str, Any]]:
+    """Where frames differ in length: what these are, and the bits that count the elements."""
+    tail, counter = message.tail, message.counter
+    if tail is None or counter is None:
+        return []
+    pieces = () if counter.implied else layout.pieces(counter, relations.icd.node(message.node))
+    return [{"least": message.least, "step": tail.step, "pieces": [[p.byte, p.shift, p.bits, p.at] for p in pieces]}]
 
 
 def script(relations: Relations) -> str:

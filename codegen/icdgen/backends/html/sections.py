@@ -54,7 +54,7 @@ def shares(message: Message) -> list[Section]:
     found = []
     for start in range(0, len(keys), size):
         some = keys[start : start + size]
-        fields = [message.fields[key - 1] for key in some]
+        fields = [one for key in some if not (one := message.fields[key - 1]).implied] or [message.fields[-2]]
         first, end = min(one.at for one in fields) // 8, -(-max(one.at + one.bits for one in fields) // 8)
         found.append(Section(f"Fields {some[0]} to {some[-1]}", first, end, some))
     return _folded(message, found)

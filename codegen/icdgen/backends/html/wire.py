@@ -75,6 +75,8 @@ def page_facts(message: Message, wire: Wire) -> dict[str, object]:
         "telemetry": message.telemetry_id,
         "crc": [crc_facts(one.facts) for one in wire.checked],
     }
+    if message.tail is not None:
+        facts["lengths"] = [message.least, message.tail.step]
     facts |= framing_facts(wire.facts)
     if wire.facts.can:
         facts["can"] = can_facts(wire.facts.can)

@@ -43,7 +43,7 @@ def _of_field(field: FieldDescription) -> Iterator[str]:
 
 
 def _message(message: MessageDescription, scope: str) -> Iterator[Identifier]:
-    for field in message.all_members:
+    for field in (*message.sent, *message.views):
         for name in (*_of_field(field), *(one.name.upper() for one in field.constants)):
             yield field.identifier(scope, name)
             if name in names.IN_MESSAGE:

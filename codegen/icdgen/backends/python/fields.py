@@ -7,7 +7,7 @@ from fractions import Fraction
 from icdgen.backends.lines import STEP, exploded
 from icdgen.backends.python.names import class_name
 from icdgen.backends.python.text import literal
-from icdgen.describe import FieldDescription, wholes
+from icdgen.describe import FieldDescription, MessageDescription, wholes
 from icdgen.describe.wholes import Whole
 
 _WIDTH = 120  # columns of a declaration
@@ -27,6 +27,8 @@ def _annotation(field: FieldDescription) -> str:
 
 def default(field: FieldDescription) -> str:
     """The raw value in a new message."""
+    if field.is_open:
+        return "()" if field.count else 'b""'
     return f"({_default(field)},) * {field.count}" if field.count else _default(field)
 
 
@@ -45,6 +47,10 @@ def _told(field: FieldDescription) -> list[str]:
     one, items = field.model, []
     if field.count:
         items.append(f"elements={field.count}")
+    if field.is_open:
+        items.append("is_open=True")
+    if field.is_open and field.enum is not None:
+        items.append(f"enum={class_name(field.enum)}")
     if one.unit:
         items.append(f"unit={literal(one.unit.symbol)}")
     if one.const is not None:
@@ -62,6 +68,14 @@ def declaration(field: FieldDescription) -> str:
     one = field.model
     items = [literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', f"default={default(field)}", *_told(field)]
     return _statement(field.name, annotation(field), "field", items)
+
+
+def tail(message: MessageDescription) -> str:
+    """``_base.Tail(...)``: attributes, bytes and elements of the open end."""
+    one = message.tail
+    assert one is not None
+    counter = "" if one.counter.model.implied else one.counter.name
+    return f'_base.Tail("{one.part.name}", "{counter}", {one.step}, {one.most})'
 
 
 def view_info(field: FieldDescription) -> str:
@@ -85,8 +99,12 @@ def physical(field: FieldDescription) -> str:
 def scaled(field: FieldDescription) -> str:
     """``estimated_roll_angle_deg: float = _base.scaled(...)``: the steps of the physical value, and the first one."""
     assert field.steps is not None
-    first = repr(field.steps.double(field.fresh))
-    first, note = (f"({first},) * {field.count}", "tuple[float, ...]") if field.count else (first, "float")
+    first = "()" if field.is_open else repr(field.steps.double(field.fresh))
+    first, note = (
+        (first, "tuple[float, ...]")
+        if field.is_open
+        else (f"({first},) * {field.count}", "tuple[float, ...]") if field.count else (first, "float")
+    )
     items = [*map(str, field.steps.terms), f"default={first}"]
     return _statement(field.physical_name, note, "scaled", items)
 

@@ -49,7 +49,7 @@ class RustBackend:
         found = _links(description) if wired else {}
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         yield PurePosixPath("src/lib.rs"), render(
-            "lib.rs.j2", nodes=icd.nodes, summary=nodes.summary, wired=wired, **common
+            "lib.rs.j2", has_tails=_has_tails(icd), nodes=icd.nodes, summary=nodes.summary, wired=wired, **common
         )
         yield from _runtime("src/support", render, self.crate)
         for node in description.nodes:
@@ -73,6 +73,10 @@ class RustBackend:
         return declared_names(describe(icd))
 
 
+def _has_tails(icd: Icd) -> bool:
+    return any(message.tail is not None for node in icd.nodes for message in node.messages)
+
+
 def _functions() -> dict[str, object]:
     """What templates spell names and text with."""
     from icdgen.backends.rust import text
@@ -83,7 +87,7 @@ def _functions() -> dict[str, object]:
 
     found = (
         accessors, big_parts, direction_example, enum_example, field_row, message_example, names.catch_all,
-        names.field_name, names.message_path, names.raw_type, names.type_name, scale_of, sentence, text.arm,
+        names.field_name, names.message_path, names.open_type, names.raw_type, names.type_name, scale_of, sentence, text.arm,
         text.assigned, text.code, text.described, text.doc, text.integer, text.prose, text.signature, text.string,
         text_comment, words,
     )  # fmt: skip

@@ -18,6 +18,8 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3) -> str:
 
     It stands in a line indented by ``depth`` steps.
     """
+    if field.model.implied:
+        return "0"
     if field.count:
         return _array(field) if _is_run(field) else _listed(field, tables, depth)
     one, row = field.model, field.pieces
@@ -144,13 +146,18 @@ def fitting(field: FieldDescription) -> list[str]:
     """The statements that return with an error if the raw value of a narrow field does not fit its bits."""
     raw = ".raw()" if field.enum is not None else ""
     if field.count:
-        lines = f"for value in self.{field_name(field)} {{", f"{STEP}{field.name.upper()}.fit(value{raw})?;", "}"
+        values = f"self.{field_name(field)}"
+        if field.is_open:
+            values = f"self.{field_name(field)}().iter().copied()"
+        lines = f"for value in {values} {{", f"{STEP}{field.name.upper()}.fit(value{raw})?;", "}"
         return list(lines)
     return [f"{field.name.upper()}.fit(self.{field_name(field)}{raw})?;"]
 
 
 def writing(field: FieldDescription) -> list[str]:
     """Statements that put the raw value into ``bytes``, without the bits that its field has no room for."""
+    if field.model.implied:
+        return []
     if field.count:
         return _put_run(field) if _is_run(field) else [line for one in field.elements for line in writing(one)]
     one, row, source = field.model, field.pieces, f"self.{field_name(field)}"

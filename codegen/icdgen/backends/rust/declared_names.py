@@ -11,6 +11,7 @@ from icdgen.describe import Description, MessageDescription, NodeDescription
 from icdgen.naming import DEVICES
 
 _METHODS = ("from_bytes", "from_array", "to_bytes", "default")
+_OPEN_METHODS = ("from_longest", "size")
 _CONSTANTS = ("NAME", "LENGTH", "ID", "SET_ID", "GET_ID")
 _ENUM_USES = ("Option", "From", "Enumeration")
 _OURS = "a name of the generated code"
@@ -61,10 +62,12 @@ def _node(node: NodeDescription) -> Iterator[Identifier]:
 def _message(message: MessageDescription) -> Iterator[Identifier]:
     where = f"{message.node.name}::{message.model.name}"
     fields, methods, associated = f"fields of {where}", f"methods of {where}", f"constants of {where}"
-    yield from _ours(methods, _METHODS)
+    yield from _ours(methods, (*_METHODS, *(_OPEN_METHODS if message.tail is not None else ())))
     yield from _ours(associated, _CONSTANTS)
     for field in message.all_members:
         is_view = field.model.view
+        if message.tail is not None and field.is_open:
+            yield field.identifier(methods, names.field_name(field))
         yield field.identifier(methods if is_view else fields, names.field_name(field))
         if field.has_physical:
             yield field.identifier(methods, field.physical_name)

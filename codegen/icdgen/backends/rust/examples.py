@@ -41,7 +41,7 @@ def direction_example(direction: Direction, node: NodeDescription, crate: str) -
         [
             f"use {crate}::{node.name}::{name};",
             "",
-            f"let message = {name}::from_bytes({one}::{id.upper()}, &[0; {message.model.length}])?;",
+            f"let message = {name}::from_bytes({one}::{id.upper()}, &[0; {message.model.least}])?;",
             f"assert_eq!(message.name(), {one}::NAME);",
         ],
         crate,
@@ -101,7 +101,8 @@ def _imports(message: MessageDescription, shown: Shown | None, crate: str) -> li
 def _received(message: MessageDescription, one: Example) -> list[str]:
     lines = [f"let frame = {_bytes(one.frame)};"]
     if len(one.frame) > _WHOLE:
-        lines = [f"let mut frame = [0; {type_name(message)}::LENGTH];"]
+        size = str(len(one.frame)) if message.tail else f"{type_name(message)}::LENGTH"
+        lines = [f"let mut frame = [0; {size}];"]
         lines += [_put(start, run) for start, run in one.runs]
     return [
         *lines,

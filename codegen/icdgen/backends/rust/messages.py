@@ -7,17 +7,18 @@ from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
 from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe.description import TailDescription
 
 DERIVES_DEFAULT = 32  # elements of an array; longer ones do not
 
 
 def values(message: MessageDescription) -> dict[str, object]:
     """What is read, written, derived and imported."""
-    fields, tables = message.members, bits.flag_tables(message)
+    fields, tables, tail = message.members, bits.flag_tables(message), message.tail
     readings = [bits.reading(field, tables) for field in fields]
     views = [(field, bits.reading(field, set(), depth=2)) for field in message.views]
     writings = [line for field in fields for line in bits.writing(field)]
-    has_default = all(field.fresh == 0 and not _is_long(field) for field in fields)
+    has_default = all((field.fresh == 0 or field.is_open) and not _is_long(field) for field in fields)
     derived = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
     narrow = [field for field in fields if field.is_narrow]
     scales = [field for field in message.all_members if has_constant(field)]
@@ -36,15 +37,25 @@ def values(message: MessageDescription) -> dict[str, object]:
         "take": any("take!(" in reading for reading in (*readings, *(reading for _, reading in views))),
         "text": has_text,
         "text_array": has_text,
+        "counted": tail is not None and not tail.counter.model.implied,
+        "elements": tail is not None,
+        "longest": tail is not None,
+        "present": tail is not None,
         "words": any("words(" in reading for reading in readings),
         "Big": message.has_wide_steps,
         "Coded": any(field.enum for field in message.all_fields),
         "Error": True,
+        "Frame": tail is not None,
         "Scale": is_usual,
         "Wide": message.has_wide_steps,
     }
+    imported = dict(sorted(imported.items(), key=lambda item: (item[0][0].isupper(), item[0])))
     names = [name for name, is_used in imported.items() if is_used]
+    bound = tail is not None and tail.is_bound
     return {
+        "refused": bound or bool(narrow),
+        "tail": tail,
+        "length_of_frame": "" if tail is None else _length_of_frame(tail),
         "constants": constants.of_fields(message),
         "tables": sorted(tables),
         "literal": _literal(fields, readings),
@@ -60,6 +71,12 @@ def values(message: MessageDescription) -> dict[str, object]:
     }
 
 
+def _length_of_frame(tail: TailDescription) -> str:
+    """Bytes of a frame that has ``count`` elements."""
+    rest = "count" if tail.step == 1 else f"{tail.step} * count"
+    return f"{tail.least} + {rest}" if tail.least else rest
+
+
 def _is_long(field: FieldDescription) -> bool:
     """Whether it is an array that has no `Default`."""
     if field.count:
@@ -68,18 +85,29 @@ def _is_long(field: FieldDescription) -> bool:
 
 
 def _fresh(field: FieldDescription) -> str:
+    if field.is_open and field.count:
+        return f"[{_zero(field)}; {field.count}]"
     return f"[{_one_fresh(field)}; {field.count}]" if field.count else _one_fresh(field)
 
 
 def _one_fresh(field: FieldDescription) -> str:
+    return _valued(field, field.fresh)
+
+
+def _zero(field: FieldDescription) -> str:
+    """An element that is not in the frame."""
+    return _valued(field, 0)
+
+
+def _valued(field: FieldDescription, raw: int) -> str:
     kind = field.model.type
     if field.model.is_bytes:
         return f"[0; {field.model.bits // 8}]"
     if kind == "enum":
-        return f"Coded::from_raw({integer(field.fresh)})"
+        return f"Coded::from_raw({integer(raw)})"
     if kind == "float":
         return "0.0"
-    return ("true" if field.fresh else "false") if kind == "bool" else integer(field.fresh)
+    return ("true" if raw else "false") if kind == "bool" else integer(raw)
 
 
 def _literal(fields: tuple[FieldDescription, ...], values: list[str]) -> str:

@@ -68,6 +68,11 @@ def raw_type(field: FieldDescription) -> str:
     return f"[{_one_type(field)}; {field.count}]" if field.count else _one_type(field)
 
 
+def open_type(field: FieldDescription) -> str:
+    """Type of the elements that are in a frame."""
+    return "[u8]" if field.model.is_bytes else f"[{_one_type(field)}]"
+
+
 def _one_type(field: FieldDescription) -> str:
     one = field.model
     if field.enum is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.describe.numbers import length_text
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import MessagePair, NodePair
 from icdgen.diff.rule import Found, rule
@@ -15,7 +16,7 @@ DIRECTIONS = {"telecommand": "telecommand_id", "telemetry": "telemetry_id"}
 
 
 def _summary(message: Message) -> str:
-    return f"{message.kind} {ids(message.ids)}, {count(message.length, 'byte')}"
+    return f"{message.kind} {ids(message.ids)}, {length_text(message)}"
 
 
 @rule("DIF101", "message", when="gone")
@@ -105,6 +106,11 @@ def _verb(kind: str) -> str:
 @rule("DIF106", "message")
 def length_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
+    if old.tail is not None or new.tail is not None:
+        if old.tail is not None and new.tail is not None and old.least != new.least:
+            text = f"{quote(new.name)} has {length_text(new)}, had {length_text(old)}"
+            yield Found(text, ("length",), length_text(old), length_text(new))
+        return
     if old.length == new.length:
         return
     shorter, by = min(old.length, new.length), count(abs(new.length - old.length), "byte")
@@ -118,6 +124,28 @@ def length_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     if tail and not ctx.is_touched_before(pair, shorter * 8):
         details.append(f"The first {shorter} bytes are as they were.")
     yield Found(text, ("length",), f"{old.length} bytes", f"{new.length} bytes", tuple(details))
+
+
+@rule("DIF119", "message")
+def open_end_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old, pair.new
+    was, now = _open_end(old), _open_end(new)
+    if was == now or (old.tail is None and new.tail is None):
+        return
+    details = [f"Frames have {length_text(new)}, had {length_text(old)}."] if old.lengths != new.lengths else []
+    if old.tail is not None and new.tail is not None and old.tail.most < new.tail.most:
+        details.append(f"Decoders of the other release refuse frames of more than {old.tail.most}.")
+    text = f"what ends {quote(new.name)} is {now}, was {was}"
+    yield Found(text, ("length",), was, now, tuple(details))
+
+
+def _open_end(message: Message) -> str:
+    """``up to 12 of `Levels`, counted by `Levels Count` ``"""
+    tail, counter = message.tail, message.counter
+    if tail is None or counter is None:
+        return "of fixed size"
+    counted = "as many as come" if counter.implied else f"counted by {quote(counter.name)}"
+    return f"up to {tail.most} of {quote(tail.name)}, {counted}"
 
 
 @rule("DIF130", "node", when="gone")

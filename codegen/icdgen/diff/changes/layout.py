@@ -70,7 +70,7 @@ def _cause(move: Move) -> str:
 @rule("DIF110", "field")
 def width_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    if old.bits != new.bits:
+    if old.bits != new.bits and not (new.is_bytes and pair.is_open):
         text = f"{quote(new.name)} has {count(new.bits, 'bit')}, had {old.bits}"
         yield Found(text, ("bits",), f"{old.bits} bits", f"{new.bits} bits")
 
@@ -78,7 +78,7 @@ def width_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 @rule("DIF118", "field")
 def count_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    if old.count != new.count:
+    if old.count != new.count and not pair.is_open:  # see DIF119
         was, now = (count(one.count, "element") if one.count else "one value" for one in (old, new))
         text = f"{quote(new.name)} is {_an_array(new)}, was {_an_array(old)}"
         yield Found(text, ("count", "bits"), was, now)

@@ -156,11 +156,25 @@ class _Reader:
         members = tuple(self.row(model.Member, member) for member in item["members"])
         return self.row(model.Enum, item, members=members, node=node)
 
+    def parts(self, item: Map) -> dict[str, Any]:
+        """Fields, and the open end, if there is one."""
+        members = [self.field(field) for field in item["fields"]]
+        fields = tuple(element for one in members for element in one.elements)
+        told = item.get("tail")
+        if told is None:
+            return {"fields": fields}
+        counter = told.get("counter")
+        if counter is None:
+            end = next(one for one in members if one.name == told["part"])
+            implied = model.implied_count(end, item["length"])
+            counter, fields = implied.name, (*fields, implied)
+        return {"fields": fields, "tail": model.Tail(told["part"], counter, told["step"], told["most"])}
+
     def message(self, item: Map, node: str) -> model.Message:
         return self.row(
             model.Message,
             item,
-            fields=tuple(element for field in item["fields"] for element in self.field(field).elements),
+            **self.parts(item),
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
             contains=tuple(model.Part(part["message"], part["offset"]) for part in item.get("contains", ())),

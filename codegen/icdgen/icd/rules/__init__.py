@@ -30,11 +30,12 @@ from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its r
     protocol_sizes,
     reading,
     references,
+    tails,
     values,
 )
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED, Rule
-from icdgen.icd.rules.wording import close_to
+from icdgen.suggest import close_to
 
 if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language

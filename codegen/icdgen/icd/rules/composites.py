@@ -10,8 +10,9 @@ from icdgen.icd.model import Field, Message, Node, Part
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import close_to, line_of, listing, quote
+from icdgen.icd.rules.wording import line_of, listing, quote
 from icdgen.icd.wire_ids import number
+from icdgen.suggest import close_to
 
 _KEYS = ("bits", "type", "enum", "unit", "formula")
 _IDS = ("id", "set_id", "get_id")
@@ -41,7 +42,7 @@ def part_exists(ctx: Context) -> Iterator[Fault]:
             if frame is not message:
                 text = f"{text}, in {quote(frame.name)}"
             yield Fault(message.source, row.at("message"), text, "name another frame")
-        elif part.at + frame.length * 8 > message.length * 8:
+        elif frame.tail is None and part.at + frame.length * 8 > message.length * 8:
             end = part.at + frame.length * 8
             text = f"{quote(frame.name)} ends at bit {end:,}, but {quote(message.name)} has {message.length * 8:,} bits"
             yield Fault(message.source, row.at("at"), text, "correct `at`, or the `length` of either")
@@ -63,14 +64,17 @@ def _repeated(frame: Message, frames: dict[str, Message]) -> set[str]:
 def part_matches(ctx: Context) -> Iterator[Fault]:
     for message, node, part, row in _parts(ctx):
         frame = next((m for m in ctx.messages_of(node) if m.name == part.message), None)
-        if frame is None or frame is message or part.at + frame.length * 8 > message.length * 8:
+        if (
+            frame is None
+            or frame is message
+            or frame.tail is not None
+            or part.at + frame.length * 8 > message.length * 8
+        ):
             continue  # a finding already
         wanted = {part.at + f.at: f for f in frame.owners}
         start, end = part.at, part.at + frame.length * 8
         told = set()
-        for field in message.owners:
-            if field.at + field.bits <= start or field.at >= end:
-                continue
+        for field in [one for one in message.owners if one.at < end and one.at + one.bits > start]:
             twin = wanted.pop(field.at, None)
             if id(field.source) in told:
                 continue  # another element of the same array

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 # Keys of a field that only few fields have.
 RARE = ("enum", "unit", "formula", "formula_for", "const", "special", "min", "max", "above", "below", "bitfields",
-    "byte_order", "bit_order", "count", "view",
+    "byte_order", "bit_order", "count", "view", "up_to",
 )  # fmt: skip
 
 Row = tuple[Field, Message, Node]
@@ -50,7 +50,9 @@ class Context:
         self.complete = complete
         self.raised: list[tuple[str, Fault]] = []  # code and fault, of the rules that ran already
         self.messages: list[tuple[Message, Node]] = [(m, n) for n in icd.nodes for m in n.messages]
-        self.fields: list[Row] = [(f, m, n) for m, n in self.messages for f in m.members]  # an array once
+        self.fields: list[Row] = [
+            (f, m, n) for m, n in self.messages for f in m.members if not f.implied
+        ]  # an array once
         self.having: dict[str, list[Row]] = {key: [] for key in RARE}  # fields that have the key
         having = self.having
         for row in self.fields:

@@ -53,7 +53,7 @@ def _sound(ctx: Context) -> Icd:
 
     def sound(message: Message) -> Message:
         kept = tuple(f for f in message.fields if id(f.source) not in bad and (f.enum or f.type != "enum"))
-        return message if len(kept) == len(message.fields) else replace(message, fields=kept)
+        return message if len(kept) == len(message.fields) else message.with_fields(kept)
 
     def sound_node(node: Node) -> Node:
         messages = tuple(sound(m) for m in node.messages if id(m.source) not in twins)

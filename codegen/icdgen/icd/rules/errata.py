@@ -8,7 +8,8 @@ from icdgen.diagnostics import Place
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import REGISTERED, elsewhere, rule
-from icdgen.icd.rules.wording import close_to, count, line_of
+from icdgen.icd.rules.wording import count, line_of
+from icdgen.suggest import close_to
 
 elsewhere("errata", "ICD080", "ICD081", "ICD082", "ICD083")
 

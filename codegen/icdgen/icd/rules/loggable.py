@@ -8,7 +8,8 @@ from icdgen.icd.model import Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import close_to, count, line_of, quote
+from icdgen.icd.rules.wording import count, line_of, quote
+from icdgen.suggest import close_to
 
 
 def _telemetry(ctx: Context, node: Node) -> dict[int, Message]:

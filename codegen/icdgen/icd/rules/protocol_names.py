@@ -13,7 +13,8 @@ from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import close_to, quote
+from icdgen.icd.rules.wording import quote
+from icdgen.suggest import close_to
 
 T = TypeVar("T")
 
@@ -98,7 +99,7 @@ def named_fields_in_the_order_of_the_node(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for owner, key, message in _named_fields(ctx, node):
             orders = node.byte_order, node.bit_order
-            home = next(one for one in ctx.scope(node) if message in one.messages)
+            home = next(one for one in ctx.scope(node) if one.name == message.node)
             for field in message.fields:
                 if field.name == owner[key] and not field.is_bytes and field.orders(home) != orders:
                     text = f"{quote(field.name)} is {' '.join(field.orders(home))}, the links of `{node.name}` read fields as"

@@ -10,8 +10,9 @@ from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import close_to, quote
+from icdgen.icd.rules.wording import quote
 from icdgen.icd.units import SPELLINGS, STANDARD
+from icdgen.suggest import close_to
 
 
 @rule("ICD040")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable
 
 from icdgen.diagnostics import Place
@@ -14,13 +13,6 @@ def quote(text: object) -> str:
     """The text in back-ticks, cut where it is longer than a line can bear."""
     words = str(text)
     return f"`{words if len(words) <= LONGEST else words[: LONGEST - 3] + '...'}`"
-
-
-def close_to(wanted: str, known: Iterable[str]) -> str:
-    """The known word that was probably meant; empty if none comes near."""
-    known = list(known)
-    same = [k for k in known if k.casefold() == wanted.casefold()]
-    return next(iter(same or difflib.get_close_matches(wanted[:200], known, 1)), "")
 
 
 def line_of(other: Place, here: Place) -> str:

@@ -18,14 +18,14 @@ use core::fmt::{Debug, Display};
 pub trait Message: Copy + Debug + Display + Sized {
     /// What the ICD calls it.
     const NAME: &'static str;
-    /// Length in bytes, without the id.
+    /// Length in bytes, without the id; of the longest frame, where they differ.
     const LENGTH: usize;
     /// Its fields, in the order of the ICD.
     const FIELDS: &'static [Field];
     /// As many bytes as it has.
     type Bytes: AsRef<[u8]> + Copy;
 
-    /// Decodes exactly [`Self::LENGTH`] bytes.
+    /// Decodes a frame: exactly [`Self::LENGTH`] bytes, unless frames differ in length.
     ///
     /// # Errors
     ///
@@ -71,8 +71,11 @@ pub trait Telecommand: Message {
 
 /// What each message has beside its own: a row for each field, with the member that holds it.
 macro_rules! message {
-    ($type:ident {
-        $($member:ident: ($($place:tt)*) $(.$what:ident($($how:tt)*))*,)*
+    ($type:ident { $($rows:tt)* }) => {
+        $crate::support::message!($type as [u8; <$type>::LENGTH] { $($rows)* });
+    };
+    ($type:ident as $bytes:ty {
+        $($member:ident $(up to $counter:ident)?: ($($place:tt)*) $(.$what:ident($($how:tt)*))*,)*
     }) => {
         impl $crate::Message for $type {
             const NAME: &'static str = <$type>::NAME;
@@ -81,7 +84,7 @@ macro_rules! message {
             const FIELDS: &'static [$crate::Field] = &[$(
                 $crate::Field::new($($place)*)$(.$what($($how)*))*
             ),*];
-            type Bytes = [u8; <$type>::LENGTH];
+            type Bytes = $bytes;
 
             #[inline]
             fn from_bytes(bytes: &[u8]) -> ::core::result::Result<Self, $crate::Error> {
@@ -108,13 +111,24 @@ macro_rules! message {
             fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
                 #[allow(unused_mut, unused_variables)]
                 let mut row = $crate::support::Row::begin::<Self>(out)?;
-                $(row.show(out, &self.$member)?;)*
+                $(row.show(out, $crate::support::shown!(self, $member $(, $counter)?))?;)*
                 Ok(())
             }
         }
     };
 }
 pub(crate) use message;
+
+/// What is shown of a member: of the end of a message the elements that are there.
+macro_rules! shown {
+    ($message:ident, $member:ident) => {
+        &$message.$member
+    };
+    ($message:ident, $member:ident, $counter:ident) => {
+        $crate::support::present(&$message.$member, $message.$counter)
+    };
+}
+pub(crate) use shown;
 
 /// What each enumeration has beside its values.
 macro_rules! enumeration {

@@ -13,6 +13,7 @@ mod bytes;
 mod field;
 mod message;
 mod scale;
+mod tail;
 mod text;
 mod wide;
 
@@ -21,9 +22,11 @@ pub(crate) use self::bytes::{
 };
 pub use self::field::Field;
 pub(crate) use self::field::Row;
-pub(crate) use self::message::{enumeration, message};
+pub(crate) use self::message::{enumeration, message, shown};
 pub use self::message::{Message, Telecommand, Telemetry};
 pub(crate) use self::scale::Scale;
+pub use self::tail::Frame;
+pub(crate) use self::tail::{counted, elements, longest, present, write_frame};
 pub(crate) use self::text::{text, text_array};
 pub(crate) use self::wide::{Big, Wide};
 

@@ -19,11 +19,11 @@ use core::fmt::{Formatter, Result as Shown};
 pub struct Field {
     /// What the ICD calls it.
     pub name: &'static str,
-    /// Its first bit in the frame.
+    /// Its first bit in the frame; behind the longest one, if only the length of the frame tells its value.
     pub at: usize,
     /// How many bits it has; of an array, each element.
     pub bits: usize,
-    /// How many elements an array has; 1 if it is none.
+    /// How many elements an array has, or can have; 1 if it is none.
     pub count: usize,
     /// The unit of the physical value; empty without one.
     pub unit: &'static str,
@@ -127,7 +127,7 @@ impl Row {
         Ok(Self { rest, mark })
     }
 
-    pub(crate) fn show(&mut self, out: &mut Formatter<'_>, value: &impl Value) -> Shown {
+    pub(crate) fn show(&mut self, out: &mut Formatter<'_>, value: &(impl Value + ?Sized)) -> Shown {
         let mark = core::mem::replace(&mut self.mark, ", ");
         match self.rest.next() {
             Some(field) => {
@@ -180,6 +180,12 @@ impl<E: super::Enumeration> Value for super::Coded<E> {
 }
 
 impl<T: Value, const N: usize> Value for [T; N] {
+    fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
+        self.as_slice().show(out, field)
+    }
+}
+
+impl<T: Value> Value for [T] {
     fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
         let mut mark = "[";
         for one in self {

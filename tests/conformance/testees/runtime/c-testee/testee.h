@@ -37,6 +37,7 @@ typedef struct {
     void (*init)(void *message);
     icd_status_t (*decode)(void *message, const uint8_t *buffer, size_t length);
     const char *(*misfit)(const void *message); /* NULL if every value of every member fits */
+    size_t (*frame_size)(const void *message);  /* NULL unless frames differ in length */
 } testee_message_t;
 
 /* A message that is reached under an id; `which` of its direction, where messages share ids. */
@@ -57,6 +58,7 @@ typedef struct {
     icd_status_t (*decode)(void *any, uint32_t id, const uint8_t *buffer, size_t length);
     icd_status_t (*encode)(const void *any, uint8_t *buffer, size_t capacity);
     icd_status_t (*length)(uint32_t id, unsigned which, size_t *length);
+    icd_status_t (*frame_size)(const void *any, size_t *size); /* NULL if no frames differ in length */
     const char *(*name)(uint32_t id, unsigned which);
 } testee_dispatcher_t;
 

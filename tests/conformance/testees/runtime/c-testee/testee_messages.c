@@ -220,17 +220,32 @@ static const char *misfit_of(const subject_t *subject)
 static void put_message(const subject_t *subject)
 {
     const testee_message_t *message = subject->message;
-    uint8_t *buffer = (uint8_t *)memory(message->length);
-    const icd_status_t status = subject->dispatcher->encode(subject->any, buffer, message->length);
     const char *misfit = misfit_of(subject);
+    size_t size = message->length;
+    size_t again = size;
     size_t i;
+    uint8_t *buffer;
+    icd_status_t status;
+    if (message->frame_size != NULL && misfit == NULL) {
+        size = message->frame_size(subject->value);
+        if (subject->dispatcher->frame_size(subject->any, &again) != ICD_OK || again != size) {
+            refuse("dispatcher");
+            return;
+        }
+    }
+    buffer = (uint8_t *)memory(size);
+    status = subject->dispatcher->encode(subject->any, buffer, size);
+    if (status == ICD_OK && size != 0u && subject->dispatcher->encode(subject->any, buffer, size - 1u) != ICD_ERROR_LENGTH) {
+        refuse("capacity");
+        return;
+    }
     if (status != ICD_OK || misfit != NULL) {
         refuse(status == (misfit != NULL ? ICD_ERROR_RANGE : ICD_OK) ? "range" : "encoding");
         put_text("field", misfit);
         return;
     }
     put_row("ok");
-    put_octets("bytes", buffer, message->length);
+    put_octets("bytes", buffer, size);
     for (i = 0; i < message->field_count; i++) {
         const testee_field_t *field = &message->fields[i];
         put_row("field");
@@ -284,7 +299,10 @@ static void decode(void)
     } else {
         status = subject.dispatcher->decode(subject.any, subject.id, frame.data, frame.length);
     }
-    if (status == ICD_ERROR_LENGTH) {
+    if (status == ICD_ERROR_LENGTH && subject.message != NULL && subject.message->frame_size != NULL) {
+        refuse("length"); /* which of its lengths it should have, is not told */
+        put_number("actual", frame.length);
+    } else if (status == ICD_ERROR_LENGTH) {
         (void)subject.dispatcher->length(subject.id, subject.which, &expected);
         refuse_length("length", expected, frame.length);
     } else if (status != ICD_OK) {

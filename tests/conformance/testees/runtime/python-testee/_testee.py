@@ -81,8 +81,12 @@ def _encode(node: Any, words: Words) -> str:
                 setattr(message, info.physical, bytes.fromhex(word[1:]).decode())
             elif word[0] == "p":
                 setattr(message, info.physical, _floats.float64(int(word[1:])))
+            elif info.is_open and len(word) != 1 + info.bits // 4:
+                raise Refusal(f"range field={_hex(info.name)}")
             else:
                 setattr(message, info.attribute, _raw(info, word[1:]))
+        if message.TAIL is not None:
+            _cut(message, words)
         return _described(message)
     except RangeError as error:
         named = {info.attribute: info.name for info in message.FIELDS}
@@ -106,6 +110,29 @@ def _set_elements(message: Message, info: FieldInfo, words: Words) -> None:
     setattr(message, info.attribute, tuple(raw))
 
 
+def _cut(message: Message, words: Words) -> None:
+    """Leaves the elements that are to be in the frame."""
+    tail: Any = message.TAIL
+    if tail.counter:
+        count = getattr(message, tail.counter)
+    else:
+        count = int(next(words)[1:])
+        if not 0 <= count <= tail.most:
+            raise Refusal(f"range field={_hex(_implied(message).name)}")
+    values = getattr(message, tail.part)
+    if isinstance(values, bytes):
+        values = values.ljust(tail.most, b"\0")
+    setattr(message, tail.part, values[:count])
+
+
+def _implied(message: Message) -> FieldInfo:
+    """The number of elements as a field, where no field of the frame has it."""
+    tail: Any = message.TAIL
+    info = next(one for one in message.FIELDS if one.attribute == tail.part)
+    name = f"{info.name} {'Count' if info.elements else 'Size'}"
+    return FieldInfo("", name, 0, 8, "uint")
+
+
 class Element:
     """A field, or an element of an array."""
 
@@ -115,22 +142,38 @@ class Element:
 
     def get(self, message: Message, attribute: str) -> Any:
         """Its value."""
+        info = self.info
+        if not attribute:
+            return len(getattr(message, message.TAIL.part))  # type: ignore[union-attr]
         value = getattr(message, attribute)
-        return value[self.index] if self.info.elements else value
+        if not info.elements:
+            is_cut = info.is_open and attribute == info.attribute
+            return value.ljust(info.bits // 8, b"\0") if is_cut else value
+        if self.index < len(value):
+            return value[self.index]
+        p, c, q = info.scale  # it is not in the frame
+        if attribute == info.physical:
+            return c / q
+        return info.enum(0) if info.enum else 0.0 if info.type == "float" else 0
 
     def set(self, message: Message, attribute: str, value: Any) -> None:
         """Sets it, and leaves the other elements as they are."""
         if self.info.elements:
-            values = list(getattr(message, attribute))
+            given = list(getattr(message, attribute))
+            values = [given[i] if i < len(given) else 0 for i in range(self.index + 1)]
+            values += given[self.index + 1 :]
             values[self.index] = value
             value = tuple(values)
         setattr(message, attribute, value)
 
 
 def _elements(message: Message) -> list[Element]:
+    infos = list(message.FIELDS)
+    if message.TAIL is not None and not message.TAIL.counter:
+        infos.append(_implied(message))
     return [
         Element(info, index)
-        for info in (*message.FIELDS, *message.VIEWS)
+        for info in (*infos, *message.VIEWS)
         for index in range(info.elements or 1)
     ]
 

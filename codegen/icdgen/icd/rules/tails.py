@@ -1,0 +1,64 @@
+"""Messages of variable length: what counts their open end, where it stands, and what carries it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.icd import tails
+from icdgen.icd.located import Map
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import rule
+from icdgen.icd.rules.wording import count, quote
+
+
+@rule("ICD120")
+def counted(ctx: Context) -> Iterator[Fault]:
+    for message, _ in ctx.messages:
+        for item in tails.open_parts(message.source):
+            yield from (_fault(one) for one in tails.faults_of_count(message.source, item))
+    for field, _, _ in ctx.having["up_to"]:
+        if not tails.is_open(field.source):
+            text = f"{quote(field.name)} is as large as its {'`count`' if field.count else '`bits`'} says, so there is no `up_to`"
+            help = "remove `up_to`; the largest value that it may have is `max`"
+            yield Fault(field.source, field.source.at("up_to"), text, help)
+
+
+@rule("ICD121")
+def at_the_end(ctx: Context) -> Iterator[Fault]:
+    for message, _ in ctx.messages:
+        for item in tails.open_parts(message.source):
+            yield from (_fault(one) for one in tails.faults_of_place(message.source, item))
+        if message.tail is None:
+            continue
+        for field in message.views:
+            if field.at + field.bits > 8 * message.least:
+                text = f"{quote(field.name)} is a view of {quote(message.tail.name)}, which is not always there"
+                yield Fault(field.source, field.source.at("at"), text, "view what every frame of the message has")
+
+
+@rule("ICD122")
+def carried(ctx: Context) -> Iterator[Fault]:
+    """Links, logs and composites know each message by one length."""
+    for node in ctx.icd.nodes:
+        linked = bool(ctx.protocol_of(node))
+        for message in ctx.messages_of(node):
+            if message.tail is not None and linked:
+                longest = f"{message.least} to {count(message.length, 'byte')}"
+                text = f"{quote(message.name)} has {longest}, and the links of `protocol` carry messages of one length each"
+                help = "leave `protocol` out of this ICD, or give the message a fixed `count`"
+                yield Fault(message.source, message.source.at("length"), text, help)
+    named = {message.name: message for message, _ in ctx.messages if message.tail is not None}
+    for message, node in ctx.messages:
+        for part in message.source.get("contains") or ():
+            if (
+                isinstance(part, Map)
+                and part.get("message") in named
+                and (known := named[part["message"]]) in ctx.messages_of(node)
+            ):
+                text = f"{quote(known.name)} has no fixed length, so {quote(message.name)} cannot repeat it"
+                yield Fault(message.source, part.at("message"), text, "remove it from `contains`")
+
+
+def _fault(one: tails.Obstacle) -> Fault:
+    return Fault(one.item, one.item.at(one.key), one.message, one.help)

@@ -1,0 +1,151 @@
+"""The open end of a message: its last part, of which a frame holds as many elements as a field says, or as fit in it.
+
+In the model it has all its elements; `Message.tail` says how many of them a frame may leave out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from icdgen.icd.located import Map
+
+REST = "rest"
+MOST_BYTES = 65535  # of a frame
+MOST_ELEMENTS = 1024  # as of any array
+_OCTETS = ("bytes", "text")
+
+
+class Obstacle(NamedTuple):
+    """Why a part cannot be the open end that it is said to be; ``key`` of ``item`` is wrong."""
+
+    item: Map
+    key: str
+    message: str
+    help: str
+
+
+def is_open(item: Map) -> bool:
+    """Whether a field is said to be there as often, or as long, as the frame goes."""
+    return "size" in item or isinstance(item.get("count"), str)
+
+
+def open_parts(message: Map) -> list[Map]:
+    """The fields of a message that are said to be open."""
+    return [item for item in _fields(message) if is_open(item) and type(item.get("up_to", 0)) is int]
+
+
+def unit(item: Map) -> int:
+    """Bits of an element of an open part: of bytes and text 8."""
+    bits: int = 8 if "size" in item else item["bits"]
+    return bits
+
+
+def counter_of(message: Map, item: Map) -> Map | None:
+    """The field that says how many elements there are; None where the end of the frame does, or there is none."""
+    name = item.get("count", REST)
+    return None if name == REST else next((one for one in _fields(message) if one.get("name") == name), None)
+
+
+def _fields(message: Map) -> list[Map]:
+    """Those whose place can be read: what is wrong with the others is the schema's business."""
+    items = message.get("fields")
+    found = [item for item in items if isinstance(item, Map)] if isinstance(items, list) else []
+    return [
+        item
+        for item in found
+        if isinstance(item.get("name"), str)
+        and all(type(item.get(key)) is int for key in (("at",) if "size" in item else ("at", "bits")))
+    ]
+
+
+def faults_of_count(message: Map, item: Map) -> Iterator[Obstacle]:
+    """What is wrong with how many elements there are said to be."""
+    name = f"`{item['name']}`"
+    key = "size" if "size" in item else "count"
+    if _is_unknown(message, item):
+        text = f"`{item['count']}`, which counts {name}, is no field of `{message['name']}`"
+        yield Obstacle(item, "count", text, "`count` is a number, the name of an earlier field, or `rest`")
+        return
+    if "up_to" not in item and key == "count":
+        text = f"{name} has no fixed {key}, and nothing says how large it can become"
+        yield Obstacle(item, key, text, "add `up_to:`, the most elements that there are: buffers are made for them")
+    if key == "size" or "up_to" not in item:
+        return
+    if item["up_to"] > MOST_ELEMENTS:
+        text = f"{name} has up to {item['up_to']:,} elements: an array has at most {MOST_ELEMENTS:,}"
+        yield Obstacle(item, "up_to", text, "what is longer is `bytes` with `size: rest`")
+    if item["count"] == REST:
+        return
+    counter = counter_of(message, item)
+    assert counter is not None
+    odd = _odd(counter, message)
+    if odd:
+        text = f"`{counter['name']}`, which counts {name}, {odd}"
+        yield Obstacle(item, "count", text, "what counts is an unsigned number in the bytes before")
+    elif (1 << counter["bits"]) - 1 < item["up_to"]:
+        text = f"`{counter['name']}` counts up to {(1 << counter['bits']) - 1:,}, and {name} has up to {item['up_to']:,} elements"
+        yield Obstacle(item, "up_to", text, "correct `up_to`, or the `bits` of the field that counts")
+
+
+def _is_unknown(message: Map, item: Map) -> bool:
+    """Whether what is said to count is no field."""
+    return item.get("count", REST) != REST and counter_of(message, item) is None
+
+
+def _odd(counter: Map, message: Map) -> str:
+    """Why a field cannot count, as the end of a sentence; empty if it can."""
+    if counter.get("type") != "uint" or "formula" in counter:
+        return "is scaled" if counter.get("type") == "uint" else f"is `{counter.get('type')}`"
+    for key, words in (("count", "is an array"), ("bitfields", "is divided"), ("const", "is constant")):
+        if key in counter:
+            return words
+    if counter.get("view"):
+        return "is a view"
+    if counter["at"] + counter["bits"] > 8 * message["length"]:
+        return "stands behind it"
+    return ""
+
+
+def faults_of_place(message: Map, item: Map) -> Iterator[Obstacle]:
+    """What is wrong with where it stands, and with what it is."""
+    name, fixed = f"`{item['name']}`", 8 * message["length"]
+    if _is_unknown(message, item):
+        return  # perhaps it is not meant to be open
+    others = [one for one in open_parts(message) if one is not item]
+    if others and item is not open_parts(message)[0]:
+        text = f"{name} is the second part of `{message['name']}` that has no fixed size"
+        yield Obstacle(item, "name", text, "only the last part of a message may be open")
+        return
+    if item["at"] != fixed:
+        text = f"{name} is open and begins at bit {item['at']:,}; the `length` of `{message['name']}` ends at bit {fixed:,}"
+        help = "`length` is that of the shortest frame, which ends where the open part begins"
+        yield Obstacle(item, "at", text, help)
+        return
+    is_octets = item.get("type") in _OCTETS
+    if "size" in item and not is_octets:
+        text = f"{name} is `{item.get('type')}`: `size: rest` is for bytes and text"
+        yield Obstacle(item, "size", text, "of numbers write `bits` of an element, and `count: rest`")
+    elif "size" not in item and is_octets:
+        text = f"{name} is `{item.get('type')}`, and the elements of an array are numbers"
+        yield Obstacle(item, "count", text, "bytes or text up to the end of the frame: `size: rest`, without `bits`")
+    elif unit(item) % 8:
+        text = f"an element of {name} has {unit(item)} bits, and a frame ends with a byte"
+        yield Obstacle(item, "bits", text, "describe its bytes as elements, or count them")
+    for key in ("view", "bitfields"):
+        if item.get(key):
+            text = f"{name} is open, so it has no `{key}`"
+            yield Obstacle(item, key, text, f"remove `{key}`")
+    if "reserved" in message:
+        text = f"`{message['name']}` ends with {name}, so there are no reserved bytes behind it"
+        yield Obstacle(message, "reserved", text, "remove `reserved`")
+    longest = message["length"] + item.get("up_to", 0) * unit(item) // 8
+    if longest > MOST_BYTES:
+        text = f"with all of {name}, `{message['name']}` has {longest:,} bytes: at most {MOST_BYTES:,} are held"
+        yield Obstacle(item, "up_to", text, "correct `up_to`")
+
+
+def obstacles(message: Map, item: Map) -> Iterator[Obstacle]:
+    """All that is wrong with an open part."""
+    yield from faults_of_count(message, item)
+    yield from faults_of_place(message, item)

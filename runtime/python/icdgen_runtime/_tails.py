@@ -1,0 +1,81 @@
+"""Frames that differ in length: each is the beginning of the longest one, which is decoded and encoded."""
+
+from __future__ import annotations
+
+from . import _lazy
+from ._codec import range_error
+from ._errors import LengthError, RangeError
+
+
+def decoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
+    """``from_bytes`` of a class whose longest frames ``longest`` decodes."""
+    tail = owner.TAIL
+
+    def from_bytes(cls: _lazy.Any, data: _lazy.Buffer) -> _lazy.Any:
+        count = count_in(cls, data)
+        self = longest(cls, padded(cls, data))
+        if tail.counter and getattr(self, tail.counter) != count:
+            told = getattr(self, tail.counter)
+            least = cls.LENGTH - tail.most * tail.step
+            raise LengthError(
+                cls.NAME, least + told * tail.step, memoryview(data).nbytes
+            )
+        setattr(self, tail.part, getattr(self, tail.part)[:count])
+        return self
+
+    return from_bytes
+
+
+def encoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
+    """``to_bytes`` of a class whose longest frames ``longest`` encodes."""
+    tail = owner.TAIL
+    info = next(one for one in owner.FIELDS if one.attribute == tail.part)
+    is_array = info.elements > 0
+    least = owner.LENGTH - tail.most * tail.step
+    rest: _lazy.Any = bytes(tail.most)
+    if is_array:
+        from . import _compiled
+
+        zeros = _compiled.longest(owner, "from_bytes")(owner, bytes(owner.LENGTH))
+        rest = getattr(zeros, tail.part)
+
+    def to_bytes(self: _lazy.Any) -> bytes:
+        values = getattr(self, tail.part)
+        try:
+            values = tuple(values) if is_array else memoryview(values).tobytes()
+        except TypeError:
+            raise range_error(self) from None
+        count = len(values)
+        if count > tail.most:
+            raise range_error(self)
+        if tail.counter and getattr(self, tail.counter) != count:
+            allowed = f"{count}, as many as {tail.part} has"
+            raise RangeError(tail.counter, allowed, getattr(self, tail.counter))
+        whole = object.__new__(type(self))
+        for one in self.FIELDS:
+            setattr(whole, one.attribute, getattr(self, one.attribute))
+        setattr(whole, tail.part, values + rest[count:])
+        frame: bytes = longest(whole)
+        return frame[: least + count * tail.step]
+
+    return to_bytes
+
+
+def count_in(message: _lazy.Any, data: _lazy.Buffer) -> int:
+    """How many elements the end of a frame has. Raises `LengthError`."""
+    tail, actual = message.TAIL, memoryview(data).nbytes
+    least: int = message.LENGTH - tail.most * tail.step
+    step: int = tail.step
+    count, part = divmod(actual - least, step)
+    if actual < least:
+        raise LengthError(message.NAME, least, actual)
+    if actual > message.LENGTH:
+        raise LengthError(message.NAME, message.LENGTH, actual)
+    if part:
+        raise LengthError(message.NAME, actual - part, actual)
+    return count
+
+
+def padded(message: _lazy.Any, data: _lazy.Buffer) -> bytes:
+    """The longest frame, of which the rest is 0."""
+    return memoryview(data).tobytes().ljust(message.LENGTH, b"\0")

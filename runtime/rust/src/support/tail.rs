@@ -1,0 +1,113 @@
+//! Messages whose frames differ in length: each is the beginning of the longest one.
+
+use super::Error;
+
+/// The bytes of a message, up to `N`.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<const N: usize> {
+    longest: [u8; N],
+    size: usize,
+}
+
+impl<const N: usize> Frame<N> {
+    /// The first bytes of the longest frame.
+    pub(crate) fn new(longest: [u8; N], size: usize) -> Self {
+        Self { longest, size }
+    }
+}
+
+impl<const N: usize> AsRef<[u8]> for Frame<N> {
+    #[inline]
+    fn as_ref(&self) -> &[u8] {
+        present(&self.longest, self.size)
+    }
+}
+
+impl<const N: usize> core::ops::Deref for Frame<N> {
+    type Target = [u8];
+
+    #[inline]
+    fn deref(&self) -> &[u8] {
+        self.as_ref()
+    }
+}
+
+impl<const N: usize, const M: usize> PartialEq<[u8; M]> for Frame<N> {
+    fn eq(&self, other: &[u8; M]) -> bool {
+        self.as_ref() == other.as_slice()
+    }
+}
+
+impl<const N: usize> PartialEq for Frame<N> {
+    fn eq(&self, other: &Self) -> bool {
+        self.as_ref() == other.as_ref()
+    }
+}
+
+impl<const N: usize> Eq for Frame<N> {}
+
+/// The longest frame, the rest of it 0, and how many elements of `step` bytes there are behind the first `least` bytes.
+pub(crate) fn longest<const N: usize>(
+    bytes: &[u8],
+    least: usize,
+    step: usize,
+) -> Result<([u8; N], usize), Error> {
+    let (actual, mut longest) = (bytes.len(), [0; N]);
+    let rest = match actual.checked_sub(least) {
+        Some(rest) => rest,
+        None => return Error::length(least, actual),
+    };
+    match longest.get_mut(..actual) {
+        Some(_) if rest % step != 0 => Error::length(actual - rest % step, actual),
+        Some(target) => {
+            target.copy_from_slice(bytes);
+            Ok((longest, rest / step))
+        }
+        None => Error::length(N, actual),
+    }
+}
+
+/// Whether a frame says of itself how many elements it has: `told`, of `step` bytes behind `least`.
+pub(crate) fn counted(
+    told: impl TryInto<usize>,
+    least: usize,
+    step: usize,
+    actual: usize,
+) -> Result<(), Error> {
+    let told = told.try_into().unwrap_or(usize::MAX);
+    match least.saturating_add(told.saturating_mul(step)) {
+        expected if expected == actual => Ok(()),
+        expected => Error::length(expected, actual),
+    }
+}
+
+/// How many elements there are, if that is not too many.
+pub(crate) fn elements(
+    field: &'static str,
+    count: impl TryInto<usize>,
+    most: usize,
+) -> Result<usize, Error> {
+    match count.try_into() {
+        Ok(count) if count <= most => Ok(count),
+        _ => Err(Error::Range { field }),
+    }
+}
+
+/// The elements that are in the frame.
+#[inline]
+pub(crate) fn present<T>(elements: &[T], count: impl TryInto<usize>) -> &[T] {
+    let count = count.try_into().unwrap_or(usize::MAX);
+    elements.get(..count).unwrap_or(elements)
+}
+
+/// Copies a frame to the beginning of `buffer` and says how many bytes it has.
+pub(crate) fn write_frame(buffer: &mut [u8], frame: &[u8]) -> Result<usize, Error> {
+    let capacity = buffer.len();
+    match buffer.get_mut(..frame.len()) {
+        Some(target) => {
+            target.copy_from_slice(frame);
+            Ok(frame.len())
+        }
+        None => Error::length(frame.len(), capacity),
+    }
+}

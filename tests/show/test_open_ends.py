@@ -1,0 +1,41 @@
+"""Messages of variable length: what is shown of them, and read back."""
+
+from __future__ import annotations
+
+import json
+
+import jsonschema_rs
+
+from icdgen.diff.inputs import shown
+from icdgen.loading import load
+from icdgen.show.fields import field_table
+from icdgen.show.machine import SCHEMA, to_json
+from icdgen.show.people import to_text
+from tests.conformance import odd
+
+
+def read(folder):
+    (folder / "open.yaml").write_text(odd.OPEN, encoding="utf-8")
+    loaded = load([folder])
+    assert loaded.findings == []
+    return loaded.icd
+
+
+def test_an_open_end_is_one_line_with_its_bound_and_what_counts_it(tmp_path):
+    icd = read(tmp_path)
+    node = icd.node("open")
+    tables = {message.name: field_table(message, node).splitlines()[-1] for message in node.messages}
+    assert "up to 5 x 24" in tables["Narrow"] and "up to the end of the frame" in tables["Narrow"]
+    assert "as many as Levels Count says" in tables["Counted"]
+    assert "up to 80 x 8" in tables["Text"]
+    assert "Samples Count" not in "".join(tables.values())  # it is in no frame
+    assert "4 to 28 bytes" in to_text(icd, ["open", "Counted"])
+
+
+def test_what_is_shown_for_programs_is_read_back_with_the_open_ends(tmp_path):
+    icd = read(tmp_path)
+    tree = to_json(icd)
+    jsonschema_rs.validator_for(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(tree)
+    again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd
+    facts = lambda one: (one.name, one.length, one.lengths, one.tail, [f.name for f in one.fields])  # noqa: E731
+    assert list(map(facts, again.nodes[0].messages)) == list(map(facts, icd.nodes[0].messages))
