@@ -94,7 +94,7 @@ def which(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | None:
     if fitting:
         return max(fitting, key=lambda one: one[0])[1]
     if all(message.length == known[0].length != len(frame) for message in known):
-        raise LengthError(known[0], len(frame))
+        raise LengthError(known[0], known[0].length, len(frame))
     return None
 
 

@@ -257,7 +257,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
     }
     const told = [...known.values()].map(({ number }) => `${index.messages[number][0]} has ${lengthText(index, number)} bytes`);
     const [{ id, data }] = known.values();
-    if ([...known.values()].some(({ number }) => lengthOf(index, number) === data.length)) {
+    if (known.size > 1 && [...known.values()].some(({ number }) => lengthOf(index, number) === data.length)) {
       return new Error(`the ${data.length} bytes after the id ${id} have the constants of none of its messages`);
     }
     return new Error(`${told.join(" or ")}, ${data.length} given after the id ${id}`);

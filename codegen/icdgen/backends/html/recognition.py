@@ -9,7 +9,7 @@ from icdgen import layout
 from icdgen.backends.html import wire
 from icdgen.backends.html.relations import Relations
 from icdgen.icd import wire_ids
-from icdgen.icd.model import Node
+from icdgen.icd.model import Message, Node
 from icdgen.icd.variants import Variant, ids_of
 from icdgen.layout import signs
 from icdgen.protocol import facts
