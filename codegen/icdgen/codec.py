@@ -1,16 +1,18 @@
 """The reference codec: slow, obvious, exact. The judge of all generated code, so it shares nothing with ``layout``.
 
 Raw values are int (uint, int, enum, bool as 0 or 1), bytes (bytes and text fields) and, for floats, the int of their
-IEEE 754 bits, so that every NaN survives. Physical values are exact `fractions.Fraction`s.
+IEEE 754 bits, so that every NaN survives. Physical values are exact `fractions.Fraction`s, those of curves doubles.
 """
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 
+from icdgen.icd.curve import Curve
 from icdgen.icd.model import Field, Icd, Message, Node
 
 
@@ -150,7 +152,9 @@ def physical(field: Field, raw: int) -> Fraction | None:
 
 
 def physical_double(field: Field, raw: int) -> float | None:
-    """The correctly rounded double of the physical value."""
+    """The correctly rounded double of the physical value; of a curve, what its definition gives."""
+    if field.curve is not None:
+        return field.curve.double(float_value(field, raw) if field.type == "float" else raw)
     exact = physical(field, raw)
     return None if exact is None else to_double(exact)
 
@@ -160,11 +164,28 @@ def raw_from_physical(field: Field, value: Fraction | int | float) -> int:
     if isinstance(value, float):
         if value != value or value in (float("inf"), float("-inf")):
             raise CodecError(f"{field.name!r} takes a finite number, not {value}")
+    if field.curve is not None:
+        return _raw_on_curve(field, field.curve, value if isinstance(value, float) else to_double(Fraction(value)))
     exact = Fraction(value)
     raw = round(field.scale.raw(exact) if field.scale else exact)  # Fraction rounds ties to even
     if not field.raw_min <= raw <= field.raw_max:
         low, high = sorted(float(field.scale.physical(r)) if field.scale else r for r in (field.raw_min, field.raw_max))
         raise CodecError(f"{field.name!r} takes {low:g} to {high:g}, not {float(exact):g}")
+    return raw
+
+
+def _raw_on_curve(field: Field, curve: Curve, value: float) -> int:
+    if not field.leads_back:
+        raise CodecError(f"the formula of {field.name!r} does not lead back to a raw value")
+    if field.type == "float":
+        inverse = curve.inverse(value)
+        if not math.isfinite(inverse):
+            raise CodecError(f"{field.name!r} cannot hold {value:g}")
+        return float_bits(field, inverse)
+    raw = curve.nearest(value, field.raw_min, field.raw_max)
+    if raw is None:
+        low, high = sorted((curve.double(field.raw_min), curve.double(field.raw_max)))
+        raise CodecError(f"{field.name!r} takes {low:g} to {high:g}, not {value:g}")
     return raw
 
 

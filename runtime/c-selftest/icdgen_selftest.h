@@ -98,12 +98,12 @@ typedef struct {
 
 /** What there is of a message whose frames differ in length. */
 typedef struct {
-    uint16_t least;                         /* bytes of the shortest frame */
-    uint16_t counter;                       /* which field has the number of elements */
-    uint16_t most;                          /* elements */
-    const uint16_t *lengths;                /* of the frame of each vector; the rest of its bytes is 0 */
-    size_t (*size)(const void *message);    /* bytes of the frame that it makes */
-    const uint8_t *refused_frames;          /* that have more or fewer elements than they say, `length` bytes each */
+    uint16_t least;                      /* bytes of the shortest frame */
+    uint16_t counter;                    /* which field has the number of elements */
+    uint16_t most;                       /* elements */
+    const uint16_t *lengths;             /* of the frame of each vector; the rest of its bytes is 0 */
+    size_t (*size)(const void *message); /* bytes of the frame that it makes */
+    const uint8_t *refused_frames;       /* that have more or fewer elements than they say, `length` bytes each */
     const uint16_t *refused_frame_lengths;
     uint16_t refused_frame_count;
 } icdgen_selftest_tail_t;

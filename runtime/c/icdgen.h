@@ -20,6 +20,8 @@
 
 #include "support/physical.h"
 
+#include "support/curve.h"
+
 #include "support/text.h"
 
 #include "support/field.h"

@@ -129,8 +129,39 @@ const icdgenCodec = (() => {
     return [raw * p + c, q];
   }
 
-  /** The correctly rounded double of the physical value; null without a scale. */
+  /** A polynomial in doubles by Horner's rule; the constant stands first. NaN has always the same bits. */
+  function onCurve(coefficients, raw) {
+    const value = coefficients.reduceRight((sum, coefficient) => sum * raw + coefficient);
+    return Number.isNaN(value) ? NaN : value;
+  }
+
+  /** Raw value nearest to a physical one of a curve, ties to even. */
+  function rawFromCurve(field, value) {
+    if (field.oneWay) throw unfit(field, "takes raw values only, as its formula does not lead back");
+    if (field.type === "float") {
+      const inverse = (value - field.curve[0]) / field.curve[1];
+      const narrow = field.bits === 32 ? Math.fround(inverse) : inverse;
+      if (!Number.isFinite(narrow)) throw unfit(field, `cannot hold ${value}`);
+      return floatBits(field, narrow);
+    }
+    let [low, high] = range(field).map(Number);
+    const at = (raw) => onCurve(field.curve, raw);
+    const ends = [at(low), at(high)];
+    const rises = ends[0] < ends[1];
+    if (!rises) ends.reverse();
+    if (value < ends[0] || value > ends[1]) throw unfit(field, `takes ${ends[0]} to ${ends[1]}, not ${value}`);
+    while (high - low > 1) {
+      const middle = Math.floor((low + high) / 2);
+      if (rises ? at(middle) <= value : at(middle) >= value) low = middle;
+      else high = middle;
+    }
+    const [below, above] = [Math.abs(value - at(low)), Math.abs(at(high) - value)];
+    return BigInt(below < above || (below === above && low % 2 === 0) ? low : high);
+  }
+
+  /** The correctly rounded double of the physical value, that of a curve as it is defined; null without a formula. */
   function physical(field, raw) {
+    if (field.curve) return onCurve(field.curve, field.type === "float" ? floatValue(field, raw) : Number(raw));
     const ratio = exact(field, raw);
     return ratio && nearestDouble(...ratio);
   }
@@ -138,6 +169,7 @@ const icdgenCodec = (() => {
   /** Raw value nearest to a physical one, ties to even. Throws a CodecError for what is not finite or does not fit. */
   function rawFromPhysical(field, value) {
     if (!Number.isFinite(value)) throw unfit(field, `takes a finite number, not ${value}`);
+    if (field.curve) return rawFromCurve(field, value);
     const [p, c, q] = (field.scale ?? [1, 0, 1]).map(BigInt);
     let [number, exponent] = split(value);
     let over = p;

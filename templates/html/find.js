@@ -12,7 +12,10 @@ const icdgenFind = (() => {
   const WITHIN = 0.4;
   const CLOSE = 0.6;
   // Words that generated code puts around names; they say nothing about which one is meant.
-  const AROUND = new Set("h t id ids set get const init encode decode from to bytes length len raw physical value is min max try new struct enum class icd messages default unchecked telemetry telecommand limits misfit client send request receive".split(" "));
+  const AROUND = new Set("h t id ids set get const init encode decode from to bytes length len raw physical value is min max try new struct enum class icd messages default unchecked telemetry telecommand limits misfit client send request receive fields".split(" "));
+
+  // What follows names another message, which the one that is meant repeats.
+  const PART = /(?<=\w)_part_\w+$/;
 
   const squashed = (text) => text.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "");
 
@@ -83,7 +86,7 @@ const icdgenFind = (() => {
     function find(text, most = 24) {
       const plain = text.trim().toLowerCase().replace(/\s+/g, " ");
       const identifier = /[\p{L}\p{N}](?:_|::|->|\.)[\p{L}_]|\p{Ll}\p{Lu}/u.test(text);
-      const asked = [...new Set(identifier ? wordsOf(text) : plainWords(plain))].slice(0, 16);
+      const asked = [...new Set(identifier ? wordsOf(text.replace(PART, "")) : plainWords(plain))].slice(0, 16);
       const query = { plain, squashed: squashed(plain), optional: asked.map((word) => identifier && AROUND.has(word)) };
       find.sure = true;
       if (!plain) return [];

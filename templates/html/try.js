@@ -84,7 +84,7 @@
       const members = plan.enums[field.enum].map(([value, name]) => make("option", { value: String(value) }, `${value} · ${name}`));
       return make("select", attributes, ...members, make("option", { value: "" }, "no member"));
     }
-    if (field.scale || field.text || field.type === "float") return make("input", { ...attributes, type: "text", class: "n", autocomplete: "off", spellcheck: "false" });
+    if (field.scale || field.curve || field.text || field.type === "float") return make("input", { ...attributes, ...(field.oneWay ? { readonly: "" } : {}), type: "text", class: "n", autocomplete: "off", spellcheck: "false" });
     return null;
   }
 

@@ -16,7 +16,7 @@ const icdgenValues = ((codec, frames) => {
     const named = { nan: NaN, inf: Infinity, infinity: Infinity, "-inf": -Infinity, "-infinity": -Infinity }[word];
     const number = named ?? (/^[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[-+]?[0-9]+)?$/.test(word) ? Number(word) : undefined);
     if (number === undefined) throw new Error(`${field.name} takes a number`);
-    return field.type === "float" ? codec.floatBits(field, number) : codec.rawFromPhysical(field, number);
+    return field.type === "float" && !field.curve ? codec.floatBits(field, number) : codec.rawFromPhysical(field, number);
   }
 
   function rawText(field, value) {
@@ -28,6 +28,7 @@ const icdgenValues = ((codec, frames) => {
   /** The physical value of a field that has one. */
   function physicalText(field, value) {
     if (field.text) return codec.text(value);
+    if (field.curve) return numberText(codec.physical(field, value));
     return field.type === "float" ? floatText(field, value) : decimal(...codec.exact(field, value));
   }
 
@@ -35,7 +36,7 @@ const icdgenValues = ((codec, frames) => {
   function shortText(field, value, enums) {
     if (field.type === "enum") return memberName(enums[field.enum], value) ?? `${value}?`;
     if (field.text) return codec.text(value);
-    if (field.type === "float" || field.scale) return `${physicalText(field, value)}${field.unit ? ` ${field.unit}` : ""}`;
+    if (field.type === "float" || field.scale || field.curve) return `${physicalText(field, value)}${field.unit ? ` ${field.unit}` : ""}`;
     return `${rawText(field, value)}${field.unit ? ` ${field.unit}` : ""}`;
   }
 
@@ -55,9 +56,13 @@ const icdgenValues = ((codec, frames) => {
     return scaled < 0n ? `-${text}` : text;
   }
 
+  function numberText(number) {
+    return Object.is(number, -0) ? "-0" : String(number);
+  }
+
   function floatText(field, value) {
     const number = codec.floatValue(field, value);
-    if (field.bits === 64 || !Number.isFinite(number)) return Object.is(number, -0) ? "-0" : String(number);
+    if (field.bits === 64 || !Number.isFinite(number)) return numberText(number);
     for (let digits = 1; digits < 10; digits += 1) {
       const text = number.toPrecision(digits);
       if (Object.is(Math.fround(Number(text)), number)) return Object.is(number, -0) ? "-0" : String(Number(text));
@@ -83,8 +88,9 @@ const icdgenValues = ((codec, frames) => {
 
   /** -1, 0 or 1: the value is less than, equal to or greater than n / d. */
   function beyond(field, value, n, d) {
-    if (field.type === "float") {
-      const [number, bound] = [codec.floatValue(field, value), codec.nearestDouble(n, d)];
+    if (field.type === "float" || field.curve) {
+      const number = field.curve ? codec.physical(field, value) : codec.floatValue(field, value);
+      const bound = codec.nearestDouble(n, d);
       return number < bound ? -1 : number > bound ? 1 : 0;
     }
     const [numerator, denominator] = codec.exact(field, value) ?? [value, 1n];

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 
 import pytest
@@ -96,7 +97,7 @@ def test_the_vectors_execute_every_line_of_the_python_of_an_icd(demo, tmp_path):
 def test_a_line_of_python_that_is_not_executed_is_told_and_fails(demo, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(python_coverage, "by_id", lambda icd, built: [])
     assert python_coverage.main(["--out", str(tmp_path), str(demo)]) == 1
-    assert "icdgen_messages/demo/__init__.py:44: not executed" in capsys.readouterr().err
+    assert re.search(r"icdgen_messages/demo/__init__\.py:\d+: not executed", capsys.readouterr().err)
 
 
 def test_branches_of_python_are_found():

@@ -7,7 +7,11 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import NamedTuple
 
+from icdgen import codec
+from icdgen.icd.curve import Curve
+from icdgen.icd.model import Field
 from icdgen.vectors.ids import worth_asking
+from icdgen.vectors.write import raw_json
 from tests.conformance.compare import Maybe
 
 DIRECTIONS = ("telecommand", "telemetry", "configuration")
@@ -42,7 +46,8 @@ class MessageCases:
         self.node, self.message, self.enums, self.never_set = node, message, enums, never_set
         self.fields: list[dict] = message["fields"]
         self.views = {field["name"] for field in self.fields if "view" in field}
-        self.scaled = [field for field in self.fields if "factor" in field]
+        self.scaled = [field for field in self.fields if "factor" in field or "coefficients" in field]
+        self.one_way = {field["name"] for field in self.scaled if "set" not in field}  # and views
         self.texts = [field for field in self.fields if field["type"] == "text"]
         self.id = message.get("id", message.get("set_id"))
         self.fresh = {field["name"]: shown(field, field["default"]) for field in self.fields}
@@ -60,7 +65,7 @@ class MessageCases:
         for field in self.fields:
             yield from self.unfit(field)
         for field in (*self.scaled, *self.texts):
-            if field["name"] not in self.views:
+            if field["name"] not in self.one_way:
                 yield from self.settings(field)
         yield from self.set_views()
 
@@ -81,7 +86,7 @@ class MessageCases:
         names = self.names(raw)
         if names:
             yield Case(why, self.request("decode", bytes=vector["bytes"], names=True), {**answer, "names": names})
-        physical = {name: value for name, value in self.owned(physical).items() if value is not None}
+        physical = {name: value for name, value in physical.items() if name not in self.one_way and value is not None}
         if physical:
             rest = {name: value for name, value in self.owned(raw).items() if name not in physical}
             yield Case(
@@ -117,7 +122,7 @@ class MessageCases:
                     raws = {**self.seen(answer["raw"]), field["name"]: filled}
                     answer = {**answer, "raw": raws, "bytes": ...} | ({"physical": ...} if self.views else {})
         for field in self.scaled:
-            if field["name"] in self.views:
+            if field["name"] in self.one_way:
                 continue
             back = nearest(field, physical[field["name"]])
             if back is None:
@@ -190,7 +195,8 @@ class MessageCases:
         if field["type"] == "text":
             given = [(text.encode().hex(), raw) for text, raw in field["set"]]
         else:
-            given = [*field["set"], *((bits, None) for bits in self.never_set)]
+            never = () if field["type"] == "float" else self.never_set
+            given = [*field["set"], *((bits, None) for bits in never)]
         for bits, raw in given:
             request = self.request("encode", raw=rest, physical={name: bits})
             full = {
@@ -270,10 +276,21 @@ def nearest_double(exact: str) -> str:
     return struct.pack(">d", value.numerator / value.denominator).hex()
 
 
-def nearest(field: dict, bits: str) -> int | None:
+def nearest(field: dict, bits: str) -> int | str | None:
     """The raw value nearest to a physical one, ties to even; None if it does not fit."""
+    if "coefficients" in field:
+        return _on_curve(field, bits)
     value = Fraction(struct.unpack(">d", bytes.fromhex(bits))[0])
     raw = round((value - Fraction(field["offset"])) / Fraction(field["factor"]))
     width, signed = field["bits"], field["type"] == "int"
     low, high = (-(1 << width - 1), (1 << width - 1) - 1) if signed else (0, (1 << width) - 1)
     return raw if low <= raw <= high else None
+
+
+def _on_curve(field: dict, bits: str) -> int | str | None:
+    one = Field("", 0, field["bits"], field["type"], curve=Curve(tuple(field["coefficients"])))
+    try:
+        raw = codec.raw_from_physical(one, struct.unpack(">d", bytes.fromhex(bits))[0])
+    except codec.CodecError:
+        return None
+    return raw_json(one, raw)

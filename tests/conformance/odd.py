@@ -75,6 +75,27 @@ messages:
       - {at: 248, bits: 8, name: Last Byte, type: enum, enum: Signed Ends}
       - {at: 256, bits: 16, name: Half, type: enum, enum: Signed Narrow}
       - {at: 280, bits: 33, name: Lengthy, type: enum, enum: Signed Word}
+  - name: Curved
+    set_id: 20
+    get_id: 30
+    kind: configuration
+    length: 57
+    fields:
+      - {at: 0, bits: 16, name: Thermistor, type: uint, unit: C, formula: "-40 + 0.02*raw + 3e-6*raw^2", min: 0}
+      - {at: 19, bits: 12, name: Falling, type: int, unit: V, formula: "5 - 0.01*raw - 1e-9*raw^3", byte_order: big}
+      - {at: 32, bits: 32, name: Wide, type: int, formula: "raw^2*1e-3 + 7"}
+      - {at: 64, bits: 64, name: Widest, type: uint, formula: "1.5e-18*raw^2 - 2.25e-9*raw + 1/3"}
+      - {at: 128, bits: 32, name: Rate, type: float, unit: deg/s, formula: raw*57.295779513}
+      - {at: 163, bits: 64, name: Angle, type: float, unit: deg, formula: raw*57.295779513 - 1e-3, min: -180, max: 180}
+      - {at: 230, bits: 32, name: Squares, type: float, formula: raw^2}
+      - {at: 264, bits: 8, name: Levels, type: uint, count: 4, unit: V, formula: "raw/100 + raw^2/1000"}
+      - {at: 296, bits: 32, name: Rates, type: float, count: 3, unit: deg/s, formula: raw/3 + 0.1, byte_order: big}
+      - {at: 392, bits: 8, name: Both Ways, type: int, formula: raw^2 - 3}
+      - {at: 0, bits: 8, name: Low, type: uint, unit: V, formula: raw^3/1000, view: true}
+      - {at: 400, bits: 7, name: Cubes, type: int, formula: raw^3, special: [{value: -64, meaning: Not known}]}
+      - {at: 407, bits: 1, name: One, type: uint, formula: 3*raw^2 + 1}
+      - {at: 408, bits: 32, name: Inverse, type: float, formula: raw = value*1000}
+      - {at: 440, bits: 16, name: Constant, type: uint, formula: 0.5*raw^2 + raw, const: 8}
   - name: Mixed
     id: 7
     kind: telecommand

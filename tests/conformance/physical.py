@@ -23,6 +23,7 @@ from tests.conformance.build import BuildError, build
 from tests.conformance.driver import Testee
 from tests.conformance.icds import icd_of
 from tests.conformance.languages import TESTEE, all_languages
+from tests.conformance.reference import comes_back
 
 CHUNK = 65536
 
@@ -53,22 +54,22 @@ def scaled_fields(icd: Icd) -> Iterator[tuple[Message, Field]]:
     for node in icd.nodes:
         for message in node.messages:
             for field in message.fields:
-                if field.scale and not field.view:
+                if field.has_formula and field.leads_back and not field.view:
                     yield message, field
 
 
 def chunks(field: Field, count: int) -> list[Chunk]:
     """Everything to ask of a field; fields of one kind share it."""
-    return _chunks(field.scale, field.type, field.bits, count)
+    return _chunks(field.scale, field.curve, field.type, field.bits, count)
 
 
 @cache
-def _chunks(scale, type_: str, bits: int, count: int) -> list[Chunk]:
-    field = Field("any", 0, bits, type_, scale=scale)
+def _chunks(scale, curve, type_: str, bits: int, count: int) -> list[Chunk]:
+    field = Field("any", 0, bits, type_, scale=scale, curve=curve)
     low, high = field.raw_min, field.raw_max
     if bits <= 16:
         return [_chunk(field, {"from": low, "to": high}, tuple(range(low, high + 1)))]
-    source = random.Random(f"{scale}/{type_}/{bits}")
+    source = random.Random(f"{scale or curve}/{type_}/{bits}")
     near = [raw for middle in (low, 0, high) for raw in range(middle - 1000, middle + 1001) if low <= raw <= high]
     values = near + [source.randint(low, high) for _ in range(count)]
     values += [raw for shift in range(bits) for raw in (1 << shift, -(1 << shift)) if low <= raw <= high]
@@ -78,15 +79,8 @@ def _chunks(scale, type_: str, bits: int, count: int) -> list[Chunk]:
 
 def _chunk(field: Field, request: dict, raw: tuple[int, ...]) -> Chunk:
     doubles = [codec.physical_double(field, one) for one in raw]
-    failures = sum(not _comes_back(field, one, value) for one, value in zip(raw, doubles, strict=True))
+    failures = sum(not comes_back(field, one, value) for one, value in zip(raw, doubles, strict=True))
     return Chunk(request, raw, "".join(map(bits_of, doubles)), failures)
-
-
-def _comes_back(field: Field, raw: int, value: float) -> bool:
-    try:
-        return codec.raw_from_physical(field, value) == raw
-    except codec.CodecError:
-        return False
 
 
 def sweep(testee: Testee, total: Total, message: Message, field: Field, chunk: Chunk, notes: list[str]) -> None:

@@ -116,7 +116,7 @@ class Reference:
             if name not in fields:
                 raise Refusal("unknown-field", field=name)
         for name in physical:
-            if name not in fields or not (fields[name].scale or fields[name].type == "text"):
+            if name not in fields or not settable(fields[name]):
                 raise Refusal("unknown-field", field=name)
         raw = {}
         for field in message.owners:
@@ -170,7 +170,7 @@ class Reference:
         if len(values) > MOST_VALUES or any(type(value) is not int for value in values):
             raise Refusal("request")
         _, message = self.message(request)
-        field = next((field for field in message.owners if field.name == name and field.scale), None)
+        field = next((field for field in message.owners if field.name == name and settable(field)), None)
         if field is None:
             raise Refusal("unknown-field", field=name)
         found, failures = [], 0
@@ -178,8 +178,16 @@ class Reference:
             fitting(field, codec.check_raw, raw)
             physical = codec.physical_double(field, raw)
             found.append(bits_of(physical))
-            failures += codec.raw_from_physical(field, physical) != raw
+            failures += not comes_back(field, raw, physical)
         return {"physical": "".join(found), "failures": failures}
+
+
+def comes_back(field: Field, raw: int, physical: float) -> bool:
+    """Whether setting the physical value gives the raw one again."""
+    try:
+        return codec.raw_from_physical(field, physical) == raw
+    except codec.CodecError:
+        return False
 
 
 def key(request: dict, name: str, type_: type):
@@ -218,6 +226,11 @@ def fitting(field: Field, call, value):
         raise Refusal("range", field=field.name, detail=str(error)) from None
 
 
+def settable(field: Field) -> bool:
+    """Whether a physical value sets it."""
+    return (field.has_formula and field.leads_back) or field.type == "text"
+
+
 def limits(field: Field) -> dict[str, str]:
     """The limits of a field, as doubles."""
     found = {key: getattr(field.limits, key) for key in ("min", "max", "above", "below")}
@@ -245,7 +258,9 @@ def described(node: Node, message: Message, raw: dict, names: bool = False) -> d
     """The answer to decode and encode."""
     answer: dict = {
         "raw": {field.name: shown(field, raw[field.name]) for field in message.fields},
-        "physical": {f.name: physical_value(f, raw[f.name]) for f in message.fields if f.scale or f.type == "text"},
+        "physical": {
+            f.name: physical_value(f, raw[f.name]) for f in message.fields if f.has_formula or f.type == "text"
+        },
         "bytes": codec.encode(node, message, raw).hex(),
     }
     if names:

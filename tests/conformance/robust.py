@@ -62,7 +62,7 @@ def bad_field(cases: MessageCases, encode: dict, field: dict) -> Iterator[tuple[
     name, refusal = field["name"], {"ok": False, "error": "request"}
     without = {key: value for key, value in cases.given.items() if key != name}
     yield {**encode, "raw": without}, {"ok": False, "error": "missing-field", "field": name}
-    if "factor" not in field and field["type"] != "text":
+    if "set" not in field:
         request = {**encode, "raw": without, "physical": {name: "0" * 16}}
         yield request, {"ok": False, "error": "unknown-field", "field": name}
     elif field["type"] == "text":

@@ -265,14 +265,15 @@ def _field(draw, enums: list[dict]) -> dict:
     if kind == "bool":
         return {"bits": 1, "type": kind, **array}
     if kind == "float":
-        return {"bits": draw(st.sampled_from((32, 64))), "type": kind, **array}
+        formula = {"formula": draw(_curve())} if draw(st.booleans()) else {}
+        return {"bits": draw(st.sampled_from((32, 64))), "type": kind, **array, **formula}
     if kind == "enum":
         enum = draw(st.sampled_from(enums))
         return {"bits": draw(st.integers(_needed(enum), 64)), "type": kind, "enum": enum["name"], **array}
     bits = draw(st.integers(1, 64) | st.sampled_from((1, 7, 8, 9, 15, 16, 17, 24, 31, 32, 33, 53, 54, 63, 64)))
     field: dict = {"bits": bits, "type": kind, **array}
     if draw(st.booleans()):
-        field["formula"] = draw(_formula())
+        field["formula"] = draw(_curve() if draw(st.integers(0, 3)) == 0 else _formula())
     if draw(st.booleans()):
         field["unit"] = draw(st.sampled_from(("deg", "m/s^2", "%", "V")))
     low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if kind == "int" else (0, (1 << bits) - 1)
@@ -310,6 +311,17 @@ def _formula(draw) -> str:
         )
     )
     return simple or f"{sign}raw*{top}/{bottom}{shift}"
+
+
+@st.composite
+def _curve(draw) -> str:
+    """Lines and polynomials, many of which rise or fall all along."""
+    simple = ("raw*57.295779513", "raw/3 - 1", "raw = value*1e3", "raw^2", "-raw^3/7 - raw", "5 + 0.5*raw + 3e-6*raw^2")
+    number = st.integers(-(10**9), 10**9).map(lambda value: f"({value}/1000)")
+    powers = draw(st.lists(st.integers(1, 7), min_size=1, max_size=4, unique=True))
+    terms = [f"{draw(number)}*raw^{power}" for power in powers]
+    text = " + ".join([*terms, f"{draw(number)} + raw^{max(powers)}"])
+    return draw(st.sampled_from((text, *simple)))
 
 
 @st.composite

@@ -74,7 +74,12 @@ def test_a_testee_that_is_wrong_in_one_point_is_found_out(icd, files, change):
 
 
 def test_a_setter_that_truncates_is_found_out(icd, files, monkeypatch):
-    monkeypatch.setattr(codec, "raw_from_physical", lambda field, value: int(field.scale.raw(codec.Fraction(value))))
+    nearest = codec.raw_from_physical
+
+    def truncating(field, value):
+        return int(field.scale.raw(codec.Fraction(value))) if field.scale else nearest(field, value)
+
+    monkeypatch.setattr(codec, "raw_from_physical", truncating)
     assert score(Reference(icd).answer, icd, files).differences > 0
 
 

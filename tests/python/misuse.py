@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from icdgen_messages import cubeacp
+import asyncio
+
+from icdgen_messages import bootloader, cubeacp
 from icdgen_messages.cubeacp import LINK, EstimatedAttitudeAngles
-from icdgen_messages.wire import Client, Done, Session
+from icdgen_messages.wire import AsyncSession, Client, Done, Session
 
 angles = EstimatedAttitudeAngles()
 angles.roll = 1  # expect
@@ -29,3 +31,16 @@ for event in Client(LINK, "uart").received(0, b""):
     if isinstance(event, Done) and (frame := event.of(EstimatedAttitudeAngles)):
         print(frame.roll)  # expect
 number: int = Session(LINK, print, lambda s: b"").get(EstimatedAttitudeAngles)  # expect
+session = Session(LINK, print, lambda s: b"")
+session.send(bootloader.SetBootIndex())  # expect
+session.get(bootloader.State)  # expect
+session.ask(bootloader.State)  # expect
+Client(LINK, "uart").send(0, bootloader.SetBootIndex())  # expect
+Client(LINK, "uart").request(0, bootloader.State)  # expect
+
+
+async def of_another_node(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    """What asyncio's session is not given either."""
+    session = AsyncSession(LINK, reader, writer)
+    await session.send(bootloader.SetBootIndex())  # expect
+    await session.get(bootloader.State)  # expect

@@ -84,7 +84,8 @@ def test_dictionaries_and_json_bring_messages_back(package):
             if all(info.type != "float" for info in case.cls.FIELDS):  # NaN
                 assert case.cls.from_json(message.to_json()) == message
         assert case.cls.from_dict({}) == case.cls.from_physical() == case.cls()
-        assert case.cls.from_dict(case.cls().as_dict(physical=True)) == case.cls()
+        if all(info.leads_back for info in case.cls.FIELDS):
+            assert case.cls.from_dict(case.cls().as_dict(physical=True)) == case.cls()
 
 
 def test_json_has_digits_for_bytes_and_numbers_for_enumerations(acp):

@@ -112,4 +112,4 @@ def test_classes_say_what_the_icd_says(package):
             assert info.unit == (field.unit.symbol if field.unit else "")
             assert info.const == field.const
             assert info.special == tuple((s.value, s.meaning) for s in field.special)
-            assert bool(info.physical) == (bool(field.scale) or field.type == "text")
+            assert bool(info.physical) == (field.has_formula or field.type == "text")

@@ -73,7 +73,8 @@ def test_the_wire_layer_is_loaded_when_it_is_used(shipped):
 
 def test_every_name_of_the_wire_layer_is_listed_and_there(shipped):
     wire = shipped.module("wire")
-    for name in wire._HOME:
+    assert {*wire._HOME} == {*wire.__all__}
+    for name in wire.__all__:
         assert name in dir(wire)
         assert getattr(wire, name) is not None
     with pytest.raises(AttributeError, match="nonsense"):

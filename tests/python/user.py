@@ -54,6 +54,15 @@ def columns(data: bytes) -> float:
     return float(EstimatedAttitudeAngles.decode_many(data, physical=True)["estimated_roll_angle_deg"].mean())
 
 
+def commanded(session: Session, any: type[Message]) -> Message:
+    """A session of some node takes all; that of a node what it speaks, with what it includes, and what nobody knows."""
+    session.send(Reset())
+    own = Session(cubeacp.LINK, print, lambda seconds: b"")
+    own.send(Reset())
+    own.get(any)
+    return own.get(EstimatedAttitudeAngles)
+
+
 def talk(client: Client, now: float, data: bytes) -> list[str]:
     """A request, and what came of it."""
     events: list[Event] = client.request(now, EstimatedAttitudeAngles)

@@ -133,7 +133,7 @@ def test_packets_of_a_long_message_are_joined_whatever_their_order(shipped):
     lines = [f"08{id:02X}0201#{piece.hex()}{len(pieces) - 1 - n:02x}" for n, piece in enumerate(pieces)]
     found = node(
         """([[wire, length], lines]) => [
-            [...given.messageIn(wire, length, lines.toReversed().join("\\n")).data],
+            [...given.messageIn(wire, length, [...lines].reverse().join("\\n")).data],
             attempt(() => given.messageIn(wire, length, lines.slice(1).join("\\n"))).error,
             attempt(() => given.messageIn(wire, length, "04110201#")).error,
             attempt(() => given.messageIn(wire, length, `04${wire.ids[0].toString(16)}0201#`)).error,

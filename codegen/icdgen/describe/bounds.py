@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Final, NamedTuple
 
 from icdgen.describe.steps import steps
+from icdgen.icd.curve import Curve
 from icdgen.icd.model import Field, Limits
 
 
@@ -54,11 +55,22 @@ def bounds(limits: Limits | None) -> tuple[Bound, ...]:
     return tuple(Bound(kind, value) for kind, value in found if value is not None)
 
 
+def span(curve: Curve, field: Field) -> tuple[Fraction, Fraction] | None:
+    """The smallest and the largest value of a curve that rises or falls all along; else None."""
+    if field.type == "float" or not field.leads_back:
+        return None
+    first, last = (Fraction(curve.double(raw)) for raw in (field.raw_min, field.raw_max))
+    return min(first, last), max(first, last)
+
+
 def allowed_ends(field: Field) -> tuple[Fraction | None, Fraction | None]:
     """Smallest and largest physical value, as far as the type and inclusive limits tell."""
     low = field.limits.min if field.limits else None
     high = field.limits.max if field.limits else None
-    if field.type in ("uint", "int"):
+    if field.curve is not None:
+        least, most = span(field.curve, field) or (None, None)
+        low, high = least if low is None else low, most if high is None else high
+    elif field.type in ("uint", "int"):
         scaled = steps(field)
         least, most = scaled.span if scaled else (Fraction(field.raw_min), Fraction(field.raw_max))
         low, high = least if low is None else low, most if high is None else high

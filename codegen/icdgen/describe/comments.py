@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from icdgen.describe.bounds import Bound, bounds
+from icdgen.describe.bounds import Bound, bounds, span
 from icdgen.describe.numbers import array_text, bit_range, byte_count, byte_range, exact_text, length_text, value_text
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.model import CONFIGURATION, Enum, Erratum, Field, Member, Message, Tail
@@ -162,15 +162,24 @@ def _meaning(field: Field) -> str:
     if field.type == "float":
         text = f", {field.bits}-bit float"
     unit = words(field.unit.symbol) if field.unit else ""
-    scaled = steps(field)
-    if scaled is None:
+    if not field.has_formula:
         return f"{text}, in {unit}" if unit else text
-    return f"{text}; physical `{words(field.formula)}`, {span_text(scaled)}{f' {unit}' if unit else ''}"
+    range = span_text(field)
+    what = f"; physical `{words(field.formula)}`{', in doubles' if field.curve is not None else ''}"
+    return f"{text}{what}{f', {range}' if range else ', in' if unit else ''}{f' {unit}' if unit else ''}"
+
+
+def span_text(field: Field) -> str:
+    """``-327.68 to 327.67``: the physical values of all raw values; empty where a curve does not tell."""
+    if field.curve is not None:
+        ends = span(field.curve, field)
+        return " to ".join(repr(float(end)) for end in ends) if ends else ""
+    scaled = steps(field)
+    return _span_text(scaled) if scaled is not None else ""
 
 
 @lru_cache(maxsize=4096)
-def span_text(scaled: Steps) -> str:
-    """``-327.68 to 327.67``: the physical values of all raw values."""
+def _span_text(scaled: Steps) -> str:
     low, high = scaled.span
     return f"{exact_text(low)} to {exact_text(high)}"
 
@@ -186,7 +195,8 @@ def text_comment(field: Field) -> str:
     return f"{words(field.name)} as text: what stands before the first NUL, up to {field.bits // 8} ASCII characters."
 
 
-def physical_comment(field: Field, scaled: Steps) -> str:
+def physical_comment(field: Field) -> str:
     """What the physical value is, its range and its limits."""
     limits = f" {_limits(field)}" if field.limits is not None else ""
-    return f"{physical_name(field)}: {span_text(scaled)}.{limits}"
+    range = span_text(field)
+    return f"{physical_name(field)}{f': {range}' if range else ''}.{limits}"

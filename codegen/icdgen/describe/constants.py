@@ -39,7 +39,7 @@ def constants(field: Field, name: str, physical_name: str, vocabulary: tuple[str
         yield Constant("special", f"{name}_{end}", special.value, True, f"{title}: {sentence(special.meaning)}")
     unit = f" in {words(field.unit.symbol)}" if field.unit else ""
     for bound in bounds(field.limits):
-        value, has_raw = bound.value, field.scale is None and field.type != "float"
+        value, has_raw = bound.value, not field.has_formula and field.type != "float"
         is_raw = has_raw and value.denominator == 1 and field.raw_min <= value <= field.raw_max
-        end = f"{physical_name if field.scale is not None else name}_{bound.key}"
+        end = f"{physical_name if field.has_formula else name}_{bound.key}"
         yield Constant(bound.key, end, int(value) if is_raw else value, is_raw, f"{title}{unit}: {bound.kind.title}.")

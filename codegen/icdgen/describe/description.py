@@ -16,6 +16,7 @@ from icdgen.describe.named import Named
 from icdgen.describe.shared_ids import sharing
 from icdgen.describe.storage import Storage, holding, storage_of
 from icdgen.describe.wholes import part_of_unit
+from icdgen.icd.curve import Curve
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
 from icdgen.icd.variants import Ids, Variant, common_length, ids_of
@@ -31,7 +32,9 @@ class FieldDescription(Named[Field]):
     storage: Storage
     """The integer that holds the raw value (the bits of a float); of an enumeration, that of its type. None of bytes."""
     steps: steps.Steps | None
-    """How the physical value is computed; None where that is the raw value."""
+    """How the physical value is computed in whole numbers; None where that is the raw value, or there is a curve."""
+    curve: Curve | None
+    """How it is computed in doubles."""
     physical_name: str
     """``estimated_roll_angle_deg``"""
     member: str
@@ -43,7 +46,7 @@ class FieldDescription(Named[Field]):
         super().__init__(field, message.node.vocabulary, f"field `{field.name}` of `{message.model.name}`")
         self.message, self.enum = message, enum
         self.storage = enum.storage if enum is not None else storage_of(field.bits, field.signed)
-        self.steps = steps.steps(field)
+        self.steps, self.curve = steps.steps(field), field.curve
         self.member = self.declared = self.name
         if field.path:
             step = field.path[-1]
@@ -110,7 +113,17 @@ class FieldDescription(Named[Field]):
     @property
     def has_physical(self) -> bool:
         """Whether there are accessors of a physical value that is not the raw one."""
-        return self.is_text or self.steps is not None
+        return self.is_text or self.is_scaled
+
+    @property
+    def is_scaled(self) -> bool:
+        """Whether the physical value is a number that is computed from the raw one."""
+        return self.steps is not None or self.curve is not None
+
+    @property
+    def is_set(self) -> bool:
+        """Whether a physical value sets it."""
+        return not self.model.view and self.model.leads_back
 
     @property
     def unit_name(self) -> str:

@@ -38,14 +38,14 @@ class Example(NamedTuple):
 
 
 def worth_showing(message: MessageDescription) -> FieldDescription | None:
-    """The first field with a scale, else the first that is neither constant nor an array."""
+    """The first field with a formula that leads back, else the first that is neither constant nor an array."""
     counter = message.tail.counter if message.tail else None  # which is 0 in an example, as the frame has no element
     usual = [
         one
         for one in message.members
         if one.model.const is None and not one.model.is_bytes and not one.count and one is not counter
     ]
-    return next((one for one in usual if one.steps is not None), usual[0] if usual else None)
+    return next((one for one in usual if one.is_scaled and one.is_set), usual[0] if usual else None)
 
 
 def example(message: MessageDescription) -> Example:
@@ -72,7 +72,7 @@ def _shown(field: FieldDescription) -> Shown | None:
 def _values(field: FieldDescription) -> list[int]:
     one = field.model
     if one.type == "float":
-        return [codec.float_bits(one, _FLOAT)] if field.steps is None and not field.bounds else []
+        return [codec.float_bits(one, _FLOAT)] if field.curve is not None or not field.bounds else []
     if field.enum is not None:
         numbers = [member.model.value for member in field.enum.members[::-1]]
     else:

@@ -164,7 +164,7 @@ def _misread(pair: FieldPair) -> str:
         return "other bits"
     if kind(old) != kind(new):
         return f"read as {read_as(new)}, or as {read_as(old)}"
-    if (old.scale or RAW) != (new.scale or RAW):
+    if (old.curve or old.scale or RAW) != (new.curve or new.scale or RAW):
         return "another formula"
     if (old.unit.symbol if old.unit else "") != (new.unit.symbol if new.unit else ""):
         return "another unit"

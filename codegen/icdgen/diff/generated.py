@@ -186,7 +186,8 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
 
 def _decisive(field: Field) -> object:
     enum = field.enum.name if field.enum is not None else None
-    return field.type, field.bits, field.count, enum, field.unit, field.scale, field.special, field.limits, field.const
+    formula = field.scale, field.curve
+    return field.type, field.bits, field.count, enum, field.unit, formula, field.special, field.limits, field.const
 
 
 def _is_sound(field: Field) -> bool:

@@ -311,7 +311,7 @@ def _renamed_fields(pair: MessagePair, known: list[Two[Field]], old: list[Field]
     shifts = _Shifts(known)
 
     def sense(one: Field) -> object:
-        return one.type, one.scale, one.unit, one.limits
+        return one.type, one.scale, one.curve, one.unit, one.limits
 
     def keys(one: Field) -> Iterable[object]:
         """Where it lies, or what it holds."""

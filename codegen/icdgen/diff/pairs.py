@@ -14,7 +14,13 @@ from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
 from icdgen.layout import Piece, byte_range, pieces
 
 # What a key of an ICD is called in the output of ``show``.
-_SHOWN = {"at": ("offset",), "formula": ("scale",), "table": ("source",), "source": ("table",), "min": ("limits",)}
+_SHOWN = {
+    "at": ("offset",),
+    "formula": ("scale", "coefficients"),
+    "table": ("source",),
+    "source": ("table",),
+    "min": ("limits",),
+}
 
 
 Thing = TypeVar("Thing", bound=Node | Message | Field | Enum | Member)

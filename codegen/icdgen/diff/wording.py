@@ -7,6 +7,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from icdgen.describe.numbers import bit_range, factor_text
+from icdgen.icd.curve import Curve
 from icdgen.icd.formula import Scale
 from icdgen.icd.model import Field
 from icdgen.icd.rules.wording import count, listing, quote
@@ -38,13 +39,27 @@ def number(value: Fraction | int | None) -> str:
 
 
 @lru_cache(maxsize=4096)
-def formula(scale: Scale | None) -> str:
-    """The scale in one spelling: ``raw``, ``raw*0.01``, ``raw*0.5 - 40``."""
+def formula(scale: Scale | Curve | None) -> str:
+    """The formula in one spelling: ``raw``, ``raw*0.01``, ``raw*0.5 - 40``, ``3e-06*raw^2 + raw*0.02 - 40``."""
     if scale is None:
         return "raw"
+    if isinstance(scale, Curve):
+        return _polynomial(scale)
     text = "raw" if scale.factor == 1 else f"raw*{number(scale.factor)}"
     if scale.offset:
         text += f" {'+' if scale.offset > 0 else '-'} {number(abs(scale.offset))}"
+    return text
+
+
+def _polynomial(curve: Curve) -> str:
+    text = ""
+    for power, factor in reversed(list(enumerate(curve.coefficients))):
+        raw = "" if power == 0 else "raw" if power == 1 else f"raw^{power}"
+        if factor or (not power and not text):
+            sign = ("-" if factor < 0 else "+") if text else "-" * (factor < 0)
+            size = f"{abs(factor):g}" if float(f"{factor:g}") == factor else repr(abs(factor))
+            term = raw if raw and size == "1" else "*".join(filter(None, (size, raw)))
+            text += f" {sign} {term}" if text else f"{sign}{term}"
     return text
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from itertools import chain
 from typing import TypeVar
 
-from icdgen.icd import division, formula, model, tails, wire_ids
+from icdgen.icd import curve, division, formula, model, tails, wire_ids
 from icdgen.icd.errata import Applied
 from icdgen.icd.located import Map, plain
 from icdgen.icd.units import STANDARD, Unit
@@ -180,6 +181,7 @@ class Builder:
         get = item.get
         kind = get("type", "uint")  # which parts of a field need not say
         byte_order, bit_order = orders(item, around)
+        scale, polynomial = calibration(get("formula"), kind)
         return model.Field(
             name=item["name"],
             at=item["at"],
@@ -189,7 +191,8 @@ class Builder:
             enum=self.scope.enums.get(get("enum", "")) if kind == "enum" else None,
             unit=self.scope.units.get(get("unit", "")),
             formula=get("formula", ""),
-            scale=scale(get("formula")) if kind in ("uint", "int") else None,
+            scale=scale,
+            curve=polynomial,
             const=get("const"),
             special=tuple(self.each("special", special, item)) if "special" in item else (),
             limits=limits(item),
@@ -218,14 +221,19 @@ def orders(item: Map, around: Orders = ("", "")) -> Orders:
     return item.get("byte_order", around[0]), item.get("bit_order", around[1])
 
 
-def scale(text: str | None) -> formula.Scale | None:
-    """The scale of a formula; None where there is none or it is bad."""
-    if text is None:
-        return None
-    try:
-        return formula.parse_cached(text)
-    except formula.FormulaError:
-        return None
+def calibration(text: str | None, kind: str) -> tuple[formula.Scale | None, curve.Curve | None]:
+    """What a field of a type makes of the text of a formula: of integers a line is a scale, the rest are curves.
+
+    Nothing where there is no formula, or a bad one.
+    """
+    if not text or kind not in ("uint", "int", "float"):
+        return None, None
+    if kind != "float":
+        with suppress(formula.FormulaError):
+            return formula.parse_cached(text), None
+    with suppress(formula.FormulaError):
+        return None, curve.parse_cached(text)
+    return None, None
 
 
 def special(item: Map) -> model.Special:

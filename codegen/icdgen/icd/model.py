@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import Any
 
 from icdgen.frozen import dataclass
+from icdgen.icd.curve import Curve, leads_back
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, unread
 from icdgen.icd.units import Unit
@@ -141,7 +142,10 @@ class Field:
     enum: Enum | None = None
     unit: Unit | None = None
     formula: str = ""  # as held, for documentation
-    scale: Scale | None = None  # None: the physical value is the raw value
+    scale: Scale | None = None  # of a number, where the formula is a line
+    curve: Curve | None = (
+        None  # of any other formula, and of one on floats; without either, the physical value is the raw one
+    )
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
@@ -189,6 +193,16 @@ class Field:
         return ".".join(step.alias for step in self.path) if any(step.identifier for step in self.path) else None
 
     @property
+    def has_formula(self) -> bool:
+        """Whether its physical value is computed from the raw one."""
+        return self.scale is not None or self.curve is not None
+
+    @property
+    def leads_back(self) -> bool:
+        """Whether a physical value gives the nearest raw one: always, but with some polynomials."""
+        return self.curve is None or leads_back(self.curve, self.type == "float", self.raw_min, self.raw_max)
+
+    @property
     def is_bytes(self) -> bool:
         """Whether the raw value is whole bytes in order, and no number."""
         return self.type in ("bytes", "text")
@@ -228,10 +242,7 @@ class Tail:
 
 
 def implied_count(end: Field, length: int) -> Field:
-    """How many elements the open ``end`` of a message has, an array that stands as one, bytes or text.
-
-    It is for frames whose longest has so many bytes, and no field that says it.
-    """
+    """How many elements the open ``end`` has (bytes, text, an array as one) of frames of up to so many bytes that do not say it."""
     most, what = (end.bits // 8, "Size") if end.is_bytes else (end.count, "Count")
     return Field(
         name=f"{end.name} {what}",

@@ -8,6 +8,7 @@ from typing import Literal
 
 from icdgen import layout, naming
 from icdgen.describe.steps import Steps, steps
+from icdgen.icd.curve import Curve
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.layout import Piece
 from icdgen.protocol.facts import Facts, need
@@ -51,6 +52,11 @@ class Column:
     def steps(self) -> Steps | None:
         """How the physical value is computed from the raw one; None without a scale."""
         return steps(self.field) if self.field is not None else None
+
+    @property
+    def curve(self) -> Curve | None:
+        """How it is computed in doubles."""
+        return self.field.curve if self.field is not None else None
 
 
 @dataclass(frozen=True, slots=True)

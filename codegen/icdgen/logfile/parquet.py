@@ -108,6 +108,8 @@ class _Reader:
             return pa.string()
         if column.kind == "bool":
             return pa.bool_()
+        if column.curve:
+            return pa.float64()
         if column.kind == "float":
             return pa.float32() if column.field.bits == 32 else pa.float64()
         if column.kind == "enum":
@@ -145,8 +147,13 @@ class _Reader:
         if column.kind == "bool":
             return pa.array(raw != 0)
         if column.kind == "float":
-            bits = raw.astype(np.uint32 if type_ == pa.float32() else np.uint64)
-            return pa.array(bits.view(np.float32 if type_ == pa.float32() else np.float64))
+            is_single = column.field is not None and column.field.bits == 32
+            bits = raw.astype(np.uint32 if is_single else np.uint64)
+            raw = bits.view(np.float32 if is_single else np.float64)
+        if column.curve:
+            return pa.array(_on_curve(column.curve.coefficients, raw.astype(np.float64)))
+        if column.kind == "float":
+            return pa.array(raw)
         return pa.array(raw.astype(type_.to_pandas_dtype()))
 
     def _named(self, values: Iterable[int]) -> list[str]:
@@ -194,6 +201,18 @@ class _Reader:
             return value
         different, where = np.unique(raw, return_inverse=True)
         return np.array([(int(one) * a + b) / d for one in different], np.float64)[where]
+
+
+def _on_curve(coefficients: tuple[float, ...], raw: np.ndarray) -> np.ndarray:
+    """Horner's rule, as `icdgen.icd.curve.Curve.double`."""
+    import numpy as np
+
+    value = np.full(len(raw), coefficients[-1])
+    with np.errstate(all="ignore"):
+        for coefficient in coefficients[-2::-1]:
+            value = value * raw + coefficient
+    value[np.isnan(value)] = np.nan
+    return value
 
 
 def _whole(data: bytes, stride: int, at: int, size: int, little: bool, kind: str = "u") -> np.ndarray:

@@ -55,7 +55,9 @@ def _raw(column: Column) -> Callable[[bytes], int]:
 
 
 def _integer(column: Column) -> Callable[[bytes], Value]:
-    raw, steps = _raw(column), column.steps
+    raw, steps, curve = _raw(column), column.steps, column.curve
+    if curve is not None:
+        return lambda entry: curve.double(raw(entry))
     if steps is None:
         return raw
     a, b, d = steps.terms
@@ -77,11 +79,13 @@ def _float(column: Column) -> Callable[[bytes], Value]:
     from icdgen.values.numbers import float_text
 
     assert column.field
-    raw, bits = _raw(column), column.field.bits
+    raw, bits, curve = _raw(column), column.field.bits, column.curve
     form, whole = ("<f", "<I") if bits == 32 else ("<d", "<Q")
 
     def read(entry: bytes) -> Value:
         value = struct.unpack(form, struct.pack(whole, raw(entry)))[0]
+        if curve is not None:
+            return curve.double(value)
         return float(float_text(value, bits)) if math.isfinite(value) else value  # 0.1, not 0.10000000149011612
 
     return read

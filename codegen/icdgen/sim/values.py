@@ -7,6 +7,7 @@ from fractions import Fraction
 from math import ceil, floor
 
 from icdgen import codec
+from icdgen.icd.curve import Curve
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.values.frame import violations
 
@@ -74,6 +75,9 @@ def _candidates(field: Field) -> Iterable[int]:
     for bound in (limits.min, limits.max, limits.above, limits.below) if limits else ():
         if bound is None:
             continue
+        if field.curve is not None:
+            yield from _on_curve(field, bound)
+            continue
         if field.type == "float":
             yield from (codec.float_bits(field, float(bound) + step) for step in (0, 1, -1))
             continue
@@ -81,10 +85,31 @@ def _candidates(field: Field) -> Iterable[int]:
         yield from (floor(raw), ceil(raw), floor(raw) - 1, ceil(raw) + 1)
 
 
+def _on_curve(field: Field, bound: Fraction) -> Iterable[int]:
+    """Raw values about that of a physical one."""
+    for step in (0, 1, -1):
+        try:
+            yield codec.raw_from_physical(field, bound + step)
+        except codec.CodecError:
+            continue
+
+
 def raw_of(field: Field, value: float) -> int:
     """The raw value nearest to a physical one, held within what the field can hold."""
+    if field.curve is not None:
+        return _held(field, field.curve, value)
     if field.type == "float":
         return codec.float_bits(field, value)
     exact = Fraction(value)
     raw = round(field.scale.raw(exact) if field.scale else exact)
     return min(max(raw, field.raw_min), field.raw_max)
+
+
+def _held(field: Field, curve: Curve, value: float) -> int:
+    """Of a curve; 0 where it does not lead back."""
+    if not field.leads_back:
+        return 0
+    if field.type == "float":
+        return codec.float_bits(field, curve.inverse(value))
+    ends = sorted((curve.double(field.raw_min), curve.double(field.raw_max)))
+    return codec.raw_from_physical(field, min(max(value, ends[0]), ends[1]))

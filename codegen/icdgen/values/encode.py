@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
+from fractions import Fraction
 
 from icdgen import codec
 from icdgen.describe.numbers import exact_text
@@ -159,9 +160,16 @@ def _values(
             if not raw:
                 _allowed(field, value, text)
                 exact = numbers.rational(without_unit(field, text))
-                if field.scale and exact is not None and field.scale.physical(value) != exact:
+                if field.has_formula and exact is not None and _differs(field, value, exact):
                     notes[field.name] = f"rounded from {text}"
     return values, notes
+
+
+def _differs(field: Field, raw: int, exact: Fraction) -> bool:
+    """Whether the physical value of a raw one is another than the one that was given."""
+    if field.curve is not None:
+        return codec.physical_double(field, raw) != float(exact)
+    return codec.physical(field, raw) != exact
 
 
 def _read(field: Field, text: str, raw: bool, is_open: bool) -> int | bytes:

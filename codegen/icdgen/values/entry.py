@@ -88,6 +88,8 @@ def _float(field: Field, text: str, raw: bool = False) -> int:
         if raw and value is not None:
             return value
         raise BadValue(f"`{text}` is not a number; the bits of a float can be given with --raw")
+    if field.curve is not None and not raw:
+        return _on_curve(field, text)
     try:
         value = numbers.float_bits(without_unit(field, text), field.bits)
     except OverflowError:
@@ -101,6 +103,8 @@ def _integer(field: Field, text: str) -> int:
     special = next((s.value for s in field.special if s.meaning.casefold() == text.casefold()), None)
     if special is not None:
         return special
+    if field.curve is not None:
+        return _on_curve(field, text)
     number = without_unit(field, text)
     if field.scale is None and (value := numbers.integer(number)) is not None:
         return value
@@ -112,6 +116,17 @@ def _integer(field: Field, text: str) -> int:
     if exact.denominator != 1:
         raise BadValue(f"{text} is not a whole number")
     return exact.numerator
+
+
+def _on_curve(field: Field, text: str) -> int:
+    exact = numbers.rational(without_unit(field, text))
+    if exact is None:
+        raise BadValue(f"`{text}` is not a number" + (f" (in {field.unit.symbol})" if field.unit else ""))
+    try:
+        return codec.raw_from_physical(field, exact)
+    except codec.CodecError as error:
+        help = "" if field.leads_back else "--raw takes the raw value"
+        raise BadValue(str(error), help) from None
 
 
 def without_unit(field: Field, text: str) -> str:

@@ -30,7 +30,7 @@ class Row:
         """The physical value as correctly rounded double, or the number of a float field; else None."""
         if isinstance(self.raw, bytes):
             return None
-        if self.field.type == "float":
+        if self.field.type == "float" and self.field.curve is None:
             return codec.float_value(self.field, self.raw)
         return codec.physical_double(self.field, self.raw)
 
@@ -59,6 +59,8 @@ class Row:
             return self.member if self.member is not None else f"unknown {self.raw}"
         if kind == "bool":
             return "true" if self.raw else "false"
+        if self.field.curve is not None and self.number is not None:
+            return numbers.float_text(self.number, 64)
         if kind == "float":
             return numbers.float_text(codec.float_value(self.field, self.raw), self.field.bits)
         physical = self.physical
@@ -74,17 +76,17 @@ class Row:
             value = codec.text(self.raw) if kind == "text" else raw
         elif kind == "float":
             raw = f"{self.raw:0{self.field.bits // 4}x}"
-            value = _json_number(codec.float_value(self.field, self.raw))
+            value = _json_number(self.number or 0.0)
         elif kind == "bool":
             raw = value = bool(self.raw)
         elif kind == "enum":
             value = self.member
         else:
-            value = self.raw if self.physical is None else self.number
+            value = self.raw if self.number is None else self.number
         found: dict[str, object] = {"name": self.field.name, "type": kind, "raw": raw, "value": value}
         if self.physical is not None:
             found |= {"physical": self.number, "exact": str(self.physical)}
-        elif kind == "float":
+        elif kind == "float" or self.field.curve is not None:
             found["physical"] = value
         if self.field.unit:
             found["unit"] = self.field.unit.symbol
@@ -155,8 +157,9 @@ def violations(field: Field, raw: int) -> list[str]:
 
 def _outside(field: Field, raw: int) -> list[str]:
     value: Fraction | float = raw
-    if field.type == "float":
-        value = codec.float_value(field, raw)
+    if field.type == "float" or field.curve is not None:
+        found = codec.physical_double(field, raw)
+        value = codec.float_value(field, raw) if found is None else found
         if value != value:
             return ["not a number"]
     elif field.scale:

@@ -25,9 +25,9 @@ class Row:
     frame: bytes
     raw: Raw
     encoded: bytes
-    physical: dict[str, Fraction]  # of the scaled fields
+    physical: dict[str, Fraction]  # exact, of the scaled fields
     texts: dict[str, str | None]  # of the text fields; None where the bytes are not ASCII
-    doubles: dict[str, str]  # their correctly rounded doubles, as 16 hex digits
+    doubles: dict[str, str]  # the physical values as doubles, those of curves, too; as 16 hex digits
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
         if frame not in frames:
             frames[frame] = None
             rows.append(frame_row(node, message, f"chosen values {number}", frame))
-    settable = [field for field in message.owners if field.scale or field.type == "text"]
+    settable = [field for field in message.owners if (field.has_formula and field.leads_back) or field.type == "text"]
     return MessageVectors(
         message=message,
         default=codec.decode(node, message, codec.encode(node, message, message.fresh)),
@@ -113,7 +113,8 @@ def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
         exact = codec.physical(field, raw[field.name])
         if exact is not None:
             physical[field.name] = exact
-    doubles = {name: bits_of(codec.to_double(exact)) for name, exact in physical.items()}
+    scaled = (field for field in message.fields if field.has_formula)
+    doubles = {field.name: bits_of(codec.physical_double(field, raw[field.name]) or 0.0) for field in scaled}
     texts = {field.name: known_text(raw[field.name]) for field in message.fields if field.type == "text"}
     return Row(why, frame, raw, codec.encode(node, message, raw), physical, texts, doubles)
 

@@ -9,10 +9,11 @@ from fractions import Fraction
 from functools import lru_cache
 
 from icdgen import codec
+from icdgen.icd.curve import Curve
 from icdgen.icd.formula import Scale
 from icdgen.icd.model import Field
 
-# Refused by every field: NaN (quiet, signalling, negative), the infinities, and numbers beyond any raw value.
+# Refused by every field but floats: NaN (quiet, signalling, negative), the infinities, and numbers beyond any raw value.
 NEVER = (
     "7ff8000000000000", "7ff0000000000001", "fff8000000000123", "7ff0000000000000", "fff0000000000000",
     "7fefffffffffffff", "ffefffffffffffff",
@@ -37,17 +38,19 @@ def settings(field: Field) -> Settings:
     """Doubles (as their bits) or texts, and the raw value that setting each must give; None where it must be refused."""
     if field.type == "text":
         return [(text, _bytes(field, text)) for text in _texts(field.bits // 8)]
-    return list(_settings(field.type, field.bits, field.scale).items())
+    return list(_settings(field.type, field.bits, field.scale, field.curve).items())
 
 
 @lru_cache(maxsize=1 << 12)
-def _settings(type: str, bits: int, scale: Scale) -> dict[str, int | None]:
-    """Those of all fields of this type, width and scale: many have the same."""
-    field = Field("", 0, bits, type, scale=scale)
+def _settings(type: str, bits: int, scale: Scale | None, curve: Curve | None) -> dict[str, int | None]:
+    """Those of all fields of this type, width and formula: many have the same."""
+    field = Field("", 0, bits, type, scale=scale, curve=curve)
     found: dict[str, int | None] = {}
-    for value in _doubles(field):
+    for value in _doubles(field) if curve is None else _on_curve(field, curve):
         if math.isfinite(value):
             found[bits_of(value)] = _raw(field, value)
+    if type == "float":
+        found |= {bits: _raw(field, float_of(bits)) for bits in NEVER}
     return found
 
 
@@ -80,6 +83,21 @@ def _doubles(field: Field) -> Iterator[float]:
         near = float(_above(field, raw))
         yield from (math.nextafter(near, -math.inf), near, math.nextafter(near, math.inf))
     yield from _ties(field)
+
+
+def _on_curve(field: Field, curve: Curve) -> Iterator[float]:
+    """Beside the physical values of some raw values, half way between those of neighbours, and beyond the ends."""
+    yield from (-0.0, 5e-324, 1e300, -1e300)
+    if field.type == "float":
+        numbers = (0.0, 1.0, -1.5, 0.1, 1e-3, -123456.789, 3.4028234663852886e38, 1e-45)
+        yield from (curve.double(one) for one in numbers)
+        return
+    low, high = field.raw_min, field.raw_max
+    for raw in (low, (low + high) // 2, low + (high - low) // 3, high - 1):
+        here, there = curve.double(raw), curve.double(raw + 1)
+        middle = here + (there - here) / 2
+        yield from (here, there, middle)
+        yield from (math.nextafter(one, way) for one in (here, middle, there) for way in (-math.inf, math.inf))
 
 
 def _above(field: Field, raw: int) -> Fraction:

@@ -115,6 +115,8 @@ def _field(vectors: MessageVectors, field: Field) -> str:
         row["enum"] = field.enum.name
     if field.scale is not None:
         row["factor"], row["offset"] = str(field.scale.factor), str(field.scale.offset)
+    if field.curve is not None:
+        row["coefficients"] = list(field.curve.coefficients)
     if field.view:
         row["view"] = True
     row["default"] = raw_json(field, vectors.default[field.name])
@@ -137,6 +139,7 @@ def _row(fields: tuple[Field, ...], row: Row) -> str:
     line["raw"] = [raw_json(field, row.raw[field.name]) for field in fields]
     if row.physical:
         line["physical"] = [decimal(value) for value in row.physical.values()]
+    if row.doubles:
         line["doubles"] = list(row.doubles.values())
     if row.texts:
         line["texts"] = list(row.texts.values())

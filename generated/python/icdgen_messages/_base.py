@@ -5,14 +5,27 @@ from __future__ import annotations
 
 # Itself: what annotations name is loaded when they are evaluated.
 from . import _lazy
-from ._fields import FieldInfo, Form, Tail, field, scaled, text, whole
+from ._fields import (
+    FieldInfo,
+    Form,
+    Tail,
+    curve,
+    curve_only,
+    field,
+    scaled,
+    text,
+    whole,
+)
 
 __all__ = [
     "FieldInfo",
     "Message",
     "MessageType",
     "Tail",
+    "curve",
+    "curve_only",
     "field",
+    "on_curve",
     "scaled",
     "text",
     "view",
@@ -22,21 +35,43 @@ __all__ = [
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from inspect import Signature
-    from typing import Callable, ClassVar, Literal
+    from typing import Any, Callable, ClassVar, Generic, Literal
 
-    from typing_extensions import ParamSpec, dataclass_transform
+    from typing_extensions import ParamSpec, Self, TypeVar, dataclass_transform
 
     from ._hints import M
 
     P = ParamSpec("P")
+    N_contra = TypeVar("N_contra", contravariant=True, default=Any)
+
+    class Spoken(Generic[N_contra]):
+        """What type checkers are told of which node speaks a message."""
+
+        @classmethod
+        def _made(cls) -> Self: ...
+
+        @staticmethod
+        def _spoken_by(node: N_contra, /) -> None: ...
+
 else:
 
     def dataclass_transform(**_):
         return lambda cls: cls
 
+    N_contra = None
+
+    class Spoken:
+        """Nothing, when the program runs."""
+
+        __slots__ = ()
+
+        def __class_getitem__(cls, node):
+            return cls
+
 
 @dataclass_transform(
-    kw_only_default=True, field_specifiers=(field, scaled, whole, text)
+    kw_only_default=True,
+    field_specifiers=(field, scaled, curve, curve_only, whole, text),
 )
 class MessageType(type):
     """Makes the class of a message: a dataclass with slots, of fields that `field` declares.
@@ -90,7 +125,7 @@ class _DataclassParams:
         return PARAMS
 
 
-class Message(metaclass=MessageType):
+class Message(Spoken[N_contra], metaclass=MessageType):
     """A message: its attributes hold raw values, just as they are on the wire.
 
     It is made with keywords, of raw or of physical values. Values are not checked when
@@ -160,7 +195,7 @@ class Message(metaclass=MessageType):
             Raises `RangeError`, and `TypeError` for a raw value that has a physical one.
             """
             for info in cls.FIELDS:
-                if info.physical and info.attribute in values:
+                if info.physical and info.leads_back and info.attribute in values:
                     raise TypeError(
                         f"from_physical takes {info.physical}, not {info.attribute}"
                     )
@@ -283,3 +318,10 @@ def view(message: Message, attribute: str, kind: type[_lazy.T]) -> _lazy.T:
 
     value: _lazy.T = seen(message, attribute, kind)
     return value
+
+
+def on_curve(coefficients: tuple[float, ...], raw: float) -> float:
+    """The physical value of a view, by a polynomial whose constant stands first."""
+    from ._curves import on_curve as found
+
+    return found(coefficients, raw)

@@ -22,7 +22,7 @@ class FieldInfo:
     __slots__ = (
         "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
         "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
-        "elements", "is_open",
+        "elements", "is_open", "curve", "leads_back",
     )  # fmt: skip
 
     def __init__(
@@ -48,6 +48,8 @@ class FieldInfo:
         default: _lazy.Any = None,
         elements: int = 0,
         is_open: bool = False,
+        curve: tuple[float, ...] = (),
+        leads_back: bool = True,
     ) -> None:
         self.attribute = attribute
         """The attribute that holds the raw value."""
@@ -93,6 +95,13 @@ class FieldInfo:
         """
         self.is_open = is_open
         """Whether frames hold up to so many elements, or bytes: see `Message.TAIL`."""
+        self.curve = curve
+        """Of a polynomial its coefficients, the constant first, and no scale.
+
+        The physical value is computed from them in doubles, by Horner's rule.
+        """
+        self.leads_back = leads_back
+        """Whether the physical value can be set."""
 
     @property
     def signed(self) -> bool:
@@ -186,16 +195,25 @@ class Tail:
 class Form:
     """Another attribute of the field that is declared before it: its value in another form."""
 
-    __slots__ = ("kind", "terms")
+    __slots__ = ("kind", "terms", "curve")
 
-    def __init__(self, kind: str, terms: tuple[int, int, int] = (1, 0, 1)) -> None:
-        self.kind, self.terms = kind, terms
+    def __init__(
+        self,
+        kind: str,
+        terms: tuple[int, int, int] = (1, 0, 1),
+        curve: tuple[float, ...] = (),
+    ) -> None:
+        self.kind, self.terms, self.curve = kind, terms, curve
 
     def property_of(self, info: FieldInfo, name: str) -> property:
         """What the class has as ``name``, which the field is told of."""
         if self.kind == "text":
             info.physical = name
             return _text_property(info)
+        if self.curve:
+            info.physical, info.curve = name, self.curve
+            info.leads_back = self.kind == "curve"
+            return _curve_property(info)
         if self.kind == "whole":
             info.whole = name
         else:
@@ -224,6 +242,35 @@ def _number_property(info: FieldInfo, form: Form) -> property:
     return property(get_whole if is_whole else get_physical, set_nearest)
 
 
+def _curve_property(info: FieldInfo) -> property:
+    from ._curves import from_curve, on_curve
+
+    attribute, curve = info.attribute, info.curve
+
+    def get(self: Any) -> float:
+        return on_curve(curve, getattr(self, attribute))
+
+    def set(self: Any, value: float) -> None:
+        setattr(self, attribute, from_curve(value, info, attribute))
+
+    def get_all(self: Any) -> tuple[float, ...]:
+        return tuple(on_curve(curve, raw) for raw in getattr(self, attribute))
+
+    def set_all(self: Any, values: Any) -> None:
+        _counted(info, values)
+        each = enumerate(values)
+        found = (from_curve(one, info, f"{attribute}[{place}]") for place, one in each)
+        setattr(self, attribute, tuple(found))
+
+    return property(get_all, set_all) if info.elements else property(get, set)
+
+
+def _counted(info: FieldInfo, values: Any) -> None:
+    """Raises `RangeError` unless there is a value for each element."""
+    if not has_elements(info, values):
+        raise RangeError(info.attribute, elements_of(info), values)
+
+
 def _array_property(info: FieldInfo, form: Form) -> property:
     attribute, terms = info.attribute, form.terms
     p, c, q = terms
@@ -236,8 +283,7 @@ def _array_property(info: FieldInfo, form: Form) -> property:
         return tuple((raw * p + c) / q for raw in getattr(self, attribute))
 
     def set_nearest(self: Any, values: Any) -> None:
-        if not has_elements(info, values):
-            raise RangeError(attribute, elements_of(info), values)
+        _counted(info, values)
         found = (
             nearest_raw(value, f"{attribute}[{index}]", terms, info.raw_range)
             for index, value in enumerate(values)
@@ -284,6 +330,25 @@ def scaled(p: int, c: int, q: int, *, default: _lazy.Any) -> _lazy.Any:
     Setting it takes the nearest raw value, of two the even one. Raises `RangeError`.
     """
     return Form("scaled", (p, c, q))
+
+
+def curve(coefficients: tuple[float, ...], *, default: _lazy.Any) -> _lazy.Any:
+    """The physical value by a polynomial in the field above, the constant first.
+
+    It is computed in doubles, by Horner's rule. Setting it takes the nearest raw value,
+    of two the even one. Raises `RangeError`.
+    """
+    return Form("curve", curve=coefficients)
+
+
+def curve_only(
+    coefficients: tuple[float, ...],
+    *,
+    default: _lazy.Any,
+    init: _lazy.Literal[False] = False,
+) -> _lazy.Any:
+    """The same where it does not lead back to a raw value: it is only read."""
+    return Form("curve_only", curve=coefficients)
 
 
 def whole(p: int, c: int, *, init: _lazy.Literal[False] = False) -> _lazy.Any:

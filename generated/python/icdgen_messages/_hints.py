@@ -4,10 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, TypeVar, Union
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Union, cast
+
+from . import _lazy
 
 if TYPE_CHECKING:
-    from ._base import Message
+    from typing_extensions import TypeVar as TypeVarWithDefault
+
+    N = TypeVarWithDefault("N", default=Any)
+else:
+    N = TypeVar("N")
 
 Buffer = Union[bytes, bytearray, memoryview]
 """What a frame may be given as."""
@@ -15,8 +21,39 @@ Buffer = Union[bytes, bytearray, memoryview]
 Frames = Union[Buffer, Iterable[Buffer]]
 """Many frames: one after the other, or a list of them."""
 
-M = TypeVar("M", bound="Message")
+M = TypeVar("M", bound="_lazy.Message")
 T = TypeVar("T")
+M_co = TypeVar("M_co", covariant=True)
+N_contra = TypeVar("N_contra", contravariant=True)
+
+
+class SpokenBy(Protocol[N_contra]):
+    """A message that a node speaks, its own or one of a node that it includes."""
+
+    def to_bytes(self) -> bytes: ...
+
+    def _spoken_by(self, node: N_contra, /) -> None: ...
+
+
+class KindOf(Protocol[N_contra, M_co]):
+    """The class of such a message."""
+
+    def __call__(self) -> object: ...
+
+    def _made(self) -> M_co: ...
+
+    def _spoken_by(self, node: N_contra, /) -> None: ...
+
+
+def class_of(message: KindOf[Any, M]) -> type[M]:
+    """The class that it is."""
+    return cast("type[M]", message)
+
+
+def message_of(message: SpokenBy[Any]) -> _lazy.Message:
+    """The message that it is."""
+    return cast("_lazy.Message", message)
+
 
 Candidate = tuple[str, int, tuple[tuple[int, int, int], ...]]
 """A message of an id that several have: its name, its length, and byte, mask and value of its constants."""

@@ -16,7 +16,7 @@ typedef struct {
 typedef struct {
     const char *name; /**< What the ICD calls it. */
     const char *unit; /**< Of the physical value; empty without one. */
-    uint32_t at;      /**< Its first bit in the frame; behind the longest, if only the length of the frame tells its value. */
+    uint32_t at;      /**< Its first bit in the frame; behind the longest, if only a frame's length tells its value. */
     uint32_t bits;    /**< How many bits it has; of an array, each element. */
     uint32_t count;   /**< How many elements an array has, or can have; 1 if it is none. */
     const icd_limit_t *limits;

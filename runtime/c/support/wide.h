@@ -45,10 +45,10 @@ static inline bool icdgen_big_is_zero(const icdgen_big_t *value)
 
 static inline icdgen_big_t icdgen_big_sum(const icdgen_big_t *left, const icdgen_big_t *right)
 {
-    icdgen_big_t sum;
+    icdgen_big_t sum = *left;
     uint64_t carry = 0;
     for (unsigned i = 0; i < 8u; ++i) {
-        carry += ICDGEN_U64(left->part[i]) + right->part[i];
+        carry += ICDGEN_U64(sum.part[i]) + right->part[i];
         sum.part[i] = ICDGEN_U32(carry & UINT64_C(0xFFFFFFFF));
         carry >>= 32;
     }
@@ -57,10 +57,10 @@ static inline icdgen_big_t icdgen_big_sum(const icdgen_big_t *left, const icdgen
 
 static inline icdgen_big_t icdgen_big_difference(const icdgen_big_t *left, const icdgen_big_t *right)
 {
-    icdgen_big_t difference;
+    icdgen_big_t difference = *left;
     uint64_t carry = 1;
     for (unsigned i = 0; i < 8u; ++i) {
-        carry += ICDGEN_U64(left->part[i]) + (right->part[i] ^ UINT32_MAX);
+        carry += ICDGEN_U64(difference.part[i]) + (right->part[i] ^ UINT32_MAX);
         difference.part[i] = ICDGEN_U32(carry & UINT64_C(0xFFFFFFFF));
         carry >>= 32;
     }

@@ -38,8 +38,11 @@ def encode(front: Front, request: Request) -> dict[str, Any]:
     if not isinstance(raw, dict) or not isinstance(physical, dict):
         raise Refusal("request", detail="`raw` or `physical` is no object")
     route, fields = _known(front, request)
-    scaled = {field["name"]: field["scaled"] for field in fields if not field["view"]}
-    for name in (*(name for name in raw if name not in scaled), *(name for name in physical if not scaled.get(name))):
+    settable = {field["name"]: field["settable"] for field in fields if not field["view"]}
+    for name in (
+        *(name for name in raw if name not in settable),
+        *(name for name in physical if not settable.get(name)),
+    ):
         raise Refusal("unknown-field", field=name)
     values = []
     for field in fields:
@@ -96,7 +99,7 @@ def sweep(front: Front, request: Request) -> dict[str, Any]:
         raise Refusal("request", detail="these are too many values, or not integers")
     route, fields = _known(front, request)
     scaled = ((place, field) for place, field in enumerate(fields) if field["name"] == name and field["type"] != "text")
-    place = next((place for place, field in scaled if field["scaled"] and not field["view"]), None)
+    place = next((place for place, field in scaled if field["settable"]), None)
     if place is None:
         raise Refusal("unknown-field", field=name)
     found = items(_asked(front, fields, "sweep", *route, place, *values).facts.get("values", ""))

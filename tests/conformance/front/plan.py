@@ -40,7 +40,8 @@ def _message(message: Message) -> dict[str, Any]:
                 "name": field.name,
                 "type": field.type,
                 "bits": field.bits,
-                "scaled": field.scale is not None or field.type == "text",
+                "scaled": field.has_formula or field.type == "text",
+                "settable": ((field.has_formula and field.leads_back) or field.type == "text") and not field.view,
                 "view": field.view,
             }
             for field in (*message.owners, *message.views)

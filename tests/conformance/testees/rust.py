@@ -106,12 +106,12 @@ def _field(field: FieldDescription) -> FieldEntry:
     scale, text, special, limits = "None", "None", "Vec::new", "Vec::new"
     if field.is_text:
         text = f"Some(Text {{ get: Self::{field.physical_name}, set: Self::set_{field.physical_name} }})"
-    if field.steps is not None:
+    if field.is_scaled:
         get, set = f"Self::{field.physical_name}", f"Self::set_{field.physical_name}"
         index = field.model.index
         if index is not None:
             get, set = f"|m| {get}(m, {index}).unwrap_or_default()", f"|m, value| {set}(m, {index}, value)"
-        set = "|_, _| Ok(())" if field.model.view else set
+        set = set if field.is_set else "|_, _| Ok(())"
         scale = f"Some(Scale {{ get: {get}, set: {set} }})"
     names = [(one.key, f"Self::{one.name.upper()}") for one in field.constants if one.key != "const"]
     if field.model.special:

@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
 from icdgen import layout
-from icdgen.icd import formula
+from icdgen.icd.build import calibration
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Field, Limits, Message, Node
 
@@ -52,6 +52,8 @@ def of_field(field: Field, message: Message, node: Node) -> Iterator[tuple[Chang
         return
     if message.tail is not None:
         size = 8 * message.least
+        if message.tail.counter == field.name:
+            return  # it counts the elements: as another field it may count none
     for step in (-8, 8) if field.is_bytes else (-8, -1, 1, 8):
         if 0 <= field.at + step <= size - field.width:
             yield _step("offset", source, "at", field.at, step), replace(field, at=field.at + step)
@@ -65,7 +67,7 @@ def of_field(field: Field, message: Message, node: Node) -> Iterator[tuple[Chang
 
 
 def _of_open(field: Field) -> Iterator[tuple[Change, Field]]:
-    """The changes of the elements of an open end; of how many there are and where: see `of_message`."""
+    """The changes of the elements of an open end; how many there are, and where, is no change of a field."""
     if not field.is_bytes:
         yield from _types(field)
         yield from _formulas(field)
@@ -87,17 +89,16 @@ def _types(field: Field) -> Iterator[tuple[Change, Field]]:
     source = field.source
     for kind in OTHER_TYPES[field.type] if _is_plain(field) else ():
         if _can_be(field, kind):
-            scale = field.scale if kind in ("uint", "int") else None
-            yield Change("type", source, "type", field.type, kind), replace(field, type=kind, scale=scale)
+            scale, curve = calibration(field.formula, kind)
+            yield Change("type", source, "type", field.type, kind), replace(field, type=kind, scale=scale, curve=curve)
 
 
 def _formulas(field: Field) -> Iterator[tuple[Change, Field]]:
-    source = field.source
-    for text in formulas(field.formula) if field.scale is not None else ():
-        try:
-            yield Change("formula", source, "formula", field.formula, text), replace(field, scale=formula.parse(text))
-        except formula.FormulaError:  # its factor would be 0
-            continue
+    for text in formulas(field.formula) if field.has_formula else ():
+        scale, curve = calibration(text, field.type)
+        if scale is not None or curve is not None:  # else its factor would be 0
+            change = Change("formula", field.source, "formula", field.formula, text)
+            yield change, replace(field, scale=scale, curve=curve)
 
 
 def _values(field: Field) -> Iterator[tuple[Change, Field]]:
@@ -126,6 +127,8 @@ def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]
     source = message.source
     for key in (*IDS, "length"):
         value = getattr(message, key)
+        if key == "length" and message.tail is not None:
+            continue  # what is open begins where it ends
         for step in (-1, 1) if value is not None else ():
             if value + step >= 0:
                 kind = "length" if key == "length" else "id"
@@ -136,37 +139,6 @@ def of_message(message: Message, node: Node) -> Iterator[tuple[Change, Message]]
             fields = tuple(one if key in one.source else _with(one, key, now) for one in message.fields)
             if not _same_places(message.fields, node, fields, node):
                 yield Change(key.replace("_", " "), source, key, source[key], now), replace(message, fields=fields)
-
-
-def of_end(message: Message) -> Iterator[tuple[Change, Message]]:
-    """The changes of how much may end a message of variable length, and of the bytes of an element."""
-    tail, source = message.tail, next((one.source for one in message.fields if _ends(message, one)), None)
-    if tail is None or source is None:
-        return
-    for step in (-1, 1):
-        if tail.most + step > 0:
-            yield _step("count", source, "up_to", tail.most, step), _ended(message, tail.most + step, tail.step)
-        if "bits" in source and tail.step + step > 0:
-            change = Change("width", source, "bits", 8 * tail.step, 8 * (tail.step + step))
-            yield change, _ended(message, tail.most, tail.step + step)
-
-
-def _ends(message: Message, one: Field) -> bool:
-    """Whether a field is, or is an element of, the open end of its message."""
-    tail = message.tail
-    return tail is not None and (one.path[0].name if one.path else one.name) == tail.name
-
-
-def _ended(message: Message, most: int, step: int) -> Message:
-    """The message with another open end."""
-    tail, length = message.tail, message.least + most * step
-    assert tail is not None
-    end = next(one for one in message.members if one.name == tail.name)
-    octets = end.is_bytes
-    own = (replace(end, bits=8 * most),) if octets else replace(end, bits=8 * step, count=most).elements
-    others = [one for one in message.fields if not one.implied and not _ends(message, one)]
-    implied = [replace(one, at=8 * length) for one in message.fields if one.implied]
-    return replace(message, length=length, fields=(*others, *own, *implied), tail=replace(tail, most=most, step=step))
 
 
 def of_node(node: Node) -> Iterator[tuple[Change, Node]]:

@@ -14,7 +14,6 @@ from operator import or_
 from typing import Any
 
 from icdgen import codec
-from icdgen.icd.formula import Scale
 from icdgen.icd.model import Field, Message, Node
 from icdgen.vectors.lines import MessageLines
 from icdgen.vectors.make import MessageVectors, Raw, Row, known_text
@@ -51,14 +50,6 @@ class MessageWatch:
         pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
         return [number for number, row in pairs if _answer(node, changed, row.frame) != (row.raw, row.encoded)]
 
-    def end(self, now: Message) -> list[int]:
-        """Lines that notice that the open end is another."""
-        pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
-        found = [number for number, row in pairs if _answer(self.node, now, row.frame) != (row.raw, row.encoded)]
-        if any(length in now.lengths for length in self.vectors.lengths):
-            found.append(self.lines.lengths)
-        return found
-
     def id(self, key: str) -> list[int]:
         """Lines that notice another id: frames are asked for by the id, by the set id where there are two."""
         rows = self.lines.rows[:1] if key == "get_id" else self.lines.rows
@@ -69,7 +60,7 @@ class MessageWatch:
         return [self.lines.head, self.lines.lengths, *self.lines.rows]
 
     def _line_notices(self, old: Field, now: Field) -> bool:
-        if _shown(old, old.fresh) != _shown(now, now.fresh):
+        if self._is_fresh(old) and _shown(old, old.fresh) != _shown(now, now.fresh):
             return True
         if [one.value for one in old.special] != [one.value for one in now.special] or old.limits != now.limits:
             return True
@@ -81,10 +72,18 @@ class MessageWatch:
         given = self.vectors.settings.get(old.name, [])
         if not given or old.type == "text":
             return any(_attempt(codec.raw_from_text, now, said) != _given(raw) for said, raw in given)
-        asked = [*given, *((bits, None) for bits in NEVER)]
-        return now.scale is None or any(
+        asked = [*given, *((bits, None) for bits in NEVER if old.type != "float")]
+        return not (now.has_formula and now.leads_back) or any(
             _attempt(codec.raw_from_physical, now, float_of(bits)) != _given(raw) for bits, raw in asked
         )
+
+    def _is_fresh(self, field: Field) -> bool:
+        """Whether a new message has it: of an open end it has no element."""
+        return field.implied or field.at < 8 * self._fresh_length
+
+    @cached_property
+    def _fresh_length(self) -> int:
+        return len(codec.encode(self.node, self.message, self.message.fresh))
 
     @cached_property
     def _of_others(self) -> list[list[int]]:
@@ -114,10 +113,13 @@ def _notices(row: Row, old: Field, now: Field, node: Node, alone: Message, other
         return True
     if _shown(now, read) != _shown(old, raw) or _name(now, read) != _name(old, raw):
         return True
-    if now.type == "text" or now.type != old.type or now.scale is not old.scale or now.bits != old.bits:
-        if _physical(now, read) != _physical(old, raw) or _set_back(now, read) != _set_back(old, raw):
+    if now.type == "text" or now.type != old.type or _formula(now) != _formula(old) or now.bits != old.bits:
+        if _physical(now, read) != _physical(old, raw):
             return True
-    return _number(frame) | others != _number(row.encoded)
+        if old.leads_back and (not now.leads_back or _set_back(now, read) != _set_back(old, raw)):
+            return True  # what does not lead back is not asked to
+    there = (1 << 8 * len(row.encoded)) - 1  # of a frame that ends early, elements that are not there do not tell
+    return (_number(frame) | others) & there != _number(row.encoded)
 
 
 def _place(field: Field) -> tuple[object, ...]:
@@ -165,15 +167,15 @@ def _name(field: Field, raw: Any) -> object:
 def _physical(field: Field, raw: Any) -> object:
     if field.type == "text":
         return (known_text(raw),)
-    return None if field.scale is None else bits_of(_double(field.scale, raw))
+    double = codec.physical_double(field, raw)
+    return None if double is None else bits_of(double)
 
 
 def _set_back(field: Field, raw: Any) -> object:
     """What setting the physical value of the raw value gives."""
-    if field.scale is None or field.view:
-        return None
-    return _attempt(codec.raw_from_physical, field, _double(field.scale, raw))
+    double = None if field.view else codec.physical_double(field, raw)
+    return None if double is None else _attempt(codec.raw_from_physical, field, double)
 
 
-def _double(scale: Scale, raw: int) -> float:
-    return codec.to_double(scale.physical(raw))
+def _formula(field: Field) -> object:
+    return field.scale, field.curve

@@ -106,9 +106,6 @@ class Trace:
                     continue
                 found = changes.of_field(field, message, node)
                 own = tuple(self._of_member(message, node, watch, place, field, *one) for one in found)
-                if message.tail is not None and message.tail.name == field.name:
-                    ends = changes.of_end(message)
-                    own += tuple(Traced(change, _noticed(node, watch.end(now))) for change, now in ends)
                 yield Element("field", node, message, field, row, own)
                 place += len(field.elements)
 

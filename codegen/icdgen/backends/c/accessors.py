@@ -19,7 +19,7 @@ ELEMENT = "element"
 class Accessor(NamedTuple):
     """A getter and a setter of a physical value; ``test`` holds for values that the setter refuses by itself.
 
-    Of a view there is no setter, and ``assignment`` is empty.
+    Of a view there is no setter, nor where a formula does not lead back, and ``assignment`` is empty.
     """
 
     end: str  # of the names
@@ -35,7 +35,7 @@ class Accessor(NamedTuple):
 
 def accessors(message: MessageDescription) -> list[Accessor]:
     """In double precision."""
-    return [_double(field) for field in message.all_members if field.steps is not None]
+    return [_double(field) for field in message.all_members if field.is_scaled]
 
 
 class View(NamedTuple):
@@ -57,17 +57,15 @@ def view(field: FieldDescription) -> View:
 
 
 def _double(field: FieldDescription) -> Accessor:
-    assert field.steps is not None
-    scaled = physical.scaled(field)
-    function, *arguments = scaled.setter
+    getter, (function, *arguments), declared = physical.in_doubles(field)
     return Accessor(
         end=field.physical_name,
         type="double",
-        about=physical_comment(field.model, field.steps),
+        about=physical_comment(field.model),
         what=physical_name(field.model),
-        expression=scaled.getter.format(raw=_raw(field)),
-        assignment="" if field.model.view else call(f"return {function}", (f"&{_member(field)}", *arguments)),
-        declared=tuple(physical.wide_scale(field.steps)) if field.steps.is_wide else (),
+        expression=getter.format(raw=_raw(field)),
+        assignment="" if not field.is_set else call(f"return {function}", (f"&{_member(field)}", *arguments)),
+        declared=declared,
         elements=field.count,
     )
 

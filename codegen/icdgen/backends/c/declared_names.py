@@ -93,11 +93,11 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
             yield field.identifier(FILE, names.constant(message, one.name))
         for end in _physical_names(field) if field.has_physical else ():
             yield field.identifier(FILE, f"{stem}_{end}")
-            if not is_view:
+            if field.is_set:
                 yield field.identifier(FILE, f"{stem}_set_{end}")
 
 
 def _physical_names(field: FieldDescription) -> tuple[str, ...]:
     """What its accessors are called by: the physical value as a text or a double, and in whole parts of its unit."""
-    whole = None if field.is_text else physical.scaled(field).whole
+    whole = None if field.steps is None else physical.scaled(field).whole
     return (field.physical_name,) if whole is None else (field.physical_name, field.whole_name(whole.per))

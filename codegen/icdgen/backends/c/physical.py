@@ -9,6 +9,7 @@ from icdgen.backends.c.types import cast
 from icdgen.describe import FieldDescription, wholes
 from icdgen.describe.steps import Steps, wide_parts
 from icdgen.describe.storage import Storage
+from icdgen.icd.curve import Curve
 
 RAW = "{raw}"  # stands for the member in the expressions made here
 INT32, INT64 = (1 << 31) - 1, (1 << 63) - 1
@@ -33,6 +34,28 @@ class Scaled(NamedTuple):
     getter: str  # a double, over ``{raw}``
     setter: tuple[str, ...]  # a function, and its arguments after the raw value
     whole: Whole | None
+
+
+def in_doubles(field: FieldDescription) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
+    """Getter and setter, as those of `Scaled`, and the lines that declare what both use."""
+    if field.curve is not None:
+        return _on_curve(field, field.curve)
+    assert field.steps is not None
+    found = scaled(field)
+    return found.getter, found.setter, tuple(wide_scale(field.steps)) if field.steps.is_wide else ()
+
+
+def _on_curve(field: FieldDescription, curve: Curve) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
+    coefficients = ", ".join(map(repr, curve.coefficients))
+    count = f"{len(curve.coefficients)}u"
+    getter = f"icdgen_curve(ICDGEN_CAST(double, {RAW}), curve, {count})"
+    declared = (f"static const double curve[] = {{{coefficients}}};",)
+    if field.model.type == "float":
+        return getter, (f"icdgen_set_curve_f{field.model.bits}", "value", "curve"), declared
+    one, storage = field.model, field.storage
+    limits = [_limit(end, storage) for end in ((one.raw_min, one.raw_max) if storage.signed else (one.raw_max,))]
+    kind = f"{'i' if storage.signed else 'u'}{storage.bits}"
+    return getter, (f"icdgen_set_curve_{kind}", "value", "curve", count, *limits), declared
 
 
 def scaled(field: FieldDescription) -> Scaled:

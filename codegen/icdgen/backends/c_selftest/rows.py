@@ -180,7 +180,7 @@ class _Rows:
             view=type_of(one) if field.view else "",
             unfit=list(map(_unsigned, unfit)),
             whole=None if field.view else _whole(one),
-            scaled=_scaled(one, vectors.settings.get(field.name)) if field.scale else None,
+            scaled=_scaled(one, vectors.settings.get(field.name)) if one.is_scaled else None,
             text=_texts(one, vectors.settings[field.name]) if one.is_text else None,
         )
 
@@ -236,7 +236,8 @@ def _scaled(field: FieldDescription, settings: Settings | None) -> Accessors:
     lines: list[str] = []
     if settings is None:
         return _accessors(field, field.physical_name, "double", lines)
-    for bits, raw in [*settings, *((bits, None) for bits in NEVER)]:
+    never = () if field.model.type == "float" else NEVER
+    for bits, raw in [*settings, *((bits, None) for bits in never)]:
         assert not isinstance(raw, bytes)
         lines.append(f"{{UINT64_C(0x{bits}), {_unsigned(raw or 0)}, {'true' if raw is None else 'false'}}},")
     return _accessors(field, field.physical_name, "double", lines)

@@ -105,7 +105,7 @@ def _row(key: int, field: Field, links: Links, anchor: str) -> FieldRow:
         unit=field.unit.symbol if field.unit else "",
         unit_url=links.unit(field.unit) if field.unit else "",
         unit_title=field.unit.quantity if field.unit else "",
-        formula=field.formula if field.scale else "",
+        formula=field.formula if field.has_formula else "",
         summary=field.summary,
         notes=tuple(_notes(field)),
         errata=field.errata,

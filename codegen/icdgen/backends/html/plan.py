@@ -55,6 +55,10 @@ def _field(field: Field, node: Node) -> dict[str, object]:
     scaled = steps(field)
     if scaled is not None:
         plan["scale"] = [integer(term) for term in scaled.terms]
+    if field.curve is not None:
+        plan["curve"] = list(field.curve.coefficients)
+        if not field.leads_back:
+            plan["oneWay"] = True
     if field.unit is not None:
         plan["unit"] = field.unit.symbol
     if field.enum is not None:

@@ -36,7 +36,7 @@ def raw_range(field: Field) -> str:
 
 def physical_range(field: Field) -> str:
     """Physical values from the smallest to the largest, as far as type and limits tell; empty where they are the raw ones."""
-    if field.type in ("uint", "int") and not (field.scale or field.limits or field.unit):
+    if field.type in ("uint", "int") and not (field.has_formula or field.limits or field.unit):
         return ""
     return span(*("" if bound is None else number(bound) for bound in allowed_ends(field)))
 

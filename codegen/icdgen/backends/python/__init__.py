@@ -42,6 +42,7 @@ class PythonBackend:
             "version": __version__,
             "project": self.package.replace("_", "-"),
             "nodes": description.nodes,
+            "types": names.TYPES,
             **_functions(),
         }
         linked = links_of(description)
@@ -61,7 +62,7 @@ class PythonBackend:
             if node.name in linked:
                 yield folder / "_link.py", render("link.py.j2", **shared, link=links.literal(linked[node.name]))
             folder /= names.TYPES
-            yield folder / "__init__.py", render("types.py.j2", **shared)
+            yield folder / "__init__.py", render("types.py.j2", **nodes.spoken(node, description), **shared)
             for enum in node.enums:
                 yield folder / f"{names.module_name(enum)}.py", render("enum.py.j2", enum=enum, **shared)
             for message in node.messages:

@@ -84,6 +84,8 @@ def view_info(field: FieldDescription) -> str:
     items = [f'"{field.name}"', literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', *_told(field)]
     if field.steps is not None:
         items += [f'physical="{field.physical_name}"', f"scale={field.steps.terms}"]
+    if field.curve is not None:
+        items += [f'physical="{field.physical_name}"', f"curve={field.curve.coefficients}"]
     if field.enum is not None:
         items.append(f"enum={class_name(field.enum)}")
     return f"_base.FieldInfo({', '.join(items)})"
@@ -91,6 +93,8 @@ def view_info(field: FieldDescription) -> str:
 
 def physical(field: FieldDescription) -> str:
     """The physical value of a view."""
+    if field.curve is not None:
+        return f"_base.on_curve({field.curve.coefficients}, self.{field.name})"
     assert field.steps is not None
     p, c, q = field.steps.terms
     return f"(self.{field.name} * {p} {'-' if c < 0 else '+'} {abs(c)}) / {q}"
@@ -98,15 +102,19 @@ def physical(field: FieldDescription) -> str:
 
 def scaled(field: FieldDescription) -> str:
     """``estimated_roll_angle_deg: float = _base.scaled(...)``: the steps of the physical value, and the first one."""
-    assert field.steps is not None
-    first = "()" if field.is_open else repr(field.steps.double(field.fresh))
-    first, note = (
-        (first, "tuple[float, ...]")
-        if field.is_open
-        else (f"({first},) * {field.count}", "tuple[float, ...]") if field.count else (first, "float")
-    )
-    items = [*map(str, field.steps.terms), f"default={first}"]
-    return _statement(field.physical_name, note, "scaled", items)
+    curve, steps = field.curve, field.steps
+    first = repr(curve.double(field.fresh) if curve is not None else steps.double(field.fresh) if steps else 0.0)
+    if field.is_open:
+        first, note = "()", "tuple[float, ...]"
+    elif field.count:
+        first, note = f"({first},) * {field.count}", "tuple[float, ...]"
+    else:
+        note = "float"
+    if curve is not None:
+        items = [str(curve.coefficients), f"default={first}"]
+        return _statement(field.physical_name, note, "curve" if field.is_set else "curve_only", items)
+    assert steps is not None
+    return _statement(field.physical_name, note, "scaled", [*map(str, steps.terms), f"default={first}"])
 
 
 def whole(field: FieldDescription) -> Whole | None:

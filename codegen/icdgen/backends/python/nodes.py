@@ -69,6 +69,12 @@ def listing(names: Iterable[str]) -> str:
     return exploded("[", [literal(name) for name in names], "]")
 
 
+def spoken(node: NodeDescription, description: Description) -> dict[str, object]:
+    """The nodes whose messages it speaks, too, as the bases of a class."""
+    included = [one.name for one in reversed(description.icd.included(node.model))]
+    return {"included": included, "bases": f"({', '.join(f'_{name}' for name in included)})" if included else ""}
+
+
 def mapping(pairs: Sequence[tuple[str, str]]) -> str:
     """A dictionary of names."""
     return literals((literal(key), literal(value)) for key, value in pairs)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from icdgen.backends.lines import STEP
 from icdgen.backends.rust.names import field_name
-from icdgen.backends.rust.physical import physical, raw_value, single
+from icdgen.backends.rust.physical import curve_name, curve_value, physical, raw_value, single
 from icdgen.backends.rust.text import WIDTH, assigned, double, integer, string
 from icdgen.describe import FieldDescription
 from icdgen.describe.comments import physical_comment, physical_name
@@ -26,16 +26,29 @@ class Accessor(NamedTuple):
 
 
 def accessors(field: FieldDescription) -> list[Accessor]:
-    """Those of a field with a scale."""
-    assert field.steps is not None
+    """Those of a field with a formula."""
     name, scale = field.physical_name, field.declared.upper()
     sets = f"Sets {'an element of ' if field.count else ''}{{}}, to the nearest raw value, ties to even"
     end = ", or if there is no such element." if field.count else "."
+    if field.curve is not None:
+        kind = {32: "single", 64: "number"}[field.model.bits] if field.model.type == "float" else "raw"
+        return [
+            Accessor(
+                name,
+                "f64",
+                physical_comment(field.model),
+                curve_value(field),
+                sets.format(physical_name(field.model)),
+                f"if it is beyond the values of the field, or not finite{end}",
+                f"{curve_name(field)}.{kind}(value)" if field.is_set else "",
+            )
+        ]
+    assert field.steps is not None
     found = [
         Accessor(
             name,
             "f64",
-            physical_comment(field.model, field.steps),
+            physical_comment(field.model),
             physical(field),
             sets.format(physical_name(field.model)),
             f"if it does not fit or is not finite{end}",
@@ -94,6 +107,16 @@ def scale_of(field: FieldDescription) -> str:
     )
 
 
+def curve_of(field: FieldDescription) -> str:
+    """The constant of a field with a curve."""
+    assert field.curve is not None
+    one = field.model
+    ends = (one.raw_min, one.raw_max) if field.model.type != "float" and field.model.leads_back else (0, 0)
+    coefficients = ", ".join(map(double, field.curve.coefficients))
+    numbers = f"({', '.join(map(integer, ends))}), &[{coefficients}]"
+    return f"#[rustfmt::skip]\nconst {curve_name(field)}: Curve = Curve::new({string(one.name)}, {numbers});"
+
+
 def field_row(field: FieldDescription) -> str:
     """The field as data: place, and what else is known of it."""
     one = field.model
@@ -109,6 +132,8 @@ def field_row(field: FieldDescription) -> str:
         chain.append(f".limits(&[{', '.join(limits)}])")
     if field.steps is not None:
         chain.append(f".{'wide_scale' if field.steps.is_wide else 'scale'}(&{field.name.upper()})")
+    if field.curve is not None:
+        chain.append(f".curve(&{curve_name(field)})")
     line = "".join(chain)
     if len(chain) == 1 or len(f"{STEP}{field_name(field)}: {line},") <= WIDTH:
         return line

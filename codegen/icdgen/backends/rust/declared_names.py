@@ -71,7 +71,7 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
         yield field.identifier(methods if is_view else fields, names.field_name(field))
         if field.has_physical:
             yield field.identifier(methods, field.physical_name)
-            if not is_view:
+            if field.is_set:
                 yield field.identifier(methods, f"set_{field.physical_name}")
         if field.steps is not None:
             yield field.identifier(methods, single_name(field))

@@ -54,7 +54,7 @@ def client_example(node: NodeDescription, link: LinkDescription, crate: str) -> 
     asked = [one for one in known if one.model.length <= _WHOLE]
     if link.facts.framing is None or not asked:
         return []
-    message = next((one for one in asked if any(field.steps for field in one.members)), asked[0])
+    message = next((one for one in asked if any(field.is_scaled for field in one.members)), asked[0])
     one, name = example(message), type_name(message)
     answer = _bytes(bytes([message.model.telemetry_id or 0, *one.frame]))
     client = f"Client::<{node.name}::Node, {{ {node.name}::LONGEST }}>"

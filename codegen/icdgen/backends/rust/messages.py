@@ -23,7 +23,8 @@ def values(message: MessageDescription) -> dict[str, object]:
     narrow = [field for field in fields if field.is_narrow]
     scales = [field for field in message.all_members if has_constant(field)]
     has_text = any(field.is_text for field in fields)
-    has_elements = any(field.count and field.steps is not None for field in fields)
+    has_elements = any(field.count and field.is_scaled for field in fields)
+    curves = [field for field in message.all_members if field.curve is not None]
     is_usual = any(field.steps is None or not field.steps.is_wide for field in scales)
     imported = {
         "array": any("array(" in reading for reading in readings),
@@ -43,6 +44,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "present": tail is not None,
         "words": any("words(" in reading for reading in readings),
         "Big": message.has_wide_steps,
+        "Curve": bool(curves),
         "Coded": any(field.enum for field in message.all_fields),
         "Error": True,
         "Frame": tail is not None,
@@ -63,6 +65,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "writings": writings,
         "fits": [line for field in narrow for line in bits.fitting(field)],
         "scales": scales,
+        "curves": curves,
         "parts": parts.parts(message),
         "default": None if has_default else _literal(fields, [_fresh(field) for field in fields]),
         "derives": ", ".join(derived + ([] if message.has_floats else ["Eq", "Hash"])),

@@ -36,6 +36,19 @@ def raw_value(field: FieldDescription) -> str:
     return "raw" if field.count else f"self.{field_name(field)}{'()' if field.model.view else ''}"
 
 
+def curve_name(field: FieldDescription) -> str:
+    """``TEMPERATURE__CURVE``: no name of a field has two lines in a row."""
+    return f"{field.declared.upper()}__CURVE"
+
+
+def curve_value(field: FieldDescription) -> str:
+    """The physical value of a field with a curve."""
+    raw, bits = raw_value(field), field.storage.bits
+    if bits == 64 and field.model.type != "float":
+        return f"{curve_name(field)}.whole({raw})"
+    return f"{curve_name(field)}.physical({raw if bits == 64 else f'f64::from({raw})'})"
+
+
 def physical(field: FieldDescription) -> str:
     """The physical value of a field with a scale.
 

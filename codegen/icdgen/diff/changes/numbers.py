@@ -11,6 +11,7 @@ from icdgen.diff.pairs import FieldPair, differing
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.similar import same_sense
 from icdgen.diff.wording import formula, number
+from icdgen.icd.curve import Curve
 from icdgen.icd.formula import RAW, Scale
 from icdgen.icd.model import Field, Limits
 from icdgen.icd.rules.wording import quote
@@ -19,11 +20,14 @@ from icdgen.icd.rules.wording import quote
 @rule("DIF201", "field")
 @rule("DIF203", "field")
 def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    old, new = pair.old.scale or RAW, pair.new.scale or RAW
+    old, new = (field.curve or field.scale or RAW for field in (pair.old, pair.new))
     if old == new:
         return
     was, now = formula(old), formula(new)
-    if old.factor == -new.factor:
+    if isinstance(old, Curve) or isinstance(new, Curve):
+        text = f"the value of {quote(pair.new.name)} is {now}, was {was}"
+        yield Found(text, ("formula", "unit"), was, now, code="DIF201")
+    elif old.factor == -new.factor:
         text = f"the sign of {quote(pair.new.name)} is turned: {now}, was {was}"
         yield Found(text, ("formula",), was, now, code="DIF203")
     else:

@@ -13,6 +13,7 @@ from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError
 from icdgen.icd import model, schema, source
+from icdgen.icd.curve import Curve
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, Seq, plain
 from icdgen.icd.units import STANDARD, Unit
@@ -191,6 +192,7 @@ class _Reader:
             unit=self.units.get(item.get("unit", "")),
             formula=item.get("formula", ""),
             scale=_scale(item),
+            curve=Curve(tuple(map(float, item["coefficients"]))) if "coefficients" in item else None,
             special=tuple(model.Special(**_as_it_is(model.Special, one)) for one in item.get("special", ())),
             limits=model.Limits(**limits) if "limits" in item else None,
             view=item.get("view", False),

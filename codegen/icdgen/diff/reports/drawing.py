@@ -133,8 +133,8 @@ def _label(name: str, width: float) -> str:
 
 def _title(one: Field) -> str:
     words = [one.name, span(one), type_of(one)]
-    if one.scale is not None:
-        words.append(formula(one.scale))
+    if one.has_formula:
+        words.append(formula(one.curve or one.scale))
     if one.unit is not None:
         words.append(one.unit.symbol)
     return ", ".join(words)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.icd import exact, formula
+from icdgen.icd import curve, exact, formula
 from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Node
 from icdgen.icd.rules.context import Context
@@ -12,19 +12,19 @@ from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
 
-SCALED = ("uint", "int")
+SCALED = ("uint", "int", "float")
 
 
 @rule("ICD060")
 def formula_reads(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.having["formula"]:
-        if field.scale is None and field.type in SCALED:
+        if not field.has_formula and field.type in SCALED:
             text = field.source["formula"]
             try:
-                formula.parse(text)
+                curve.parse(text)
             except formula.FormulaError as error:
                 message = f"the formula {quote(text)} cannot be used: {error}"
-                help = "a formula is linear and exact: `raw*0.01`, `raw*2^-19`, `raw/10 - 40`, `raw = value*1000`"
+                help = "a formula is a line or a polynomial: `raw*0.01`, `raw/10 - 40`, `raw = value*1000`, `3e-6*raw^2 + raw*2^-9`"
                 yield Fault(field.source, field.source.at("formula"), message, help)
 
 
@@ -33,7 +33,7 @@ def formula_has_number(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.having["formula"]:
         if field.type not in SCALED:
             message = f"{quote(field.name)} is `{field.type}`, which takes no formula"
-            yield Fault(field.source, field.source.at("formula"), message, "only uint and int fields are scaled")
+            yield Fault(field.source, field.source.at("formula"), message, "only numbers have one: uint, int and float")
 
 
 @rule("ICD062")
@@ -93,6 +93,10 @@ def formula_computable(ctx: Context) -> Iterator[Fault]:
     checked: dict[str, bool] = {}
     for field, _, _ in ctx.having["formula"]:
         scale = field.scale
+        line = field.curve
+        if line is not None and field.type != "float" and not curve.is_finite(line, field.raw_min, field.raw_max):
+            message = f"the formula of {quote(field.name)} leads beyond what a double holds"
+            yield Fault(field.source, field.source.at("formula"), message, "correct an exponent, or `bits`")
         if scale is None:
             continue
         if field.formula not in checked:
@@ -102,6 +106,21 @@ def formula_computable(ctx: Context) -> Iterator[Fault]:
             message = f"the formula of {quote(field.name)} needs numbers that are too large: (raw*{p} + {c}) / {q}"
             help = "factor and divisor go up to 2^180, the offset up to 2^240, over their common denominator"
             yield Fault(field.source, field.source.at("formula"), message, help)
+
+
+@rule("ICD066", severity="warning")
+def formula_leads_back(ctx: Context) -> Iterator[Fault]:
+    for field, message, _ in ctx.having["formula"]:
+        if message.telecommand_id is None or field.view or not field.has_formula or field.leads_back:
+            continue
+        if field.type == "float":
+            why = "of a float only a line leads back"
+        elif field.bits > curve.MOST_BITS:
+            why = f"of a polynomial this is only known for fields of up to {curve.MOST_BITS} bits"
+        else:
+            why = "its values do not rise, or fall, from each raw value to the next"
+        text = f"the formula of {quote(field.name)} does not lead back, and {quote(message.name)} is sent: {why}"
+        yield Fault(field.source, field.source.at("formula"), text, "its raw value can be set all the same")
 
 
 def _shown(number: int) -> str:

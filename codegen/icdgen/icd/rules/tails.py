@@ -51,11 +51,9 @@ def carried(ctx: Context) -> Iterator[Fault]:
     named = {message.name: message for message, _ in ctx.messages if message.tail is not None}
     for message, node in ctx.messages:
         for part in message.source.get("contains") or ():
-            if (
-                isinstance(part, Map)
-                and part.get("message") in named
-                and (known := named[part["message"]]) in ctx.messages_of(node)
-            ):
+            name = part.get("message") if isinstance(part, Map) else None
+            known = named.get(name) if isinstance(name, str) else None
+            if known is not None and known in ctx.messages_of(node):
                 text = f"{quote(known.name)} has no fixed length, so {quote(message.name)} cannot repeat it"
                 yield Fault(message.source, part.at("message"), text, "remove it from `contains`")
 

@@ -9,7 +9,11 @@ from . import TELECOMMANDS, TELEMETRY
 
 __all__ = ["LINK"]
 
-LINK = link.Link(
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from ._types import _Node
+
+LINK: link.Link[_Node] = link.Link(
     node="cubeacp",
     order="little",
     node_type=10,

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple, Optional
+from typing import Generic, Literal, NamedTuple, Optional
 
 from .._base import Message
 from .._errors import IcdError, LengthError, UnknownIdError
-from .._hints import Buffer
+from .._hints import Buffer, KindOf, N, SpokenBy, class_of, message_of
 from .can import CanEvent, CanJoiner, CanMessage, CanPacket, can_split
 from .errors import BusyError, need
 from .events import (
@@ -40,7 +40,7 @@ class Request(NamedTuple):
     repeat: bool = False
 
 
-class Client:
+class Client(Generic[N]):
     """A client on one bus.
 
     It is told what happens and when, in milliseconds of any clock that never goes back:
@@ -53,7 +53,7 @@ class Client:
 
     def __init__(
         self,
-        link: Link,
+        link: Link[N],
         bus: Bus,
         crc: bool = False,
         address: int = 0,
@@ -96,20 +96,24 @@ class Client:
         """When `tick` wants to be called at the latest; None: not at all."""
         return self._until if self.busy else None
 
-    def request(self, now: float, message: type[Message]) -> list[Event]:
+    def request(self, now: float, message: KindOf[N, Message]) -> list[Event]:
         """Requests telemetry, or reads a setting. See `start`."""
-        id = message.IDS[-1]
-        if id not in self.link.TELEMETRY or self.link.TELEMETRY[id] is not message:
-            raise UnknownIdError(self.link.node, "telemetry", message.NAME)
+        kind = class_of(message)
+        id = kind.IDS[-1]
+        if id not in self.link.TELEMETRY or self.link.TELEMETRY[id] is not kind:
+            raise UnknownIdError(self.link.node, "telemetry", kind.NAME)
         return self.start(now, Request("telemetry", id))
 
-    def send(self, now: float, message: Message, repeat: bool = False) -> list[Event]:
+    def send(
+        self, now: float, message: SpokenBy[N], repeat: bool = False
+    ) -> list[Event]:
         """Sends a telecommand or a setting. See `start`; also raises `RangeError`."""
-        id = message.IDS[0]
+        one = message_of(message)
+        id = one.IDS[0]
         known = self.link.TELECOMMANDS
-        if id not in known or known[id] is not type(message):
-            raise UnknownIdError(self.link.node, "telecommand", message.NAME)
-        return self.start(now, Request("telecommand", id, message.to_bytes(), repeat))
+        if id not in known or known[id] is not type(one):
+            raise UnknownIdError(self.link.node, "telecommand", one.NAME)
+        return self.start(now, Request("telecommand", id, one.to_bytes(), repeat))
 
     def start(self, now: float, request: Request) -> list[Event]:
         """Begins a request.

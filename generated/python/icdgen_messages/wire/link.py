@@ -6,8 +6,9 @@ A part that the ICD does not describe is None.
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple, Optional, Union
+from typing import Generic, Literal, NamedTuple, Optional, Union
 
+from .._hints import N
 from .._lazy import Messages
 
 Bus = Literal["uart", "i2c", "can"]
@@ -392,7 +393,7 @@ class Operation(NamedTuple):
     """The programs that it may be asked for; none: all."""
 
 
-class Link(NamedTuple):
+class Facts(NamedTuple):
     """Everything that the wire layer has to know of a node."""
 
     node: str
@@ -435,3 +436,9 @@ class Link(NamedTuple):
     boot_time: Optional[int] = None
     assumptions: tuple[Assumption, ...] = ()
     """What the manual leaves open, and what is held of it."""
+
+
+class Link(Facts, Generic[N]):
+    """The link of a node, which type checkers know the messages of that node by."""
+
+    __slots__ = ()

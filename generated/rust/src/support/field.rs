@@ -2,7 +2,7 @@
 
 //! Fields as data: place, unit, scale and limits.
 
-use super::{Error, Message, Scale, Wide};
+use super::{Curve, Error, Message, Scale, Wide};
 use core::fmt::{Formatter, Result as Shown};
 
 /// What the ICD says of a field.
@@ -38,6 +38,7 @@ pub struct Field {
 enum Formula {
     Usual(&'static Scale),
     Wide(&'static Wide),
+    Curve(&'static Curve),
 }
 
 impl Field {
@@ -78,6 +79,11 @@ impl Field {
         self
     }
 
+    pub(crate) const fn curve(mut self, curve: &'static Curve) -> Self {
+        self.scale = Some(Formula::Curve(curve));
+        self
+    }
+
     /// Whether a physical value (a raw one where there is no scale) keeps the limits; NaN keeps none.
     #[must_use]
     pub fn allows(&self, value: f64) -> bool {
@@ -89,7 +95,7 @@ impl Field {
         })
     }
 
-    /// The double nearest to the physical value of a raw one; None without a scale.
+    /// The physical value of a raw one, the double nearest to it but of a polynomial; None without a formula.
     #[must_use]
     pub fn physical(&self, raw: i64) -> Option<f64> {
         self.converted(raw.into())
@@ -99,10 +105,18 @@ impl Field {
         Some(match self.scale? {
             Formula::Usual(scale) => scale.physical(raw),
             Formula::Wide(scale) => scale.physical(raw),
+            Formula::Curve(curve) => curve.whole(raw),
         })
     }
 
-    /// The raw value nearest to a physical one, ties to even; None without a scale.
+    fn converted_float(&self, raw: f64) -> Option<f64> {
+        match self.scale? {
+            Formula::Curve(curve) => Some(curve.physical(raw)),
+            _ => None,
+        }
+    }
+
+    /// The raw value nearest to a physical one, ties to even; None without a formula, or where the field is a float.
     ///
     /// # Errors
     ///
@@ -112,6 +126,8 @@ impl Field {
         Some(match self.scale? {
             Formula::Usual(scale) => scale.raw(physical),
             Formula::Wide(scale) => scale.raw(physical),
+            Formula::Curve(curve) if curve.is_whole() => curve.raw(physical).map(i32::into),
+            Formula::Curve(_) => return None,
         })
     }
 }
@@ -173,7 +189,21 @@ macro_rules! others {
         }
     )*};
 }
-others!(bool f32 f64);
+others!(bool);
+
+macro_rules! floats {
+    ($($type:ident)*) => {$(
+        impl Value for $type {
+            fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
+                match field.converted_float((*self).into()) {
+                    Some(value) => write!(out, "{value}"),
+                    None => write!(out, "{self}"),
+                }
+            }
+        }
+    )*};
+}
+floats!(f32 f64);
 
 impl<E: super::Enumeration> Value for super::Coded<E> {
     fn show(&self, out: &mut Formatter<'_>, _: &Field) -> Shown {

@@ -70,6 +70,7 @@ __all__ = [
     "identify",
     "read_index",
     "serial_port",
+    "socket_port",
     "uart_encode",
     "uart_kind",
     "write_index",

@@ -5,20 +5,18 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Callable
-from typing import Optional, TypeVar
+from typing import Optional
 
-from .._base import Message
+from .._hints import KindOf, M, N, SpokenBy, class_of, message_of
 from .client import Client, Request
 from .events import Event, Outcome, OutcomeOf
 from .exchanges import Exchange, Exchanges, P, Progress, T, executed, outcome_of
 from .link import Link, Settings
 
-M = TypeVar("M", bound=Message)
-
 _PIECE = 4096  # bytes that are read at a time
 
 
-class AsyncSession(Exchanges):
+class AsyncSession(Exchanges[N]):
     """Asks, and awaits the outcome, over the bytes of a UART: `Session` for asyncio.
 
     The streams are yours: those of `asyncio.open_connection`, or of a serial port
@@ -30,7 +28,7 @@ class AsyncSession(Exchanges):
 
     def __init__(
         self,
-        link: Link,
+        link: Link[N],
         reader: asyncio.StreamReader,
         writer: asyncio.StreamWriter,
         crc: bool = False,
@@ -43,26 +41,28 @@ class AsyncSession(Exchanges):
         self._turn: Optional[asyncio.Lock] = None
         self._read_before: Optional[asyncio.Future[bytes]] = None
 
-    async def get(self, message: type[M]) -> M:
+    async def get(self, message: KindOf[N, M]) -> M:
         """Requests telemetry, or reads a setting.
 
         Raises `RefusedError`, `ReplyTimeoutError` and what `Client.request` does.
         """
         outcome = await self._run(self._exchange(self.client.request, message))
-        return message.from_bytes(executed(outcome, message.NAME).data)
+        return class_of(message).from_bytes(
+            executed(outcome, class_of(message).NAME).data
+        )
 
-    async def ask(self, message: type[M]) -> OutcomeOf[M]:
+    async def ask(self, message: KindOf[N, M]) -> OutcomeOf[M]:
         """Requests telemetry, or reads a setting; its outcome.
 
         Raises what `Client.request` does.
         """
         outcome = await self._run(self._exchange(self.client.request, message))
-        return outcome_of(outcome, message)
+        return outcome_of(outcome, class_of(message))
 
-    async def send(self, message: Message, repeat: bool = False) -> None:
+    async def send(self, message: SpokenBy[N], repeat: bool = False) -> None:
         """Sends a telecommand or a setting; raises like `get` and `Client.send`."""
         outcome = await self._run(self._exchange(self.client.send, message, repeat))
-        executed(outcome, message.NAME)
+        executed(outcome, message_of(message).NAME)
 
     async def start(self, request: Request) -> Outcome:
         """Any request; its outcome. Raises what `Client.start` does."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Generator
-from typing import Any, Literal, Optional, TypeVar, Union, cast
+from typing import Any, Generic, Literal, Optional, TypeVar, Union, cast
 
+from .._hints import N
 from .client import Client, Request
 from .events import (
     AnyDone,
@@ -31,12 +32,12 @@ Progress = Callable[[int, Optional[int]], object]
 _LONGEST_WAIT = 1000.0  # ms in one go
 
 
-class Exchanges:
+class Exchanges(Generic[N]):
     """A client, a clock, and whom to tell what comes unasked."""
 
     def __init__(
         self,
-        client: Client,
+        client: Client[N],
         on_event: Optional[Callable[[Event], object]] = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:

@@ -4,40 +4,40 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Optional, TypeVar
+from typing import Optional
 
-from .._base import Message
+from .._hints import KindOf, M, N, SpokenBy, class_of, message_of
 from .client import Client, Request
 from .events import Event, Outcome, OutcomeOf
 from .exchanges import Exchange, Exchanges, P, Progress, T, executed, outcome_of
 from .link import Link, Settings
 
-M = TypeVar("M", bound=Message)
 
-
-class BusSession(Exchanges):
+class BusSession(Exchanges[N]):
     """Asks, and waits for the outcome, over whatever ``_flush`` and ``_receive`` reach."""
 
-    def get(self, message: type[M]) -> M:
+    def get(self, message: KindOf[N, M]) -> M:
         """Requests telemetry, or reads a setting.
 
         Raises `RefusedError`, `ReplyTimeoutError` and what `Client.request` does.
         """
         outcome = self._run(self._exchange(self.client.request, message))
-        return message.from_bytes(executed(outcome, message.NAME).data)
+        return class_of(message).from_bytes(
+            executed(outcome, class_of(message).NAME).data
+        )
 
-    def ask(self, message: type[M]) -> OutcomeOf[M]:
+    def ask(self, message: KindOf[N, M]) -> OutcomeOf[M]:
         """Requests telemetry, or reads a setting; its outcome.
 
         Raises what `Client.request` does.
         """
         outcome = self._run(self._exchange(self.client.request, message))
-        return outcome_of(outcome, message)
+        return outcome_of(outcome, class_of(message))
 
-    def send(self, message: Message, repeat: bool = False) -> None:
+    def send(self, message: SpokenBy[N], repeat: bool = False) -> None:
         """Sends a telecommand or a setting; raises like `get` and `Client.send`."""
         outcome = self._run(self._exchange(self.client.send, message, repeat))
-        executed(outcome, message.NAME)
+        executed(outcome, message_of(message).NAME)
 
     def start(self, request: Request) -> Outcome:
         """Any request; its outcome. Raises what `Client.start` does."""
@@ -86,7 +86,7 @@ class BusSession(Exchanges):
         raise NotImplementedError
 
 
-class Session(BusSession):
+class Session(BusSession[N]):
     """Asks, and waits for the outcome, over a UART or whatever carries its bytes.
 
     The port is yours: ``write(data)`` sends, ``read(seconds)`` returns what has come,
@@ -98,7 +98,7 @@ class Session(BusSession):
 
     def __init__(
         self,
-        link: Link,
+        link: Link[N],
         write: Callable[[bytes], object],
         read: Callable[[float], bytes],
         crc: bool = False,

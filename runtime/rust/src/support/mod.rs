@@ -8,6 +8,7 @@ use core::hash::Hash;
 #[cfg(feature = "serde")]
 pub(crate) mod array;
 mod bytes;
+mod curve;
 mod field;
 mod message;
 mod scale;
@@ -18,6 +19,7 @@ mod wide;
 pub(crate) use self::bytes::{
     array, element_of, flags, put, put_array, put_element, put_words, take, words, write_to,
 };
+pub(crate) use self::curve::Curve;
 pub use self::field::Field;
 pub(crate) use self::field::Row;
 pub(crate) use self::message::{enumeration, message, shown};

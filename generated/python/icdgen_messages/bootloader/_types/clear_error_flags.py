@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["ClearErrorFlags"]
 
 
-class ClearErrorFlags(_base.Message):
+class ClearErrorFlags(_base.Message[_Node]):
     """Clear Error Flags: telecommand 7, 0 bytes. Table 61.
 
     Clears the latched error flags of Bootloader State.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .programs_list import ProgramsList
 
 __all__ = ["CopyToInternalFlash"]
 
 
-class CopyToInternalFlash(_base.Message):
+class CopyToInternalFlash(_base.Message[_Node]):
     """Copy Program to Internal Flash: telecommand 103, 2 bytes. Table 67.
 
     Only the program in internal flash can be executed.

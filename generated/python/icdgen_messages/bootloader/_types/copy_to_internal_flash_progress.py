@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["CopyToInternalFlashProgress"]
 
 
-class CopyToInternalFlashProgress(_base.Message):
+class CopyToInternalFlashProgress(_base.Message[_Node]):
     """Copy To Internal Flash Progress: telemetry 233, 1 byte. Table 71.
 
     Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control

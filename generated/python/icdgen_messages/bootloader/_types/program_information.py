@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .programs_list import ProgramsList
 
 __all__ = ["ProgramInformation"]
 
 
-class ProgramInformation(_base.Message):
+class ProgramInformation(_base.Message[_Node]):
     """Program Information: telemetry 232, 8 bytes. Table 70.
 
     Answer to Read Program Information, to be polled until it is not busy.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .programs_list import ProgramsList
 
 __all__ = ["ReadProgramInformation"]
 
 
-class ReadProgramInformation(_base.Message):
+class ReadProgramInformation(_base.Message[_Node]):
     """Read Program Information: telecommand 102, 1 byte. Table 65.
 
     Starts to read length and CRC of a stored program for Program Information.

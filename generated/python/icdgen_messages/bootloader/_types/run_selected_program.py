@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["RunSelectedProgram"]
 
 
-class RunSelectedProgram(_base.Message):
+class RunSelectedProgram(_base.Message[_Node]):
     """Run Selected Program: telecommand 101, 0 bytes. Table 64.
 
     Starts the program in internal flash at once.

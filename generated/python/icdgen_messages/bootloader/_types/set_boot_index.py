@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .boot_set_programs_list import BootSetProgramsList
 
 __all__ = ["SetBootIndex"]
 
 
-class SetBootIndex(_base.Message):
+class SetBootIndex(_base.Message[_Node]):
     """Set Boot Index: telecommand 100, 1 byte. Table 62.
 
     Selects the program to boot. Also sets the boot status back to New Selection.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["State"]
 
 
-class State(_base.Message):
+class State(_base.Message[_Node]):
     """Bootloader State: telemetry 132, 6 bytes. Table 69.
 
     Up-time, SRAM state and error flags. The error flags stay set until Clear Error

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["AdvanceFileListReadPointer"]
 
 
-class AdvanceFileListReadPointer(_base.Message):
+class AdvanceFileListReadPointer(_base.Message[_Node]):
     """Advance File List Read Pointer: telecommand 113, 0 bytes. Table 18.
 
     Makes File Information describe the next file.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["AdvanceLogPointer"]
 
 
-class AdvanceLogPointer(_base.Message):
+class AdvanceLogPointer(_base.Message[_Node]):
     """Advance Log Pointer: telecommand 5, 0 bytes. Table 12.
 
     Moves the pointer of Last Logged Event forward.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["BlockChecksum"]
 
 
-class BlockChecksum(_base.Message):
+class BlockChecksum(_base.Message[_Node]):
     """Block Checksum: telemetry 246, 2 bytes. Table 46.
 
     CRC-16 of the received upload block, to be compared before the block is finalized.

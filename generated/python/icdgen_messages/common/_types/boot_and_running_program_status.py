@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .boot_cause import BootCause
 from .boot_programs_list import BootProgramsList
 from .reset_cause import ResetCause
@@ -13,7 +14,7 @@ from .reset_cause import ResetCause
 __all__ = ["BootAndRunningProgramStatus"]
 
 
-class BootAndRunningProgramStatus(_base.Message):
+class BootAndRunningProgramStatus(_base.Message[_Node]):
     """Boot And Running Program Status: telemetry 129, 6 bytes. Table 28.
 
     Causes of the last reset and reboot, and the running program.

@@ -6,13 +6,14 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .boot_programs_list import BootProgramsList
 from .boot_status import BootStatus
 
 __all__ = ["BootIndexAndStatus"]
 
 
-class BootIndexAndStatus(_base.Message):
+class BootIndexAndStatus(_base.Message[_Node]):
     """Boot Index and Status: telemetry 130, 2 bytes. Table 32.
 
     Program selected for booting, and how the last attempt went.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["CacheEnabledState"]
 
 
-class CacheEnabledState(_base.Message):
+class CacheEnabledState(_base.Message[_Node]):
     """Cache enabled state: configuration, set by telecommand 3, got by telemetry 131, 1
     byte. Table 48.
     """

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["CommunicationStatus"]
 
 
-class CommunicationStatus(_base.Message):
+class CommunicationStatus(_base.Message[_Node]):
     """Communication Status: telemetry 144, 6 bytes. Table 37.
 
     Counts of messages received, and error flags of the interfaces.

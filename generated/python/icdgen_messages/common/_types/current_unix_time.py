@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["CurrentUnixTime"]
 
 
-class CurrentUnixTime(_base.Message):
+class CurrentUnixTime(_base.Message[_Node]):
     """Current Unix Time: configuration, set by telecommand 2, got by telemetry 140, 6
     bytes. Table 50.
     """

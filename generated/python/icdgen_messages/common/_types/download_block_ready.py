@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["DownloadBlockReady"]
 
 
-class DownloadBlockReady(_base.Message):
+class DownloadBlockReady(_base.Message[_Node]):
     """Download Block Ready: telemetry 242, 5 bytes. Table 42.
 
     Whether the block asked for by Load File Download Block is in the buffer.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["EdacErrorCounters"]
 
 
-class EdacErrorCounters(_base.Message):
+class EdacErrorCounters(_base.Message[_Node]):
     """EDAC Error Counters: telemetry 143, 6 bytes. Table 36.
 
     Memory errors that scrubbing the SRAM has found and corrected.

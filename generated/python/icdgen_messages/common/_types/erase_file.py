@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .file_type import FileType
 
 __all__ = ["EraseFile"]
 
 
-class EraseFile(_base.Message):
+class EraseFile(_base.Message[_Node]):
     """Erase File: telecommand 108, 3 bytes. Table 15.
 
     Deletes one file of the SD card or all of them. Erasing all takes some time: see SD

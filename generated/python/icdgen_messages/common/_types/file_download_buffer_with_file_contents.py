@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["FileDownloadBufferWithFileContents"]
 
 
-class FileDownloadBufferWithFileContents(_base.Message):
+class FileDownloadBufferWithFileContents(_base.Message[_Node]):
     """File Download Buffer with File Contents: telemetry 241, 22 bytes. Table 41.
 
     One packet of a download burst. On the UART the packets come unasked, with the id of

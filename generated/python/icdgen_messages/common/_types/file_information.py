@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .file_type import FileType
 
 __all__ = ["FileInformation"]
 
 
-class FileInformation(_base.Message):
+class FileInformation(_base.Message[_Node]):
     """File Information: telemetry 243, 12 bytes. Table 43.
 
     The file at the list pointer. All zeros with Busy Updating clear: the end of the

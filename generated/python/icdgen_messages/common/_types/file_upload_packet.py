@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["FileUploadPacket"]
 
 
-class FileUploadPacket(_base.Message):
+class FileUploadPacket(_base.Message[_Node]):
     """File Upload Packet: telecommand 115, 22 bytes. Table 21.
 
     One packet of a block. Packets may follow one another without a pause.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .file_upload_destination import FileUploadDestination
 
 __all__ = ["FinalizeUploadBlock"]
 
 
-class FinalizeUploadBlock(_base.Message):
+class FinalizeUploadBlock(_base.Message[_Node]):
     """Finalize Upload Block: telecommand 116, 7 bytes. Table 22.
 
     Commits the received block to its destination.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["FormatSdCard"]
 
 
-class FormatSdCard(_base.Message):
+class FormatSdCard(_base.Message[_Node]):
     """Format SD card: telecommand 33, 1 byte. Table 14.
 
     Takes some time: SD card format/erase progress tells when it is done.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["HoleMap1"]
 
 
-class HoleMap1(_base.Message):
+class HoleMap1(_base.Message[_Node]):
     """Hole Map 1: configuration, set by telecommand 120, got by telemetry 247, 16
     bytes. Table 52.
 

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["HoleMap2"]
 
 
-class HoleMap2(_base.Message):
+class HoleMap2(_base.Message[_Node]):
     """Hole Map 2: configuration, set by telecommand 121, got by telemetry 248, 16
     bytes. Table 53.
 

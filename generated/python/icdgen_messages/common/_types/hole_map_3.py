@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["HoleMap3"]
 
 
-class HoleMap3(_base.Message):
+class HoleMap3(_base.Message[_Node]):
     """Hole Map 3: configuration, set by telecommand 122, got by telemetry 249, 16
     bytes. Table 54.
 

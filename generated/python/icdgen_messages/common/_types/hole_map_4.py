@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["HoleMap4"]
 
 
-class HoleMap4(_base.Message):
+class HoleMap4(_base.Message[_Node]):
     """Hole Map 4: configuration, set by telecommand 123, got by telemetry 250, 16
     bytes. Table 55.
 

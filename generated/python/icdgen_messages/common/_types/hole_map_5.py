@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["HoleMap5"]
 
 
-class HoleMap5(_base.Message):
+class HoleMap5(_base.Message[_Node]):
     """Hole Map 5: configuration, set by telecommand 124, got by telemetry 251, 16
     bytes. Table 56.
 

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["HoleMap6"]
 
 
-class HoleMap6(_base.Message):
+class HoleMap6(_base.Message[_Node]):
     """Hole Map 6: configuration, set by telecommand 125, got by telemetry 252, 16
     bytes. Table 57.
 

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["HoleMap7"]
 
 
-class HoleMap7(_base.Message):
+class HoleMap7(_base.Message[_Node]):
     """Hole Map 7: configuration, set by telecommand 126, got by telemetry 253, 16
     bytes. Table 58.
 

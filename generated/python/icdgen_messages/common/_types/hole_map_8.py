@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["HoleMap8"]
 
 
-class HoleMap8(_base.Message):
+class HoleMap8(_base.Message[_Node]):
     """Hole Map 8: configuration, set by telecommand 127, got by telemetry 254, 16
     bytes. Table 59.
 

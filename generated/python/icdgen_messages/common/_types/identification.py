@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Identification"]
 
 
-class Identification(_base.Message):
+class Identification(_base.Message[_Node]):
     """Identification: telemetry 128, 8 bytes. Table 27.
 
     Tells which program is running. Requesting it from the bootloader keeps it from

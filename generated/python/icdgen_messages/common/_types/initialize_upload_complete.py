@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["InitializeUploadComplete"]
 
 
-class InitializeUploadComplete(_base.Message):
+class InitializeUploadComplete(_base.Message[_Node]):
     """Initialize Upload Complete: telemetry 244, 1 byte. Table 44.
 
     Polled after Initiate File Upload.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["InitiateDownloadBurst"]
 
 
-class InitiateDownloadBurst(_base.Message):
+class InitiateDownloadBurst(_base.Message[_Node]):
     """Initiate Download Burst: telecommand 119, 2 bytes. Table 25.
 
     Starts the transfer of the loaded block. On the UART the packets come in rapid

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .file_upload_destination import FileUploadDestination
 
 __all__ = ["InitiateFileUpload"]
 
 
-class InitiateFileUpload(_base.Message):
+class InitiateFileUpload(_base.Message[_Node]):
     """Initiate File Upload: telecommand 114, 2 bytes. Table 19.
 
     Erases the destination. Initialize Upload Complete tells when that is done.

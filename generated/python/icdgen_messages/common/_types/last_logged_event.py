@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["LastLoggedEvent"]
 
 
-class LastLoggedEvent(_base.Message):
+class LastLoggedEvent(_base.Message[_Node]):
     """Last Logged Event: telemetry 141, 6 bytes. Table 34.
 
     The event at the log pointer, which Reset Log Pointer and Advance Log Pointer move.

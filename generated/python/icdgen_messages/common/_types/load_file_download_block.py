@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .file_type import FileType
 
 __all__ = ["LoadFileDownloadBlock"]
 
 
-class LoadFileDownloadBlock(_base.Message):
+class LoadFileDownloadBlock(_base.Message[_Node]):
     """Load File Download Block: telecommand 112, 8 bytes. Table 17.
 
     Reads part of a file into the download buffer. Download Block Ready tells when it is

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Reset"]
 
 
-class Reset(_base.Message):
+class Reset(_base.Message[_Node]):
     """Reset: telecommand 1, 1 byte. Table 10.
 
     Restarts the CubeComputer.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["ResetBootRegisters"]
 
 
-class ResetBootRegisters(_base.Message):
+class ResetBootRegisters(_base.Message[_Node]):
     """Reset Boot Registers: telecommand 6, 0 bytes. Table 13.
 
     Resets the boot counter, boot state and boot cause.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["ResetFileListReadPointer"]
 
 
-class ResetFileListReadPointer(_base.Message):
+class ResetFileListReadPointer(_base.Message[_Node]):
     """Reset File List Read Pointer: telecommand 118, 0 bytes. Table 24.
 
     Makes File Information start again at the first file.

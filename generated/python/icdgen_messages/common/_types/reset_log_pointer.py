@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["ResetLogPointer"]
 
 
-class ResetLogPointer(_base.Message):
+class ResetLogPointer(_base.Message[_Node]):
     """Reset Log Pointer: telecommand 4, 0 bytes. Table 11.
 
     Resets the pointer at which Last Logged Event reads the event buffer.

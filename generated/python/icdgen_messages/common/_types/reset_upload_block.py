@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["ResetUploadBlock"]
 
 
-class ResetUploadBlock(_base.Message):
+class ResetUploadBlock(_base.Message[_Node]):
     """Reset Upload Block: telecommand 117, 0 bytes. Table 23.
 
     Announces a new block by clearing the hole map.

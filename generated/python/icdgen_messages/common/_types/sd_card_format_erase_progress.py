@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SdCardFormatEraseProgress"]
 
 
-class SdCardFormatEraseProgress(_base.Message):
+class SdCardFormatEraseProgress(_base.Message[_Node]):
     """SD card format/erase progress: telemetry 234, 1 byte. Table 38.
 
     Whether the SD card is still being formatted or erased.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SramLatchupCounters"]
 
 
-class SramLatchupCounters(_base.Message):
+class SramLatchupCounters(_base.Message[_Node]):
     """SRAM Latchup counters: telemetry 142, 6 bytes. Table 35.
 
     Erratum COM-076 (open): SRAM Latchup counters: 6 bytes announced, 4 described. Two

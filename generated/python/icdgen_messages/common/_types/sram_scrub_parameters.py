@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SramScrubParameters"]
 
 
-class SramScrubParameters(_base.Message):
+class SramScrubParameters(_base.Message[_Node]):
     """SRAM Scrub Parameters: configuration, set by telecommand 8, got by telemetry 134,
     2 bytes. Table 49.
     """

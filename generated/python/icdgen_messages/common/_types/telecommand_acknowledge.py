@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .tc_error_reason import TcErrorReason
 
 __all__ = ["TelecommandAcknowledge"]
 
 
-class TelecommandAcknowledge(_base.Message):
+class TelecommandAcknowledge(_base.Message[_Node]):
     """Telecommand Acknowledge: telemetry 240, 4 bytes. Table 39.
 
     What became of the last telecommand. Meant for I2C, where the node cannot answer of

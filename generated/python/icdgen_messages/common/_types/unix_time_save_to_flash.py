@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["UnixTimeSaveToFlash"]
 
 
-class UnixTimeSaveToFlash(_base.Message):
+class UnixTimeSaveToFlash(_base.Message[_Node]):
     """Unix Time Save to Flash: configuration, set by telecommand 9, got by telemetry
     145, 2 bytes. Table 51.
 

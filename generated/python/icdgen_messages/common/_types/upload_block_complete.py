@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["UploadBlockComplete"]
 
 
-class UploadBlockComplete(_base.Message):
+class UploadBlockComplete(_base.Message[_Node]):
     """Upload Block Complete: telemetry 245, 1 byte. Table 45.
 
     Polled after Finalize Upload Block.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .execution_waypoints import ExecutionWaypoints
 
 __all__ = ["AcpExecutionState"]
 
 
-class AcpExecutionState(_base.Message):
+class AcpExecutionState(_base.Message[_Node]):
     """ACP Execution State: telemetry 220, 3 bytes. Table 167.
 
     Where in its loop the control program is.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["ActuatorCommands"]
 
 
-class ActuatorCommands(_base.Message):
+class ActuatorCommands(_base.Message[_Node]):
     """Actuator Commands: telemetry 192, 12 bytes. Table 151.
 
     Repeats Magnetorquer Command from byte 0. Repeats Wheel Speed Commands from byte 6.

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .asgp_filter import AsgpFilter
 from .axis_select import AxisSelect
 from .mag_mode_val import MagModeVal
@@ -13,7 +14,7 @@ from .mag_mode_val import MagModeVal
 __all__ = ["AdcsConfiguration"]
 
 
-class AdcsConfiguration(_base.Message):
+class AdcsConfiguration(_base.Message[_Node]):
     """ADCS Configuration: configuration, set by telecommand 20, got by telemetry 206,
     504 bytes. Table 192.
 

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["AdcsExecutionTimes"]
 
 
-class AdcsExecutionTimes(_base.Message):
+class AdcsExecutionTimes(_base.Message[_Node]):
     """Adcs Execution Times: telemetry 196, 8 bytes. Table 155.
 
     How long the parts of the control program take.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["AdcsMeasurements"]
 
 
-class AdcsMeasurements(_base.Message):
+class AdcsMeasurements(_base.Message[_Node]):
     """ADCS Measurements: telemetry 191, 72 bytes. Table 150.
 
     Calibrated measurements of all sensors in one frame.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["AdcsMiscCurrents"]
 
 
-class AdcsMiscCurrents(_base.Message):
+class AdcsMiscCurrents(_base.Message[_Node]):
     """ADCS Misc Current Measurements: telemetry 198, 6 bytes. Table 156.
 
     Currents of CubeStar and the magnetorquers, and the temperature of CubeStar.

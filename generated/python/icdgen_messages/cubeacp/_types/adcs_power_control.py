@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .power_select import PowerSelect
 
 __all__ = ["AdcsPowerControl"]
 
 
-class AdcsPowerControl(_base.Message):
+class AdcsPowerControl(_base.Message[_Node]):
     """ADCS Power Control: configuration, set by telecommand 11, got by telemetry 197, 3
     bytes. Table 184.
 

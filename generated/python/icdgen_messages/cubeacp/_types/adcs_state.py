@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .adcs_run_mode import AdcsRunMode
 from .asgp4_mode_select import Asgp4ModeSelect
 from .con_mode_select import ConModeSelect
@@ -15,7 +16,7 @@ from .mag_mode_val import MagModeVal
 __all__ = ["AdcsState"]
 
 
-class AdcsState(_base.Message):
+class AdcsState(_base.Message[_Node]):
     """ADCS State: telemetry 190, 54 bytes. Table 149.
 
     State, attitude, rates and position in one frame.

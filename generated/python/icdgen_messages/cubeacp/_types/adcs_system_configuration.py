@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .acp_program_type import AcpProgramType
 from .cs_cam_type import CsCamType
 from .gpio_port import GpioPort
@@ -16,7 +17,7 @@ from .special_con_select import SpecialConSelect
 __all__ = ["AdcsSystemConfiguration"]
 
 
-class AdcsSystemConfiguration(_base.Message):
+class AdcsSystemConfiguration(_base.Message[_Node]):
     """ADCS System Configuration: configuration, set by telecommand 30, got by telemetry
     225, 173 bytes. Table 201.
 

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["AdcsTemperatures"]
 
 
-class AdcsTemperatures(_base.Message):
+class AdcsTemperatures(_base.Message[_Node]):
     """ADCS Temperatures: telemetry 174, 6 bytes. Table 132.
 
     Of the MCU and the magnetometers.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["AngularRateCovariance"]
 
 
-class AngularRateCovariance(_base.Message):
+class AngularRateCovariance(_base.Message[_Node]):
     """Angular Rate Covariance: telemetry 165, 6 bytes. Table 121.
 
     Bit 41 of the log mask.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .asgp4_mode_select import Asgp4ModeSelect
 
 __all__ = ["Asgp4RunMode"]
 
 
-class Asgp4RunMode(_base.Message):
+class Asgp4RunMode(_base.Message[_Node]):
     """ASGP4 Run Mode: telecommand 31, 1 byte. Table 86.
 
     Note ACP-046 (certain): Telecommand 31 has the id of the escape byte. On UART its id

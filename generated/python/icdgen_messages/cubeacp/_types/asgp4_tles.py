@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .asgp_error import AsgpError
 
 __all__ = ["Asgp4Tles"]
 
 
-class Asgp4Tles(_base.Message):
+class Asgp4Tles(_base.Message[_Node]):
     """ASGP4 TLEs: telemetry 228, 33 bytes. Table 170.
 
     Orbit elements that ASGP4 has generated.

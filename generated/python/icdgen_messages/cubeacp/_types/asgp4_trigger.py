@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Asgp4Trigger"]
 
 
-class Asgp4Trigger(_base.Message):
+class Asgp4Trigger(_base.Message[_Node]):
     """ASGP4 Trigger: telecommand 32, 0 bytes. Table 88.
 
     Starts an ASGP4 run.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .asgp_filter import AsgpFilter
 
 __all__ = ["AugmentedSgp4Parameters"]
 
 
-class AugmentedSgp4Parameters(_base.Message):
+class AugmentedSgp4Parameters(_base.Message[_Node]):
     """Augmented-SGP4 Parameters: configuration, set by telecommand 28, got by telemetry
     227, 30 bytes. Table 209.
 

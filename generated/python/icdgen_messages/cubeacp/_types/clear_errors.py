@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["ClearErrors"]
 
 
-class ClearErrors(_base.Message):
+class ClearErrors(_base.Message[_Node]):
     """Clear Errors: telecommand 12, 1 byte. Table 76.
 
     Clears the latched error flags that are selected.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["CoarseSunVector"]
 
 
-class CoarseSunVector(_base.Message):
+class CoarseSunVector(_base.Message[_Node]):
     """Coarse Sun Vector: telemetry 152, 6 bytes. Table 108.
 
     As measured.

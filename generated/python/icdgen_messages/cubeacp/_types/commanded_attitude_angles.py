@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["CommandedAttitudeAngles"]
 
 
-class CommandedAttitudeAngles(_base.Message):
+class CommandedAttitudeAngles(_base.Message[_Node]):
     """Commanded Attitude Angles: configuration, set by telecommand 15, got by telemetry
     199, 6 bytes. Table 186.
 

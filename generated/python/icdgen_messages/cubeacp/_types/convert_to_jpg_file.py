@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["ConvertToJpgFile"]
 
 
-class ConvertToJpgFile(_base.Message):
+class ConvertToJpgFile(_base.Message[_Node]):
     """Convert to JPG file: telecommand 57, 3 bytes. Table 91.
 
     The source is a raw or a BMP file.

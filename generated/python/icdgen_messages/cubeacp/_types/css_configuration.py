@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .axis_select import AxisSelect
 
 __all__ = ["CssConfiguration"]
 
 
-class CssConfiguration(_base.Message):
+class CssConfiguration(_base.Message[_Node]):
     """CSS Configuration: configuration, set by telecommand 24, got by telemetry 139, 21
     bytes. Table 183.
 

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["CubecontrolCurrents"]
 
 
-class CubecontrolCurrents(_base.Message):
+class CubecontrolCurrents(_base.Message[_Node]):
     """CubeControl Current Measurements: telemetry 172, 6 bytes. Table 130.
 
     Bit 22 of the log mask.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Cubesense1Currents"]
 
 
-class Cubesense1Currents(_base.Message):
+class Cubesense1Currents(_base.Message[_Node]):
     """CubeSense1 Current Measurements: telemetry 171, 4 bytes. Table 129.
 
     Bit 21 of the log mask.

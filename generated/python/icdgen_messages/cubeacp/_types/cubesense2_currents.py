@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Cubesense2Currents"]
 
 
-class Cubesense2Currents(_base.Message):
+class Cubesense2Currents(_base.Message[_Node]):
     """CubeSense2 Current Measurements: telemetry 232, 4 bytes. Table 175.
 
     Bit 65 of the log mask.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["CubesenseConfiguration"]
 
 
-class CubesenseConfiguration(_base.Message):
+class CubesenseConfiguration(_base.Message[_Node]):
     """CubeSense Configuration: configuration, set by telecommand 25, got by telemetry
     203, 112 bytes. Table 189.
 

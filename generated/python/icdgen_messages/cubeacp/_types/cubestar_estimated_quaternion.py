@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["CubestarEstimatedQuaternion"]
 
 
-class CubestarEstimatedQuaternion(_base.Message):
+class CubestarEstimatedQuaternion(_base.Message[_Node]):
     """CubeStar Estimated Quaternion: telemetry 230, 6 bytes. Table 173.
 
     Bit 63 of the log mask.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["CubestarEstimatedRates"]
 
 
-class CubestarEstimatedRates(_base.Message):
+class CubestarEstimatedRates(_base.Message[_Node]):
     """CubeStar Estimated Rates: telemetry 229, 6 bytes. Table 172.
 
     Bit 62 of the log mask.

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .adcs_run_mode import AdcsRunMode
 from .asgp4_mode_select import Asgp4ModeSelect
 from .con_mode_select import ConModeSelect
@@ -14,7 +15,7 @@ from .estim_mode_select import EstimModeSelect
 __all__ = ["CurrentAdcsState"]
 
 
-class CurrentAdcsState(_base.Message):
+class CurrentAdcsState(_base.Message[_Node]):
     """Current ADCS State: telemetry 132, 6 bytes. Table 98.
 
     State of the control processor, frame 1.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .mag_mode_val import MagModeVal
 
 __all__ = ["CurrentAdcsState2"]
 
 
-class CurrentAdcsState2(_base.Message):
+class CurrentAdcsState2(_base.Message[_Node]):
     """Current ADCS State 2: telemetry 224, 6 bytes. Table 169.
 
     State of the control processor, frame 2.

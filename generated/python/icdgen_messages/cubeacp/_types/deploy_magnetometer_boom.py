@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["DeployMagnetometerBoom"]
 
 
-class DeployMagnetometerBoom(_base.Message):
+class DeployMagnetometerBoom(_base.Message[_Node]):
     """Deploy Magnetometer Boom: telecommand 7, 1 byte. Table 73.
 
     Dangerous: The boom stays deployed.

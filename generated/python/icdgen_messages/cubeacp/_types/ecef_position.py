@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["EcefPosition"]
 
 
-class EcefPosition(_base.Message):
+class EcefPosition(_base.Message[_Node]):
     """ECEF Position: telemetry 219, 6 bytes. Table 166.
 
     Bit 34 of the log mask.

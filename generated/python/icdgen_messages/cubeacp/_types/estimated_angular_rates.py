@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["EstimatedAngularRates"]
 
 
-class EstimatedAngularRates(_base.Message):
+class EstimatedAngularRates(_base.Message[_Node]):
     """Estimated Angular Rates: telemetry 147, 6 bytes. Table 103.
 
     Relative to the orbit frame.

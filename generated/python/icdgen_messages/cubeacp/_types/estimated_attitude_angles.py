@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["EstimatedAttitudeAngles"]
 
 
-class EstimatedAttitudeAngles(_base.Message):
+class EstimatedAttitudeAngles(_base.Message[_Node]):
     """Estimated Attitude Angles: telemetry 146, 6 bytes. Table 102.
 
     Bit 28 of the log mask.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["EstimatedGyroBias"]
 
 
-class EstimatedGyroBias(_base.Message):
+class EstimatedGyroBias(_base.Message[_Node]):
     """Estimated Gyro Bias: telemetry 161, 6 bytes. Table 117.
 
     Bias of the rate sensors.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["EstimatedQuaternion"]
 
 
-class EstimatedQuaternion(_base.Message):
+class EstimatedQuaternion(_base.Message[_Node]):
     """Estimated Quaternion: telemetry 218, 6 bytes. Table 165.
 
     Bit 29 of the log mask.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["EstimationData"]
 
 
-class EstimationData(_base.Message):
+class EstimationData(_base.Message[_Node]):
     """Estimation Data: telemetry 193, 42 bytes. Table 152.
 
     Models, innovation and covariance of the estimator in one frame.

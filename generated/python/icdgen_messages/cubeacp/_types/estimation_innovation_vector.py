@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["EstimationInnovationVector"]
 
 
-class EstimationInnovationVector(_base.Message):
+class EstimationInnovationVector(_base.Message[_Node]):
     """Estimation Innovation Vector: telemetry 162, 6 bytes. Table 118.
 
     Bit 38 of the log mask.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .mag_mode_val import MagModeVal
 
 __all__ = ["EstimationParameters"]
 
 
-class EstimationParameters(_base.Message):
+class EstimationParameters(_base.Message[_Node]):
     """Estimation Parameters: configuration, set by telecommand 27, got by telemetry
     223, 31 bytes. Table 200.
 

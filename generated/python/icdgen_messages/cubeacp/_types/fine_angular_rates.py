@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["FineAngularRates"]
 
 
-class FineAngularRates(_base.Message):
+class FineAngularRates(_base.Message[_Node]):
     """Fine Estimated Angular Rates: telemetry 201, 6 bytes. Table 157.
 
     Relative to the orbit frame, with ten times the resolution of Estimated Angular

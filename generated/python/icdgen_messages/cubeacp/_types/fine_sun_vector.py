@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["FineSunVector"]
 
 
-class FineSunVector(_base.Message):
+class FineSunVector(_base.Message[_Node]):
     """Fine Sun Vector: telemetry 153, 6 bytes. Table 109.
 
     As measured.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["IgrfModelledMagneticFieldVector"]
 
 
-class IgrfModelledMagneticFieldVector(_base.Message):
+class IgrfModelledMagneticFieldVector(_base.Message[_Node]):
     """IGRF Modelled Magnetic Field Vector: telemetry 159, 6 bytes. Table 115.
 
     In the orbit frame.

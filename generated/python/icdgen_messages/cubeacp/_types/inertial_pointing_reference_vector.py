@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["InertialPointingReferenceVector"]
 
 
-class InertialPointingReferenceVector(_base.Message):
+class InertialPointingReferenceVector(_base.Message[_Node]):
     """Inertial Pointing Reference Vector: configuration, set by telecommand 34, got by
     telemetry 238, 6 bytes. Table 214.
 

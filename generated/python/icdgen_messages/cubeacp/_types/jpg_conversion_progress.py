@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .jpg_convert_result import JpgConvertResult
 
 __all__ = ["JpgConversionProgress"]
 
 
-class JpgConversionProgress(_base.Message):
+class JpgConversionProgress(_base.Message[_Node]):
     """JPG Conversion Progress: telemetry 133, 3 bytes. Table 99."""
 
     NODE = "cubeacp"

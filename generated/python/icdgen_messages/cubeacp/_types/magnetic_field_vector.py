@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["MagneticFieldVector"]
 
 
-class MagneticFieldVector(_base.Message):
+class MagneticFieldVector(_base.Message[_Node]):
     """Magnetic Field Vector: telemetry 151, 6 bytes. Table 107.
 
     As measured.

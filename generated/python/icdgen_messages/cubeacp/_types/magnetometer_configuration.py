@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["MagnetometerConfiguration"]
 
 
-class MagnetometerConfiguration(_base.Message):
+class MagnetometerConfiguration(_base.Message[_Node]):
     """Magnetometer Configuration: configuration, set by telecommand 26, got by
     telemetry 204, 30 bytes. Table 190.
 

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["MagnetorquerCommand"]
 
 
-class MagnetorquerCommand(_base.Message):
+class MagnetorquerCommand(_base.Message[_Node]):
     """Magnetorquer Command: telemetry 157, 6 bytes. Table 113.
 
     Bit 7 of the log mask.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["ModelledSunVector"]
 
 
-class ModelledSunVector(_base.Message):
+class ModelledSunVector(_base.Message[_Node]):
     """Modelled Sun Vector: telemetry 160, 6 bytes. Table 116.
 
     In the orbit frame.

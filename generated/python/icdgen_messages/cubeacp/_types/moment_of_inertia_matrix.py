@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["MomentOfInertiaMatrix"]
 
 
-class MomentOfInertiaMatrix(_base.Message):
+class MomentOfInertiaMatrix(_base.Message[_Node]):
     """Moment of Inertia Matrix: configuration, set by telecommand 41, got by telemetry
     222, 24 bytes. Table 199.
 

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["NadirVector"]
 
 
-class NadirVector(_base.Message):
+class NadirVector(_base.Message[_Node]):
     """Nadir Vector: telemetry 154, 6 bytes. Table 110.
 
     As measured.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["PowerAndTemperature"]
 
 
-class PowerAndTemperature(_base.Message):
+class PowerAndTemperature(_base.Message[_Node]):
     """Power and Temperature Measurements: telemetry 195, 38 bytes. Table 154.
 
     Repeats CubeSense1 Current Measurements from byte 0. Repeats CubeSense2 Current

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["QuaternionCovariance"]
 
 
-class QuaternionCovariance(_base.Message):
+class QuaternionCovariance(_base.Message[_Node]):
     """Quaternion Covariance: telemetry 164, 6 bytes. Table 120.
 
     Bit 40 of the log mask.

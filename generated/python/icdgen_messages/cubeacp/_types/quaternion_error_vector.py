@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["QuaternionErrorVector"]
 
 
-class QuaternionErrorVector(_base.Message):
+class QuaternionErrorVector(_base.Message[_Node]):
     """Quaternion Error Vector: telemetry 163, 6 bytes. Table 119.
 
     Bit 39 of the log mask.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["RateSensorRates"]
 
 
-class RateSensorRates(_base.Message):
+class RateSensorRates(_base.Message[_Node]):
     """Rate Sensor Rates: telemetry 155, 6 bytes. Table 111.
 
     As measured.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["RateSensorTemperatures"]
 
 
-class RateSensorTemperatures(_base.Message):
+class RateSensorTemperatures(_base.Message[_Node]):
     """Rate sensor temperatures: telemetry 175, 6 bytes. Table 133.
 
     Bit 26 of the log mask.

@@ -6,13 +6,14 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .capture_result import CaptureResult
 from .detect_result import DetectResult
 
 __all__ = ["RawCam1Sensor"]
 
 
-class RawCam1Sensor(_base.Message):
+class RawCam1Sensor(_base.Message[_Node]):
     """Raw Cam1 Sensor: telemetry 167, 6 bytes. Table 125.
 
     What Cam1 captured and detected.

@@ -6,13 +6,14 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .capture_result import CaptureResult
 from .detect_result import DetectResult
 
 __all__ = ["RawCam2Sensor"]
 
 
-class RawCam2Sensor(_base.Message):
+class RawCam2Sensor(_base.Message[_Node]):
     """Raw Cam2 Sensor: telemetry 166, 6 bytes. Table 122.
 
     What Cam2 captured and detected.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["RawCss1To6"]
 
 
-class RawCss1To6(_base.Message):
+class RawCss1To6(_base.Message[_Node]):
     """Raw CSS 1 to 6: telemetry 168, 6 bytes. Table 126.
 
     Bit 49 of the log mask.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["RawCss7To10"]
 
 
-class RawCss7To10(_base.Message):
+class RawCss7To10(_base.Message[_Node]):
     """Raw CSS 7 to 10: telemetry 169, 6 bytes. Table 127.
 
     Bit 50 of the log mask.

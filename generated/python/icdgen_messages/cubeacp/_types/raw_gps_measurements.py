@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .gps_solution_status import GpsSolutionStatus
 
 __all__ = ["RawGpsMeasurements"]
 
 
-class RawGpsMeasurements(_base.Message):
+class RawGpsMeasurements(_base.Message[_Node]):
     """Raw GPS Measurements: telemetry 210, 36 bytes. Table 158.
 
     Repeats Raw GPS Status from byte 0. Repeats Raw GPS Time from byte 6. Repeats Raw

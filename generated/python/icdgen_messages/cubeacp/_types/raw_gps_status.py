@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .gps_solution_status import GpsSolutionStatus
 
 __all__ = ["RawGpsStatus"]
 
 
-class RawGpsStatus(_base.Message):
+class RawGpsStatus(_base.Message[_Node]):
     """Raw GPS Status: telemetry 176, 6 bytes. Table 134.
 
     Bit 42 of the log mask.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["RawGpsTime"]
 
 
-class RawGpsTime(_base.Message):
+class RawGpsTime(_base.Message[_Node]):
     """Raw GPS Time: telemetry 177, 6 bytes. Table 135.
 
     Bit 43 of the log mask.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["RawGpsX"]
 
 
-class RawGpsX(_base.Message):
+class RawGpsX(_base.Message[_Node]):
     """Raw GPS X: telemetry 178, 6 bytes. Table 136.
 
     Position and velocity along X, said to be referenced to ECI.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["RawGpsY"]
 
 
-class RawGpsY(_base.Message):
+class RawGpsY(_base.Message[_Node]):
     """Raw GPS Y: telemetry 179, 6 bytes. Table 137.
 
     Position and velocity along Y, said to be referenced to ECI.

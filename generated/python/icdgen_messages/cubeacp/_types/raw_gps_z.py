@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["RawGpsZ"]
 
 
-class RawGpsZ(_base.Message):
+class RawGpsZ(_base.Message[_Node]):
     """Raw GPS Z: telemetry 180, 6 bytes. Table 138.
 
     Position and velocity along Z, said to be referenced to ECI.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["RawMagnetometer"]
 
 
-class RawMagnetometer(_base.Message):
+class RawMagnetometer(_base.Message[_Node]):
     """Raw Magnetometer: telemetry 170, 6 bytes. Table 128.
 
     Bit 51 of the log mask.

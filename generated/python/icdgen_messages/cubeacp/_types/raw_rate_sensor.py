@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["RawRateSensor"]
 
 
-class RawRateSensor(_base.Message):
+class RawRateSensor(_base.Message[_Node]):
     """Raw Rate Sensor: telemetry 216, 6 bytes. Table 164.
 
     Bit 60 of the log mask.

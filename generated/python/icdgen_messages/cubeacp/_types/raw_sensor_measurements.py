@@ -6,13 +6,14 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .capture_result import CaptureResult
 from .detect_result import DetectResult
 
 __all__ = ["RawSensorMeasurements"]
 
 
-class RawSensorMeasurements(_base.Message):
+class RawSensorMeasurements(_base.Message[_Node]):
     """Raw Sensor Measurements: telemetry 194, 34 bytes. Table 153.
 
     Repeats Raw Cam2 Sensor from byte 0. Repeats Raw Cam1 Sensor from byte 6. Repeats

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .star_id_mode_val import StarIdModeVal
 
 __all__ = ["RawStarTracker"]
 
 
-class RawStarTracker(_base.Message):
+class RawStarTracker(_base.Message[_Node]):
     """Raw Star Tracker: telemetry 211, 54 bytes. Table 159.
 
     Repeats Star Performance1 from byte 0. Repeats Star Performance2 from byte 6.

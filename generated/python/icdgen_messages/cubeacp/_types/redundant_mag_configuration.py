@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["RedundantMagConfiguration"]
 
 
-class RedundantMagConfiguration(_base.Message):
+class RedundantMagConfiguration(_base.Message[_Node]):
     """Redundant Magnetometer Configuration: configuration, set by telecommand 36, got
     by telemetry 205, 30 bytes. Table 191.
 

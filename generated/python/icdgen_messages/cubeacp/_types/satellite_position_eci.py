@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SatellitePositionEci"]
 
 
-class SatellitePositionEci(_base.Message):
+class SatellitePositionEci(_base.Message[_Node]):
     """Satellite Position (ECI): telemetry 148, 6 bytes. Table 104.
 
     Bit 31 of the log mask.

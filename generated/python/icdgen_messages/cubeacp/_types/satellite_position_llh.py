@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SatellitePositionLlh"]
 
 
-class SatellitePositionLlh(_base.Message):
+class SatellitePositionLlh(_base.Message[_Node]):
     """Satellite Position (LLH): telemetry 150, 6 bytes. Table 106.
 
     Latitude, longitude and altitude in the WGS-84 frame.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SatelliteVelocityEci"]
 
 
-class SatelliteVelocityEci(_base.Message):
+class SatelliteVelocityEci(_base.Message[_Node]):
     """Satellite Velocity (ECI): telemetry 149, 6 bytes. Table 105.
 
     Bit 32 of the log mask.

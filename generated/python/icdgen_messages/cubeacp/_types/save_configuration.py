@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SaveConfiguration"]
 
 
-class SaveConfiguration(_base.Message):
+class SaveConfiguration(_base.Message[_Node]):
     """Save Configuration: telecommand 63, 0 bytes. Table 92.
 
     Keeps the current configuration in flash.

@@ -6,13 +6,14 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .cam_select import CamSelect
 from .im_size import ImSize
 
 __all__ = ["SaveImage"]
 
 
-class SaveImage(_base.Message):
+class SaveImage(_base.Message[_Node]):
     """Save Image: telecommand 80, 2 bytes. Table 94.
 
     Takes a picture with a CubeSense or the CubeStar camera and saves it to the SD card.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SaveOrbitParameters"]
 
 
-class SaveOrbitParameters(_base.Message):
+class SaveOrbitParameters(_base.Message[_Node]):
     """Save Orbit Parameters: telecommand 64, 0 bytes. Table 93.
 
     Keeps the current orbit parameters in flash.

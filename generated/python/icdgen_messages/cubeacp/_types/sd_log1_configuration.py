@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .sd_log_select import SdLogSelect
 
 __all__ = ["SdLog1Configuration"]
 
 
-class SdLog1Configuration(_base.Message):
+class SdLog1Configuration(_base.Message[_Node]):
     """SD Log1 Configuration: configuration, set by telecommand 104, got by telemetry
     235, 13 bytes. Table 210.
 

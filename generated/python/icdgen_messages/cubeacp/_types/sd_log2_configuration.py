@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .sd_log_select import SdLogSelect
 
 __all__ = ["SdLog2Configuration"]
 
 
-class SdLog2Configuration(_base.Message):
+class SdLog2Configuration(_base.Message[_Node]):
     """SD Log2 Configuration: configuration, set by telecommand 105, got by telemetry
     236, 13 bytes. Table 212.
 

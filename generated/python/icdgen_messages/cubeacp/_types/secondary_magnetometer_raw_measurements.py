@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SecondaryMagnetometerRawMeasurements"]
 
 
-class SecondaryMagnetometerRawMeasurements(_base.Message):
+class SecondaryMagnetometerRawMeasurements(_base.Message[_Node]):
     """Secondary Magnetometer Raw Measurements: telemetry 215, 6 bytes. Table 163.
 
     Bit 58 of the log mask.

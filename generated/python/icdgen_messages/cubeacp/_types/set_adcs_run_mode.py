@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .adcs_run_mode import AdcsRunMode
 
 __all__ = ["SetAdcsRunMode"]
 
 
-class SetAdcsRunMode(_base.Message):
+class SetAdcsRunMode(_base.Message[_Node]):
     """ADCS Run Mode: telecommand 10, 1 byte. Table 74.
 
     Switches the control loop and chooses how it runs.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .con_mode_select import ConModeSelect
 
 __all__ = ["SetAttitudeControlMode"]
 
 
-class SetAttitudeControlMode(_base.Message):
+class SetAttitudeControlMode(_base.Message[_Node]):
     """Set Attitude Control Mode: telecommand 13, 3 bytes. Table 77."""
 
     NODE = "cubeacp"

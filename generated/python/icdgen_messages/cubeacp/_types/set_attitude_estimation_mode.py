@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .estim_mode_select import EstimModeSelect
 
 __all__ = ["SetAttitudeEstimationMode"]
 
 
-class SetAttitudeEstimationMode(_base.Message):
+class SetAttitudeEstimationMode(_base.Message[_Node]):
     """Set Attitude Estimation Mode: telecommand 14, 1 byte. Table 79."""
 
     NODE = "cubeacp"

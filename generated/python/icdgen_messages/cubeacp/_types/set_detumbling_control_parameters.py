@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SetDetumblingControlParameters"]
 
 
-class SetDetumblingControlParameters(_base.Message):
+class SetDetumblingControlParameters(_base.Message[_Node]):
     """Set Detumbling Control Parameters: configuration, set by telecommand 38, got by
     telemetry 208, 14 bytes. Table 195.
 

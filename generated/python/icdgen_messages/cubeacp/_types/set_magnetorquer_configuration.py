@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .axis_select import AxisSelect
 
 __all__ = ["SetMagnetorquerConfiguration"]
 
 
-class SetMagnetorquerConfiguration(_base.Message):
+class SetMagnetorquerConfiguration(_base.Message[_Node]):
     """Set Magnetorquer Configuration: configuration, set by telecommand 21, got by
     telemetry 136, 3 bytes. Table 179.
 

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SetMagnetorquerOutput"]
 
 
-class SetMagnetorquerOutput(_base.Message):
+class SetMagnetorquerOutput(_base.Message[_Node]):
     """Set Magnetorquer Output: telecommand 16, 6 bytes. Table 81.
 
     Only valid while the control mode is None.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .mag_mode_val import MagModeVal
 
 __all__ = ["SetModeOfMagnetometerOperation"]
 
 
-class SetModeOfMagnetometerOperation(_base.Message):
+class SetModeOfMagnetometerOperation(_base.Message[_Node]):
     """Set Mode of Magnetometer Operation: telecommand 56, 1 byte. Table 89.
 
     Chooses between the main and the redundant magnetometer.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .axis_select import AxisSelect
 
 __all__ = ["SetRateGyroConfiguration"]
 
 
-class SetRateGyroConfiguration(_base.Message):
+class SetRateGyroConfiguration(_base.Message[_Node]):
     """Set Rate Gyro Configuration: configuration, set by telecommand 23, got by
     telemetry 138, 10 bytes. Table 182.
 

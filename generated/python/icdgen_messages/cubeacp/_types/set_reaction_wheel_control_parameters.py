@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .axis_select import AxisSelect
 
 __all__ = ["SetReactionWheelControlParameters"]
 
 
-class SetReactionWheelControlParameters(_base.Message):
+class SetReactionWheelControlParameters(_base.Message[_Node]):
     """Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, got
     by telemetry 217, 13 bytes. Table 197.
 

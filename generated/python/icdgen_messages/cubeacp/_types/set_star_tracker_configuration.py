@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SetStarTrackerConfiguration"]
 
 
-class SetStarTrackerConfiguration(_base.Message):
+class SetStarTrackerConfiguration(_base.Message[_Node]):
     """Set Star Tracker Configuration: configuration, set by telecommand 37, got by
     telemetry 202, 53 bytes. Table 188.
 

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .axis_select import AxisSelect
 
 __all__ = ["SetTrackingControllerGainParameters"]
 
 
-class SetTrackingControllerGainParameters(_base.Message):
+class SetTrackingControllerGainParameters(_base.Message[_Node]):
     """Set Tracking Controller Gain Parameters: configuration, set by telecommand 54,
     got by telemetry 221, 13 bytes. Table 198.
 

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .axis_select import AxisSelect
 
 __all__ = ["SetWheelConfiguration"]
 
 
-class SetWheelConfiguration(_base.Message):
+class SetWheelConfiguration(_base.Message[_Node]):
     """Set Wheel Configuration: configuration, set by telecommand 22, got by telemetry
     137, 4 bytes. Table 181.
 

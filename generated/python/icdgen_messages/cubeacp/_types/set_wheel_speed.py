@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SetWheelSpeed"]
 
 
-class SetWheelSpeed(_base.Message):
+class SetWheelSpeed(_base.Message[_Node]):
     """Set Wheel Speed: telecommand 17, 6 bytes. Table 82.
 
     Only valid while the control mode is None.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["SetYWheelControlParameters"]
 
 
-class SetYWheelControlParameters(_base.Message):
+class SetYWheelControlParameters(_base.Message[_Node]):
     """Set Y-Wheel Control Parameters: configuration, set by telecommand 39, got by
     telemetry 209, 20 bytes. Table 196.
 

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Sgp4OrbitParameters"]
 
 
-class Sgp4OrbitParameters(_base.Message):
+class Sgp4OrbitParameters(_base.Message[_Node]):
     """SGP4 Orbit Parameters: configuration, set by telecommand 45, got by telemetry
     207, 64 bytes. Table 194.
     """

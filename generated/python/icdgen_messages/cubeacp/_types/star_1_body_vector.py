@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Star1BodyVector"]
 
 
-class Star1BodyVector(_base.Message):
+class Star1BodyVector(_base.Message[_Node]):
     """Star 1 Body Vector: telemetry 181, 6 bytes. Table 139.
 
     Bit 15 of the log mask.

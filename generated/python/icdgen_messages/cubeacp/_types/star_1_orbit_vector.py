@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Star1OrbitVector"]
 
 
-class Star1OrbitVector(_base.Message):
+class Star1OrbitVector(_base.Message[_Node]):
     """Star 1 Orbit Vector: telemetry 184, 6 bytes. Table 142.
 
     Bit 16 of the log mask.

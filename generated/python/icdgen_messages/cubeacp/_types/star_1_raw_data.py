@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Star1RawData"]
 
 
-class Star1RawData(_base.Message):
+class Star1RawData(_base.Message[_Node]):
     """Star 1 Raw Data: telemetry 212, 6 bytes. Table 160.
 
     Catalogue index and detected position.

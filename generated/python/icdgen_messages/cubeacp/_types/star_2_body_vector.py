@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Star2BodyVector"]
 
 
-class Star2BodyVector(_base.Message):
+class Star2BodyVector(_base.Message[_Node]):
     """Star 2 Body Vector: telemetry 182, 6 bytes. Table 140.
 
     Bit 17 of the log mask.

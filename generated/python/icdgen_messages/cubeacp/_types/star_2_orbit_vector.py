@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Star2OrbitVector"]
 
 
-class Star2OrbitVector(_base.Message):
+class Star2OrbitVector(_base.Message[_Node]):
     """Star 2 Orbit Vector: telemetry 185, 6 bytes. Table 143.
 
     Bit 18 of the log mask.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Star2RawData"]
 
 
-class Star2RawData(_base.Message):
+class Star2RawData(_base.Message[_Node]):
     """Star 2 Raw Data: telemetry 213, 6 bytes. Table 161.
 
     Catalogue index and detected position.

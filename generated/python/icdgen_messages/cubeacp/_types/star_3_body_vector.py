@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Star3BodyVector"]
 
 
-class Star3BodyVector(_base.Message):
+class Star3BodyVector(_base.Message[_Node]):
     """Star 3 Body Vector: telemetry 183, 6 bytes. Table 141.
 
     Bit 19 of the log mask.

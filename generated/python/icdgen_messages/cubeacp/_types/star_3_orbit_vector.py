@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Star3OrbitVector"]
 
 
-class Star3OrbitVector(_base.Message):
+class Star3OrbitVector(_base.Message[_Node]):
     """Star 3 Orbit Vector: telemetry 186, 6 bytes. Table 144.
 
     Bit 20 of the log mask.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["Star3RawData"]
 
 
-class Star3RawData(_base.Message):
+class Star3RawData(_base.Message[_Node]):
     """Star 3 Raw Data: telemetry 214, 6 bytes. Table 162.
 
     Catalogue index and detected position.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["StarMagnitude"]
 
 
-class StarMagnitude(_base.Message):
+class StarMagnitude(_base.Message[_Node]):
     """Star Magnitude: telemetry 187, 6 bytes. Table 145.
 
     Of the identified stars, in instrument magnitudes.

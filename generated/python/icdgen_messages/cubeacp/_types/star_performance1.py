@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .star_id_mode_val import StarIdModeVal
 
 __all__ = ["StarPerformance1"]
 
 
-class StarPerformance1(_base.Message):
+class StarPerformance1(_base.Message[_Node]):
     """Star Performance1: telemetry 188, 6 bytes. Table 146.
 
     Quality of the star measurement, frame 1.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["StarPerformance2"]
 
 
-class StarPerformance2(_base.Message):
+class StarPerformance2(_base.Message[_Node]):
     """Star Performance2: telemetry 231, 6 bytes. Table 174.
 
     Quality of the star measurement, frame 2.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["StarTiming"]
 
 
-class StarTiming(_base.Message):
+class StarTiming(_base.Message[_Node]):
     """Star Timing: telemetry 189, 6 bytes. Table 148.
 
     How long the steps of the star measurement took.

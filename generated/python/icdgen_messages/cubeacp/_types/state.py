@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["State"]
 
 
-class State(_base.Message):
+class State(_base.Message[_Node]):
     """CubeACP State: telemetry 135, 1 byte. Table 101.
 
     Errors in loading settings from flash and in using the SD card.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .im_save_status import ImSaveStatus
 
 __all__ = ["StatusOfImageCaptureAndSaveOperation"]
 
 
-class StatusOfImageCaptureAndSaveOperation(_base.Message):
+class StatusOfImageCaptureAndSaveOperation(_base.Message[_Node]):
     """Status of Image Capture and Save Operation: telemetry 233, 2 bytes. Table 176.
 
     Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["TrackingControllerTargetReference"]
 
 
-class TrackingControllerTargetReference(_base.Message):
+class TrackingControllerTargetReference(_base.Message[_Node]):
     """Tracking Controller Target Reference: configuration, set by telecommand 55, got
     by telemetry 200, 12 bytes. Table 187.
 

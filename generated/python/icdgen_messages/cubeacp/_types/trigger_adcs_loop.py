@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["TriggerAdcsLoop"]
 
 
-class TriggerAdcsLoop(_base.Message):
+class TriggerAdcsLoop(_base.Message[_Node]):
     """Trigger ADCS Loop: telecommand 18, 0 bytes. Table 83.
 
     Runs the control loop once. Only valid while ADCS Run Mode is Triggered.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .gps_solution_status import GpsSolutionStatus
 
 __all__ = ["TriggerSimulatedLoop"]
 
 
-class TriggerSimulatedLoop(_base.Message):
+class TriggerSimulatedLoop(_base.Message[_Node]):
     """Trigger ADCS Loop with Simulated Sensor Data: telecommand 19, 127 bytes. Table
     84.
 

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["UartLogConfiguration"]
 
 
-class UartLogConfiguration(_base.Message):
+class UartLogConfiguration(_base.Message[_Node]):
     """UART Log Configuration: configuration, set by telecommand 106, got by telemetry
     237, 12 bytes. Table 213.
 

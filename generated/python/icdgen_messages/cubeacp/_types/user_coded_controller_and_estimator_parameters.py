@@ -7,11 +7,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["UserCodedControllerAndEstimatorParameters"]
 
 
-class UserCodedControllerAndEstimatorParameters(_base.Message):
+class UserCodedControllerAndEstimatorParameters(_base.Message[_Node]):
     """User-coded Controller and Estimator Parameters: configuration, set by telecommand
     29, got by telemetry 226, 96 bytes. Table 208.
     """

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["WheelCurrents"]
 
 
-class WheelCurrents(_base.Message):
+class WheelCurrents(_base.Message[_Node]):
     """Wheel Currents: telemetry 173, 6 bytes. Table 131.
 
     Of the X, Y and Z wheels.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["WheelSpeed"]
 
 
-class WheelSpeed(_base.Message):
+class WheelSpeed(_base.Message[_Node]):
     """Wheel Speed: telemetry 156, 6 bytes. Table 112.
 
     As measured.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["WheelSpeedCommands"]
 
 
-class WheelSpeedCommands(_base.Message):
+class WheelSpeedCommands(_base.Message[_Node]):
     """Wheel Speed Commands: telemetry 158, 6 bytes. Table 114.
 
     Bit 8 of the log mask.

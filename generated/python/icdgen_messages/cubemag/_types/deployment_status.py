@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["DeploymentStatus"]
 
 
-class DeploymentStatus(_base.Message):
+class DeploymentStatus(_base.Message[_Node]):
     """Deployment Status: telemetry 190, 5 bytes. Table 61.
 
     Only for the CubeMag of type Deploy.

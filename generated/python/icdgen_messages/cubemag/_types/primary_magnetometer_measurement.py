@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["PrimaryMagnetometerMeasurement"]
 
 
-class PrimaryMagnetometerMeasurement(_base.Message):
+class PrimaryMagnetometerMeasurement(_base.Message[_Node]):
     """Primary Magnetometer Measurement: telemetry 197, 13 bytes. Table 68.
 
     Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["RedundantMagnetometerMeasurement"]
 
 
-class RedundantMagnetometerMeasurement(_base.Message):
+class RedundantMagnetometerMeasurement(_base.Message[_Node]):
     """Redundant Magnetometer Measurement: telemetry 193, 13 bytes. Table 64.
 
     Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.

@@ -6,13 +6,14 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .mag_state import MagState
 from .mnt_state import MntState
 
 __all__ = ["State"]
 
 
-class State(_base.Message):
+class State(_base.Message[_Node]):
     """State: telemetry 188, 3 bytes. Table 57.
 
     States of all services.

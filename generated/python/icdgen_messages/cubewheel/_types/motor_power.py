@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["MotorPower"]
 
 
-class MotorPower(_base.Message):
+class MotorPower(_base.Message[_Node]):
     """Motor Power: telemetry 197, 1 byte. Table 57.
 
     Whether the motor is switched on.

@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 
 __all__ = ["WheelReferenceSpeed"]
 
 
-class WheelReferenceSpeed(_base.Message):
+class WheelReferenceSpeed(_base.Message[_Node]):
     """Wheel Reference Speed: telemetry 196, 4 bytes. Table 56.
 
     Speed that the momentum wheel is set to.

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from ... import _base
+from . import _Node
 from .wheel_error_state import WheelErrorState
 
 __all__ = ["WheelSpeed"]
 
 
-class WheelSpeed(_base.Message):
+class WheelSpeed(_base.Message[_Node]):
     """Wheel Speed: telemetry 188, 5 bytes. Table 47.
 
     Note WHL-005 (certain): Table numbers collide with those of the manual and of

@@ -151,7 +151,7 @@ class Element:
             return value.ljust(info.bits // 8, b"\0") if is_cut else value
         if self.index < len(value):
             return value[self.index]
-        p, c, q = info.scale  # it is not in the frame
+        _, c, q = info.scale  # it is not in the frame
         if attribute == info.physical:
             return c / q
         return info.enum(0) if info.enum else 0.0 if info.type == "float" else 0
@@ -259,12 +259,12 @@ def _sweep(node: Any, words: Words) -> str:
     for raw in map(int, words):
         if not low <= raw <= high:
             raise Refusal(f"range field={_hex(one.name)}")
-        one.set(message, info.attribute, raw)
+        one.set(message, info.attribute, _raw(info, str(raw)))
         physical = one.get(message, info.physical)
         back: Optional[int] = None
         try:
             one.set(message, info.physical, physical)
-            back = one.get(message, info.attribute)
+            back = _shown(info, one.get(message, info.attribute))
         except RangeError:
             pass
         said.append(f"{_floats.float64_bits(physical)},{'' if back is None else back},")

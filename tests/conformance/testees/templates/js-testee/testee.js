@@ -45,7 +45,7 @@ function fieldsOf(plan, raw) {
 }
 
 function physicalOf(field, raw) {
-  if (field.scale) return ` physical=${codec.doubleBits(codec.physical(field, raw))}`;
+  if (field.scale || field.curve) return ` physical=${codec.doubleBits(codec.physical(field, raw))}`;
   const text = field.text ? codec.text(raw) : "\ufffd";
   return text.includes("\ufffd") ? "" : ` physical=${hexOfText(text)}`;
 }
