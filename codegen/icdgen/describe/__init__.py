@@ -6,14 +6,10 @@ values with names, and the paragraphs of comments. A backend only spells it.
 
 from __future__ import annotations
 
-from icdgen.describe.description import (
-    Description,
-    FieldDescription,
-    MessageDescription,
-    NodeDescription,
-    describe,
-)
+from icdgen.describe.description import FieldDescription, MessageDescription
 from icdgen.describe.enums import EnumDescription
+from icdgen.describe.nodes import NodeDescription
+from icdgen.describe.whole import Description, describe
 
 __all__ = [
     "Description",

@@ -1,26 +1,43 @@
-"""A set of ICDs, its nodes, their messages and the fields of these, which know each other."""
+"""Messages and their fields, which know each other."""
 
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from icdgen import layout, naming
 from icdgen.describe import steps
 from icdgen.describe.bounds import Bound, bounds
 from icdgen.describe.comments import Comment, field_comment, message_comment, words
 from icdgen.describe.constants import Constant, constants
-from icdgen.describe.enums import EnumDescription, enum_widths
+from icdgen.describe.enums import EnumDescription
 from icdgen.describe.errata import tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.shared_ids import sharing
-from icdgen.describe.storage import Storage, holding, storage_of
+from icdgen.describe.storage import Storage, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.curve import Curve
-from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
-from icdgen.icd.variants import Ids, Variant, common_length, ids_of
-from icdgen.layout import signs
+from icdgen.icd.variants import Ids
+
+
+class Whole(Protocol):
+    """The set of ICDs that all of this describes: `icdgen.describe.whole.Description`."""
+
+    icd: Icd
+
+    @property
+    def id_bits(self) -> int: ...
+
+    def log_bits(self, node: Node) -> dict[int, int]: ...
+
+    def spoken(self, node: Node) -> tuple[MessageDescription, ...]: ...
+
+    def known_ids(self, node: Node) -> Ids: ...
+
+    def message(self, message: Message) -> MessageDescription: ...
+
+    def enum(self, enum: Enum) -> EnumDescription: ...
 
 
 class FieldDescription(Named[Field]):
@@ -179,7 +196,7 @@ class TailDescription(NamedTuple):
 class MessageDescription(Named[Message]):
     """A message that ``node`` declares."""
 
-    def __init__(self, description: Description, message: Message, node: Node) -> None:
+    def __init__(self, description: Whole, message: Message, node: Node) -> None:
         super().__init__(message, node.vocabulary, f"message `{message.name}`")
         self._description, self.node = description, node
 
@@ -241,7 +258,7 @@ class MessageDescription(Named[Message]):
         """The messages that it repeats, each with the bit at which it begins, in the order of the ICD."""
         if not self.model.contains:
             return ()
-        known = {one.model.name: one for one in self._description.node(self.node).spoken}
+        known = {one.model.name: one for one in self._description.spoken(self.node)}
         return tuple((known[one.message], one.at) for one in self.model.contains if one.message in known)
 
     @cached_property
@@ -286,191 +303,6 @@ class MessageDescription(Named[Message]):
 
     @cached_property
     def comment(self) -> Comment:
-        node, telemetry_id = self._description.node(self.node), self.model.telemetry_id
-        bit = None if telemetry_id is None else node.log_bits.get(telemetry_id)
-        return message_comment(self.model, bit, sharing(node.known_ids, self.model))
-
-
-class Direction(NamedTuple):
-    """What a node speaks in one direction: messages, each with the name of its id there (``id``, ``set_id`` or ``get_id``)."""
-
-    kind: str  # "telecommand" | "telemetry"
-    messages: tuple[tuple[MessageDescription, str], ...]
-
-
-class Candidate(NamedTuple):
-    """A message under an id, the name of its id there, and what bytes show that a frame of its length is it."""
-
-    message: MessageDescription
-    id_name: str
-    signs: tuple[layout.Sign, ...]
-
-
-class Under(NamedTuple):
-    """The messages of one id, in the order in which a frame is tried with them."""
-
-    id: int
-    candidates: tuple[Candidate, ...]
-    length: int | None  # that all of them have; None if they have several
-
-    @property
-    def first(self) -> Candidate:
-        """One of them, whose constant says the id."""
-        return self.candidates[0]
-
-    @property
-    def is_shared(self) -> bool:
-        """Whether it takes more than the id to know the message."""
-        return len(self.candidates) > 1
-
-    @property
-    def rest(self) -> Candidate | None:
-        """The candidate that is left when the frame is none of the others: nothing but its length may be wrong."""
-        last = self.candidates[-1]
-        return last if not self.is_shared or (self.length is not None and not last.signs) else None
-
-    @property
-    def tried(self) -> tuple[Candidate, ...]:
-        """Those that a frame has to be looked at for."""
-        return self.candidates if self.rest is None else self.candidates[:-1]
-
-
-class NodeDescription:
-    """A node (``model``) of the set."""
-
-    def __init__(self, description: Description, node: Node) -> None:
-        self._description, self.model, self.name = description, node, node.name
-
-    def identifier(self, scope: str, name: str) -> Identifier:
-        """A name that generated code declares for it."""
-        return Identifier(scope, name, f"node `{self.name}`", self.model.source)
-
-    @cached_property
-    def messages(self) -> tuple[MessageDescription, ...]:
-        """Those that it declares."""
-        return tuple(map(self._description.message, self.model.messages))
-
-    @cached_property
-    def enums(self) -> tuple[EnumDescription, ...]:
-        """Those that it declares."""
-        return tuple(map(self._description.enum, self.model.enums))
-
-    @cached_property
-    def spoken(self) -> tuple[MessageDescription, ...]:
-        """All messages that it speaks: those of included nodes first."""
-        return tuple(map(self._description.message, self._description.icd.messages_of(self.model)))
-
-    @property
-    def telecommands(self) -> tuple[MessageDescription, ...]:
-        """Those of `spoken` that can be sent to it."""
-        return tuple(one for one in self.spoken if one.model.telecommand_id is not None)
-
-    @property
-    def telemetry(self) -> tuple[MessageDescription, ...]:
-        """Those of `spoken` that can be requested from it."""
-        return tuple(one for one in self.spoken if one.model.telemetry_id is not None)
-
-    @property
-    def directions(self) -> tuple[Direction, ...]:
-        """Telecommands, then telemetry; without one of which it has none."""
-        found = (
-            Direction("telecommand", tuple((one, one.telecommand_id_name) for one in self.telecommands)),
-            Direction("telemetry", tuple((one, one.telemetry_id_name) for one in self.telemetry)),
-        )
-        return tuple(direction for direction in found if direction.messages)
-
-    def ids(self, direction: str) -> tuple[Under, ...]:
-        """The messages of a direction by their ids, in the order of the ICD."""
-        return self._ids[direction]
-
-    def shares_ids(self, direction: str) -> bool:
-        """Whether messages of the direction have an id in common."""
-        return any(one.is_shared for one in self._ids[direction])
-
-    @cached_property
-    def known_ids(self) -> Ids:
-        """All messages that it speaks, by their ids."""
-        return ids_of(self._description.icd, self.model)
-
-    @cached_property
-    def _ids(self) -> dict[str, tuple[Under, ...]]:
-        known = self.known_ids
-        named = {"telecommand": "set_id", "telemetry": "get_id"}
-        return {
-            direction: tuple(self._under(other, id, those) for id, those in getattr(known, direction).items())
-            for direction, other in named.items()
-        }
-
-    def _under(self, other_name: str, id: int, variants: tuple[Variant, ...]) -> Under:
-        candidates = (
-            Candidate(
-                self._description.message(one.message), "id" if one.message.id is not None else other_name, signs(one)
-            )
-            for one in variants
-        )
-        return Under(id, tuple(candidates), common_length(variants))
-
-    @property
-    def is_linked(self) -> bool:
-        """Whether it is known how its messages travel."""
-        return bool(self._description.icd.protocol_of(self.model))
-
-    @property
-    def id_bits(self) -> int:
-        """Those of the set: see `Description.id_bits`."""
-        return self._description.id_bits
-
-    @cached_property
-    def log_bits(self) -> dict[int, int]:
-        """Telemetry id -> the bit of the log mask that selects it."""
-        return {row.id: row.bit for row in self.model.loggable}
-
-
-class Description:
-    """A set of ICDs. ``nodes`` stand in the order of the set: each after those that it includes."""
-
-    def __init__(self, icd: Icd) -> None:
-        self.icd = icd
-        self._enum_bits = enum_widths(icd)
-        self._messages: dict[tuple[str, str], MessageDescription] = {}
-        self._enums: dict[tuple[str, str], EnumDescription] = {}
-        self._nodes = {node.name: NodeDescription(self, node) for node in icd.nodes}
-        self.nodes = tuple(self._nodes.values())
-
-    @cached_property
-    def id_bits(self) -> int:
-        """8, 16 or 32: bits of the integer that holds every id of the set."""
-        used = (id.bit_length() for node in self.icd.nodes for message in node.messages for id in message.ids)
-        return holding(max((*(node.id_bits for node in self.icd.nodes), *used), default=8))
-
-    def node(self, node: str | Node) -> NodeDescription:
-        """The description of a node, by its name or of the node itself. Raises `KeyError`."""
-        return self._nodes[node if isinstance(node, str) else node.name]
-
-    def message(self, message: Message) -> MessageDescription:
-        """The description of a message, whoever speaks it."""
-        key = message.node, message.name
-        found = self._messages.get(key)
-        if found is None or found.model is not message:
-            found = self._messages[key] = MessageDescription(self, message, self.icd.node(message.node))
-        return found
-
-    def enum(self, enum: Enum) -> EnumDescription:
-        """The description of an enumeration, whoever uses it."""
-        key = enum.node, enum.name
-        found = self._enums.get(key)
-        if found is None or found.model is not enum:
-            found = self._enums[key] = EnumDescription(enum, self.icd.node(enum.node), self._enum_bits[key])
-        return found
-
-
-_kept: list[Description] = []
-
-
-def describe(icd: Icd) -> Description:
-    """The description of a set of ICDs. The last ones are kept, so that the backends of one run share theirs."""
-    for known in _kept:
-        if known.icd is icd:
-            return known
-    _kept[:] = [*_kept[-1:], Description(icd)]
-    return _kept[-1]
+        whole, telemetry_id = self._description, self.model.telemetry_id
+        bit = None if telemetry_id is None else whole.log_bits(self.node).get(telemetry_id)
+        return message_comment(self.model, bit, sharing(whole.known_ids(self.node), self.model))

@@ -9,7 +9,7 @@ from icdgen.backends.python import names
 from icdgen.backends.python.text import docstring, literal, paragraph
 from icdgen.describe import Description, EnumDescription, MessageDescription, NodeDescription
 from icdgen.describe.comments import sentence
-from icdgen.describe.description import Under
+from icdgen.describe.nodes import Under
 from icdgen.icd.model import Node
 
 _OF_NODE = (
