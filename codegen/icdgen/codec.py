@@ -80,31 +80,35 @@ def is_there(message: Message, field: Field, count: int) -> bool:
 def which(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | None:
     """Of messages that share an id the one that a frame is of; None if it is of none of them.
 
-    It is of the length and has the constants of that message, but for those that all of them have alike; of several that of
-    the most constants. Raises `LengthError` if no message has that length and all have the same.
+    It is of a length and has the constants of that message, but for those that all of them have alike and for those in an
+    open end; of several that of the most constants. Raises `LengthError` if no message has that length and all have the same.
     """
     fitting = []
     for message in known:
-        if message.length != len(frame):
+        if len(frame) not in message.lengths:
             continue
-        node = icd.node(message.node)
-        found = decode(node, message, frame)
-        constants = [field for field in message.owners if field.const is not None]
+        node, bits = icd.node(message.node), int.from_bytes(frame, "little")
+        constants = _in_every_frame(message)
         telling = [one for one in constants if not all(_has_alike(icd, other, one, node) for other in known)]
-        if all(found[one.name] == one.const for one in telling):
+        if all(_read(node, one, bits) == one.const for one in telling):
             fitting.append((len(constants), message))
     if fitting:
         return max(fitting, key=lambda one: one[0])[1]
-    if all(message.length == known[0].length != len(frame) for message in known):
+    if all(message.least == message.length == known[0].length != len(frame) for message in known):
         raise LengthError(known[0], known[0].length, len(frame))
     return None
+
+
+def _in_every_frame(message: Message) -> list[Field]:
+    """The constants of a message, without those of elements that not every frame has."""
+    return [one for one in message.owners if one.const is not None and is_there(message, one, 0)]
 
 
 def _has_alike(icd: Icd, message: Message, constant: Field, node: Node) -> bool:
     """Whether a message has the constant that a field of another one, declared by ``node``, is."""
     place = _runs(constant.at, constant.bits, *constant.orders(node))
     owner = icd.node(message.node)
-    same = (one for one in message.owners if one.const is not None and one.const == constant.const)
+    same = (one for one in _in_every_frame(message) if one.const == constant.const)
     return any(_runs(one.at, one.bits, *one.orders(owner)) == place for one in same)
 
 

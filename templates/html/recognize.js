@@ -150,7 +150,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
   /** The message of an id; of those that share it the one that the data are of, if there is one. */
   function numberOf(index, known, data) {
     if (!Array.isArray(known)) return known;
-    return known.find(([number, signs]) => frames.isLike(lengthOf(index, number), signs, data))?.[0];
+    return known.find(([number, signs]) => frames.isLike(lengthOf(index, number), index.messages[number][4], signs, data))?.[0];
   }
 
   const numbersOf = (known) => (Array.isArray(known) ? known.map(([number]) => number) : known === undefined ? [] : [known]);
@@ -257,7 +257,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
     }
     const told = [...known.values()].map(({ number }) => `${index.messages[number][0]} has ${lengthText(index, number)} bytes`);
     const [{ id, data }] = known.values();
-    if (known.size > 1 && [...known.values()].some(({ number }) => lengthOf(index, number) === data.length)) {
+    if (known.size > 1 && [...known.values()].some(({ number }) => frames.isLike(lengthOf(index, number), index.messages[number][4], [], data))) {
       return new Error(`the ${data.length} bytes after the id ${id} have the constants of none of its messages`);
     }
     return new Error(`${told.join(" or ")}, ${data.length} given after the id ${id}`);

@@ -336,6 +336,51 @@ messages:
     fields:
       - {at: 0, bits: 8, name: Version, type: uint, const: 1}
       - {at: 8, bits: 8, name: Rate, type: int, unit: Hz}
+  - name: Open, first version
+    id: 0x1500
+    kind: telemetry
+    length: 3
+    fields:
+      - {at: 0, bits: 12, name: Version, type: int, const: -1}
+      - {at: 16, bits: 8, name: Values Count, type: uint}
+      - {at: 24, bits: 16, name: Values, type: int, count: Values Count, up_to: 5, byte_order: big}
+  - name: Open, second version
+    id: 0x1500
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 12, name: Version, type: int, const: 2}
+      - {at: 16, bits: 24, name: Values, type: uint, count: rest, up_to: 3, const: 0x010203}
+  - name: Open, third version
+    id: 0x1500
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 12, name: Version, type: int, const: 3}
+      - {at: 16, name: Remark, type: text, size: rest, up_to: 20}
+  - name: Open, closed
+    id: 0x1500
+    kind: telemetry
+    length: 7
+    reserved: 5
+    fields:
+      - {at: 0, bits: 12, name: Version, type: int, const: 4}
+  - name: Open, any other
+    id: 0x1500
+    kind: telemetry
+    length: 2
+    fields: [{at: 16, name: Data, type: bytes, size: rest, up_to: 9}]
+  - name: Fours from none
+    id: 0x1501
+    kind: telecommand
+    length: 0
+    fields: [{at: 0, bits: 32, name: Values, type: float, count: rest, up_to: 3}]
+  - name: Fours from two
+    id: 0x1501
+    kind: telecommand
+    length: 2
+    fields: [{at: 16, bits: 32, name: Values, type: uint, count: rest, up_to: 2}]
+  - {name: No fours, id: 0x1501, kind: telecommand, length: 7, reserved: 7}
   - {name: Alone, id: 0x0107, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: A, type: uint, const: 5}]}
 """
 

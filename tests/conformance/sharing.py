@@ -8,17 +8,23 @@ WAYS = ("lengths", "constants", "constants", "general")
 
 
 @st.composite
-def sharing(draw, first: dict, names, made) -> list[dict]:
-    """The message, changed where it must be, and one to three more of its id. ``made`` draws fields and a length."""
+def sharing(draw, first: dict, names, made, open_end) -> list[dict]:
+    """The message, changed where it must be, and one to three more of its id.
+
+    ``made`` draws fields and a length, ``open_end`` of these what is behind them.
+    """
     way, others = draw(st.sampled_from(WAYS)), []
     for _ in range(draw(st.integers(1, 3))):
         fields, length = draw(made)
+        if draw(st.integers(0, 3)) == 0:
+            fields = [*fields, draw(open_end(fields, length))]
         kept = {key: first[key] for key in ("byte_order", "bit_order", "kind", "id") if key in first}
         others.append({**names.one("variant"), **kept, "length": length} | ({"fields": fields} if fields else {}))
     group = [first, *others]
     if way == "lengths":
         taken: set[int] = set()
         for message in group:
+            _close(message)
             _grow(message, next(n for n in range(300) if message["length"] + n not in taken))
             taken.add(message["length"])
         return group
@@ -37,13 +43,21 @@ def sharing(draw, first: dict, names, made) -> list[dict]:
         message["fields"] = draw(st.permutations([selector, *moved]))
         message["length"] += size
     longest = max(message["length"] for message in group)
-    for message in group:
+    for message in group if draw(st.booleans()) else ():
         _grow(message, longest - message["length"])
     return draw(st.permutations(group))
 
 
+def _close(message: dict) -> None:
+    """Takes away what makes its frames differ in length."""
+    if "fields" in message:
+        message["fields"] = [field for field in message["fields"] if "up_to" not in field]
+        if not message["fields"]:
+            del message["fields"]
+
+
 def _grow(message: dict, size: int) -> None:
-    """Reserves more bytes at the end."""
-    if size:
+    """Reserves more bytes at the end, unless that is open."""
+    if size and not any("up_to" in field for field in message.get("fields", ())):
         message["reserved"] = message.get("reserved", 0) + size
         message["length"] += size

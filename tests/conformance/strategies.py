@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 from hypothesis import strategies as st
@@ -110,7 +111,7 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         if fields:
             message["fields"] = fields
         if "id" in message and draw(st.integers(0, 3)) == 0:
-            messages += draw(sharing(message, names, _fields(enums, orders | own)))
+            messages += draw(sharing(message, names, _fields(enums, orders | own), partial(_open_end, enums=enums)))
         else:
             messages.append(message)
     messages.append(_uses_all(names.one("message"), enums, ids(first_id + 59)))

@@ -28,7 +28,7 @@ def apart(tmp_path_factory) -> Icd:
 def told(icd: Icd, group, frame: bytes) -> object:
     """What generated code does: in order, by length and signs."""
     for one in group:
-        if len(frame) == one.message.length and all(frame[at] & mask == value for at, mask, value in signs(one)):
+        if len(frame) in one.message.lengths and all(frame[at] & mask == value for at, mask, value in signs(one)):
             return one.message.name
     length = common_length(group)
     return length if length not in (None, len(frame)) else None

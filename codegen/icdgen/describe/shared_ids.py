@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from icdgen.describe.comments import words
-from icdgen.describe.numbers import byte_count, value_text
+from icdgen.describe.numbers import length_text, value_text
 from icdgen.icd.model import Message
 from icdgen.icd.variants import Ids, Variant, common_length, is_narrower
 
@@ -22,7 +22,7 @@ def sharing(ids: Ids, message: Message) -> str:
 
 def _sentence(own: Variant, group: tuple[Variant, ...]) -> str:
     others = [one for one in group if one is not own]
-    has = [byte_count(own.message.length)] if common_length(group) is None else []
+    has = [length_text(own.message)] if common_length(group) is None else []
     has += (f"{words(field.name)} {value_text(field.const or 0)}" for field in own.constants)
     clauses = [f"has {_listed(has)}"] if has else []
     if any(is_narrower((one.message, one.node), (own.message, own.node)) for one in others):

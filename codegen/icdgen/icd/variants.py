@@ -1,7 +1,7 @@
 """Messages of one direction that share an id: what tells a frame of one from those of the others.
 
-They differ in length, or in constants at the same place; or one has the constants of the other and more, and the other, the
-general one, is what is left: it takes the frames that are none of the narrower ones.
+They have no length in common, or differ in constants at the same place; or one has the constants of the other and more, and
+the other, the general one, is what is left: it takes the frames that are none of the narrower ones.
 """
 
 from __future__ import annotations
@@ -55,16 +55,14 @@ def variants(spoken: Sequence[Spoken]) -> tuple[Variant, ...]:
     made = []
     for (message, node), mine in zip(spoken, constants, strict=True):
         telling = {place for place, value in mine.items() if (place, value) not in alike}
-        fields = (field for field in message.owners if field.const is not None and _place(field, node) in telling)
+        fields = (field for field in message.constants if _place(field, node) in telling)
         made.append((len(mine), Variant(message, node, tuple(fields))))
     return tuple(variant for _, variant in sorted(made, key=lambda one: -one[0]))
 
 
 def are_told_apart(one: Spoken, other: Spoken) -> bool:
     """Whether every frame is of one of the two at most, or one of them is narrower than the other."""
-    if one[0].tail or other[0].tail:
-        return False  # of a message whose frames differ in length an id is its own
-    if one[0].length != other[0].length:
+    if not _meet(one, other):
         return True
     mine, its = _constants(*one), _constants(*other)
     if any(its.get(place, value) != value for place, value in mine.items()):
@@ -73,18 +71,23 @@ def are_told_apart(one: Spoken, other: Spoken) -> bool:
 
 
 def is_narrower(one: Spoken, other: Spoken) -> bool:
-    """Whether the first has the length and all constants of the second, and more: its frames are some of those of the second."""
-    return one[0].length == other[0].length and _constants(*one).items() > _constants(*other).items()
+    """Whether the first has lengths and all constants of the second, and more: a frame that holds these is of the first."""
+    return _meet(one, other) and _constants(*one).items() > _constants(*other).items()
 
 
 def common_length(group: Sequence[Variant]) -> int | None:
     """The length that all of them have: a frame of any other has the wrong length. None if they have several."""
-    lengths = {one.message.length for one in group}
+    lengths = {length for one in group for length in (one.message.least, one.message.length)}
     return lengths.pop() if len(lengths) == 1 else None
 
 
+def _meet(one: Spoken, other: Spoken) -> bool:
+    """Whether frames of the two can have the same length."""
+    return not set(one[0].lengths).isdisjoint(other[0].lengths)
+
+
 def _constants(message: Message, node: Node) -> dict[Place, int]:
-    return {_place(field, node): field.const for field in message.owners if field.const is not None}
+    return {_place(field, node): field.const or 0 for field in message.constants}
 
 
 def _place(field: Field, node: Node) -> Place:

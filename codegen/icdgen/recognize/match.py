@@ -125,7 +125,7 @@ def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
             return wrong
     told = " or ".join(f"`{m.name}` ({describe(m)}) has {length_text(m)}" for _, m, _, _ in known.values())
     _, first, id, data = next(iter(known.values()))
-    if len(known) > 1 and any(message.length == len(data) for _, message, _, data in known.values()):
+    if len(known) > 1 and any(len(data) in message.lengths for _, message, _, data in known.values()):
         return none_of([message for _, message, _, _ in known.values()], f"the {len(data)} bytes after the id {id}")
     return BadLength(
         f"{told}, {len(data)} given after the id {id}", first.length, len(data), "bytes are missing, or too many"
@@ -134,7 +134,7 @@ def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
 
 def none_of(messages: Sequence[Message], data: str) -> NotFound:
     """Data that are of none of the messages that share an id."""
-    told = ", ".join(f"`{one.name}` ({describe(one)}, {one.length} bytes)" for one in messages)
+    told = ", ".join(f"`{one.name}` ({describe(one)}, {length_text(one)})" for one in messages)
     help = "a byte was damaged, or there are too many; name the message to have them read all the same"
     return NotFound(f"{data} are like none of {told}, by length and constants", help)
 

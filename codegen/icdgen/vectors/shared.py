@@ -36,31 +36,46 @@ def rows(icd: Icd, node: Node) -> Iterator[SharedRow]:
     for direction in (TELECOMMAND, TELEMETRY):
         for id, messages in ids(icd, node, direction).items():
             if len(messages) > 1:
-                for frame in dict.fromkeys(_frames(icd, messages)):
-                    yield _row(icd, direction, id, messages, frame)
+                rows = (_row(icd, direction, id, messages, frame) for frame in dict.fromkeys(_frames(icd, messages)))
+                yield from (row for row in rows if row is not None)
 
 
-def _row(icd: Icd, direction: str, id: int, messages: list[Message], frame: bytes) -> SharedRow:
+def _row(icd: Icd, direction: str, id: int, messages: list[Message], frame: bytes) -> SharedRow | None:
+    """None if the frame does not have as many elements as it says: the vectors of the message have such frames."""
     try:
         found = codec.which(icd, messages, frame)
     except codec.LengthError as error:
         return SharedRow(direction, id, frame, None, error.expected)
+    if found is not None:
+        try:
+            codec.decode(icd.node(found.node), found, frame)
+        except codec.LengthError:
+            return None
     return SharedRow(direction, id, frame, found.name if found else None)
 
 
 def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
     """Of each message its constants among zeros, ones and random bytes, and each bit of them changed; other lengths."""
-    lengths = sorted({message.length for message in messages})
+    lengths = sorted({length for message in messages for length in (message.least, message.length)})
     yield from (bytes(size) for size in sorted({near for n in lengths for near in (0, max(n - 1, 0), n, n + 1)}))
     yield from (b"\xff" * size for size in lengths)
     for message in messages:
-        node = icd.node(message.node)
-        constants = [field for field in message.owners if field.const is not None]
+        node, constants = icd.node(message.node), message.constants
         for around in (bytes(message.length), b"\xff" * message.length, patterns.random_frame(message, "shared id")):
-            whole = codec.decode(node, message, around) | {field.name: field.const or 0 for field in constants}
-            yield codec.encode(node, message, whole)
+            for frame in _cut(message, node, around):
+                whole = codec.decode(node, message, frame) | {field.name: field.const or 0 for field in constants}
+                yield codec.encode(node, message, whole)
         for field in constants:
             for bit in range(field.bits):
                 mine = int(whole[field.name]) & (1 << field.bits) - 1 ^ 1 << bit
                 signed = mine - (mine >> field.bits - 1 << field.bits if field.signed else 0)
                 yield codec.encode(node, message, whole | {field.name: signed})
+
+
+def _cut(message: Message, node: Node, frame: bytes) -> list[bytes]:
+    """The longest frame; where frames differ in length, also without an element, with one and with half of them."""
+    tail = message.tail
+    if tail is None:
+        return [frame]
+    counts = dict.fromkeys((tail.most, 0, 1, (tail.most + 1) // 2))
+    return [patterns.cut(message, node, frame, count) for count in counts]

@@ -59,7 +59,7 @@ def _answer(icd: Icd, row: SharedRow, messages: Sequence[Message]) -> object:
     """The name of the message that the frame is, the length that it should have, or None."""
     known = [one for one in messages if getattr(one, f"{row.direction}_id") == row.id]
     if len(known) == 1:  # the id alone tells: frames are answered with all values
-        return () if known[0].length == len(row.frame) else known[0].length
+        return () if len(row.frame) in known[0].lengths else known[0].length
     try:
         found = codec.which(icd, known, row.frame) if known else None
     except codec.LengthError as error:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from icdgen.backends.c.names import constant
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.lines import STEP, bracketed
+from icdgen.describe.description import TailDescription
 from icdgen.describe.nodes import Candidate
 
 _COMPOUND = re.compile(r" (?:<<|>>|&) \w+\Z")
@@ -42,7 +43,7 @@ def assigned_byte(target: str, terms: Sequence[str]) -> str:
 
 def like(candidate: Candidate) -> str:
     """Whether a frame is that of a message: its length, and the bytes of its constants."""
-    terms = [f"length == {constant(candidate.message, 'length')}"]
+    terms = _lengths(constant(candidate.message, "length"), candidate.message.tail)
     for sign in candidate.signs:
         byte = f"buffer[{sign.byte}]"
         masked = byte if sign.mask == 0xFF else f"({byte} & 0x{sign.mask:02X}u)"
@@ -50,6 +51,18 @@ def like(candidate: Candidate) -> str:
     if len(terms) == 1:
         return terms[0]
     return f" &&\n{STEP * 3}".join(f"({term})" for term in terms)
+
+
+def _lengths(longest: str, tail: TailDescription | None) -> list[str]:
+    """What holds of the ``length`` of a frame; ``longest`` is the macro of the longest."""
+    if tail is None:
+        return [f"length == {longest}"]
+    tests = [f"length >= {tail.least}u"] if tail.least else []
+    tests.append(f"length <= {longest}")
+    if tail.step > 1:
+        rest = f"(length - {tail.least}u)" if tail.least else "length"
+        tests.append(f"({rest} % {tail.step}u) == 0u")
+    return tests
 
 
 def head(returned: str, name: str, *parameters: str) -> str:

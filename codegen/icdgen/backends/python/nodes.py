@@ -10,7 +10,7 @@ from icdgen.backends.python.text import docstring, literal, paragraph
 from icdgen.describe import Description, EnumDescription, MessageDescription, NodeDescription
 from icdgen.describe.comments import sentence
 from icdgen.describe.nodes import Under
-from icdgen.icd.model import Node
+from icdgen.icd.model import Message, Node
 
 _OF_NODE = (
     "DIGEST", "ENUMS", "NAME", "TELECOMMANDS", "TELEMETRY", "TITLE", "decode_telecommand", "decode_telemetry",
@@ -49,8 +49,15 @@ def _known(under: Under) -> str:
     rows = []
     for one in under.candidates:
         signs = "".join(f"({sign.byte}, 0x{sign.mask:02X}, 0x{sign.value:02X}), " for sign in one.signs)
-        rows.append(f"({literal(names.class_name(one.message))}, {one.message.model.length}, ({signs.rstrip(' ')})),")
+        rows.append(
+            f"({literal(names.class_name(one.message))}, {_lengths(one.message.model)}, ({signs.rstrip(' ')})),"
+        )
     return "(\n        " + "\n        ".join(rows) + "\n    )"
+
+
+def _lengths(message: Message) -> str:
+    lengths = message.lengths
+    return f"range({lengths.start}, {lengths.stop}{f', {lengths.step}' if lengths.step > 1 else ''})"
 
 
 def _facts(node: Node) -> list[str]:

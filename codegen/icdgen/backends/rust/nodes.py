@@ -6,6 +6,7 @@ from icdgen.backends.lines import STEP
 from icdgen.backends.rust.text import WIDTH, code, doc, integer, mask, prose
 from icdgen.describe import NodeDescription
 from icdgen.describe.comments import sentence
+from icdgen.describe.description import TailDescription
 from icdgen.describe.nodes import Candidate
 from icdgen.describe.storage import holding
 from icdgen.icd.model import Node
@@ -38,7 +39,7 @@ def typed(value: int) -> str:
 
 def guarded(candidate: Candidate, path: str) -> str:
     """What an arm takes: the id, and what of the bytes shows that they are of this message, its length and its constants."""
-    terms = [f"bytes.len() == {path}::LENGTH"]
+    terms = _lengths(f"{path}::LENGTH", candidate.message.tail)
     for sign in candidate.signs:
         byte = f"bytes[{sign.byte}]"
         masked = byte if sign.mask == 0xFF else f"{byte} & {mask(sign.mask)}"
@@ -47,3 +48,14 @@ def guarded(candidate: Candidate, path: str) -> str:
     line = f"{id} if {' && '.join(terms)}"
     rows = f"\n{STEP * 5}&& ".join(terms)
     return line if len(line) <= WIDTH - len(" => {") else f"{id}\n{STEP * 4}if {rows}"
+
+
+def _lengths(longest: str, tail: TailDescription | None) -> list[str]:
+    """What holds of the length of a frame; ``longest`` is the constant of the longest."""
+    if tail is None:
+        return [f"bytes.len() == {longest}"]
+    least = tail.least
+    tests = [f"({least}..={longest}).contains(&bytes.len())" if least else f"bytes.len() <= {longest}"]
+    if tail.step > 1:
+        tests.append(f"{f'(bytes.len() - {least})' if least else 'bytes.len()'} % {tail.step} == 0")
+    return tests

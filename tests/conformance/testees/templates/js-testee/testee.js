@@ -27,12 +27,12 @@ function messageOf(node, direction, word) {
 
 /** Name and bytes of the message that a frame of a shared id is. */
 function told(candidates, frame) {
-  const [place] = candidates.find(([at, signs]) => isLike(messages[at].length, signs, frame)) ?? [];
+  const [place] = candidates.find(([at, signs]) => isLike(messages[at].length, messages[at].tail, signs, frame)) ?? [];
   if (place !== undefined) {
     const plan = messages[place];
     return `name=${hexOfText(plan.name)} bytes=${hexOf(codec.encode(plan, codec.decode(plan, frame)))}`;
   }
-  const lengths = new Set(candidates.map(([at]) => messages[at].length));
+  const lengths = new Set(candidates.flatMap(([at]) => [messages[at].tail?.least ?? messages[at].length, messages[at].length]));
   if (lengths.size > 1 || lengths.has(frame.length)) throw new codec.CodecError("unknown-id");
   throw new codec.CodecError("length", "", { expected: [...lengths][0], actual: frame.length });
 }
