@@ -55,5 +55,5 @@ def message_of(message: SpokenBy[Any]) -> _lazy.Message:
     return cast("_lazy.Message", message)
 
 
-Candidate = tuple[str, int, tuple[tuple[int, int, int], ...]]
-"""A message of an id that several have: its name, its length, and byte, mask and value of its constants."""
+Candidate = tuple[str, range, tuple[tuple[int, int, int], ...]]
+"""A message of an id that several have: its name, its lengths, and byte, mask and value of its constants."""

@@ -11,8 +11,10 @@ from ._errors import LengthError, UnknownIdError
 class Shared(Message):
     """What stands for all messages of an id: `from_bytes` gives the one that a frame is."""
 
-    FRAMES: tuple[tuple[type[Message], int, tuple[tuple[int, int, int], ...]], ...] = ()
-    """Each with its length, and byte, mask and value where it has a constant; those of more constants first."""
+    FRAMES: tuple[
+        tuple[type[Message], range, tuple[tuple[int, int, int], ...]], ...
+    ] = ()
+    """Each with its lengths, and byte, mask and value where it has a constant; those of more constants first."""
 
     def __init__(self, **values: object) -> None:
         raise TypeError(f"{self.NAME} are several messages: make one of them")
@@ -21,12 +23,13 @@ class Shared(Message):
     def from_bytes(cls, data: _lazy.Buffer) -> _lazy.Any:
         """The message in a frame. Raises `UnknownIdError` if it is none of them, `LengthError` if all have another length."""
         frame = bytes(data)
-        for message, length, signs in cls.FRAMES:
-            if len(frame) == length and all(
+        for message, lengths, signs in cls.FRAMES:
+            if len(frame) in lengths and all(
                 frame[byte] & mask == value for byte, mask, value in signs
             ):
                 return message.from_bytes(frame)
-        length, *others = {length for _, length, _ in cls.FRAMES}
+        ends = ((lengths[0], lengths[-1]) for _, lengths, _ in cls.FRAMES)
+        length, *others = {length for both in ends for length in both}
         if not others and len(frame) != length:
             raise LengthError(cls.NAME, length, len(frame))
         raise UnknownIdError(
@@ -42,7 +45,7 @@ def shared(
     named: _lazy.Callable[[str], type[Message]],
 ) -> type[Message]:
     """The class for an id that several messages have."""
-    frames = tuple((named(name), length, signs) for name, length, signs in candidates)
+    frames = tuple((named(name), lengths, signs) for name, lengths, signs in candidates)
     title = " or ".join(message.NAME for message, _, _ in frames)
     known = {"NODE": node, "NAME": title, "KIND": kind, "IDS": (id,), "FRAMES": frames}
     return type("Shared", (Shared,), known)
