@@ -327,12 +327,6 @@ class Message:
         return tuple(field for field in self.fields if not field.view)
 
     @property
-    def constants(self) -> tuple[Field, ...]:
-        """Those of `owners` that have one value only and are in every frame: of an open end there is none."""
-        end = 8 * self.least
-        return tuple(one for one in self.owners if one.const is not None and (self.tail is None or one.at < end))
-
-    @property
     def views(self) -> tuple[Field, ...]:
         """The fields that read bits of others."""
         return tuple(field for field in self.fields if field.view)

@@ -50,12 +50,12 @@ def variants(spoken: Sequence[Spoken]) -> tuple[Variant, ...]:
     """The messages of one id, the narrower ones before those that are more general."""
     if len(spoken) == 1:
         return (Variant(*spoken[0]),)
-    constants = [_constants(*one) for one in spoken]
-    alike = set(constants[0].items()).intersection(*(one.items() for one in constants[1:]))
+    known = [_constants(*one) for one in spoken]
+    alike = set(known[0].items()).intersection(*(one.items() for one in known[1:]))
     made = []
-    for (message, node), mine in zip(spoken, constants, strict=True):
+    for (message, node), mine in zip(spoken, known, strict=True):
         telling = {place for place, value in mine.items() if (place, value) not in alike}
-        fields = (field for field in message.constants if _place(field, node) in telling)
+        fields = (field for field in constants(message) if _place(field, node) in telling)
         made.append((len(mine), Variant(message, node, tuple(fields))))
     return tuple(variant for _, variant in sorted(made, key=lambda one: -one[0]))
 
@@ -75,6 +75,12 @@ def is_narrower(one: Spoken, other: Spoken) -> bool:
     return _meet(one, other) and _constants(*one).items() > _constants(*other).items()
 
 
+def constants(message: Message) -> tuple[Field, ...]:
+    """The fields that have one value only and are in every frame: of an open end there is none."""
+    end = 8 * message.least
+    return tuple(one for one in message.owners if one.const is not None and (message.tail is None or one.at < end))
+
+
 def common_length(group: Sequence[Variant]) -> int | None:
     """The length that all of them have: a frame of any other has the wrong length. None if they have several."""
     lengths = {length for one in group for length in (one.message.least, one.message.length)}
@@ -87,7 +93,7 @@ def _meet(one: Spoken, other: Spoken) -> bool:
 
 
 def _constants(message: Message, node: Node) -> dict[Place, int]:
-    return {_place(field, node): field.const or 0 for field in message.constants}
+    return {_place(field, node): field.const or 0 for field in constants(message)}
 
 
 def _place(field: Field, node: Node) -> Place:

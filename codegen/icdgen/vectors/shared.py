@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from icdgen import codec
 from icdgen.icd.model import TELECOMMAND, TELEMETRY, Icd, Message, Node
+from icdgen.icd.variants import constants
 from icdgen.vectors import patterns
 
 
@@ -60,12 +61,12 @@ def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
     yield from (bytes(size) for size in sorted({near for n in lengths for near in (0, max(n - 1, 0), n, n + 1)}))
     yield from (b"\xff" * size for size in lengths)
     for message in messages:
-        node, constants = icd.node(message.node), message.constants
+        node, known = icd.node(message.node), constants(message)
         for around in (bytes(message.length), b"\xff" * message.length, patterns.random_frame(message, "shared id")):
             for frame in _cut(message, node, around):
-                whole = codec.decode(node, message, frame) | {field.name: field.const or 0 for field in constants}
+                whole = codec.decode(node, message, frame) | {field.name: field.const or 0 for field in known}
                 yield codec.encode(node, message, whole)
-        for field in constants:
+        for field in known:
             for bit in range(field.bits):
                 mine = int(whole[field.name]) & (1 << field.bits) - 1 ^ 1 << bit
                 signed = mine - (mine >> field.bits - 1 << field.bits if field.signed else 0)
