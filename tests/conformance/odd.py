@@ -26,7 +26,8 @@ messages:
       - {at: 81, bits: 1, name: Flag, type: bool}
       - {at: 82, bits: 64, name: Wide, type: uint, formula: raw*0.1}
       - {at: 146, bits: 33, name: Between, type: int, formula: (raw - 32)*5/9}
-      - {at: 179, bits: 32, name: Unaligned Float, type: float}
+      - {at: 179, bits: 32, name: Unaligned Float, type: float,
+         special: [{value: nan, meaning: Not known}, {value: -99.9, meaning: no data}]}
       - {at: 216, bits: 16, name: Octets, type: bytes}
       - {at: 232, bits: 8, name: Magic, type: uint, const: 0x5A}
       - {at: 240, bits: 9, name: Ninth, type: int, special: [{value: -256, meaning: none at all}], min: -100, max: 100.5}
@@ -222,7 +223,7 @@ messages:
       - {at: 64, bits: 32, name: Half a double, type: float, view: true, byte_order: big}
       - {at: 96, bits: 64, name: Eight, type: text}
       - {at: 97, bits: 63, name: Long, type: int, view: true, formula: raw*1e-19 + 3}
-      - {at: 96, bits: 64, name: Real, type: float, view: true}
+      - {at: 96, bits: 64, name: Real, type: float, view: true, special: [{value: nan, meaning: not known}]}
       - {at: 160, bits: 32, name: Four bytes, type: float}
       - {at: 160, bits: 32, name: Its bits, type: uint, view: true, formula: raw*0.5}
       - {at: 191, bits: 1, name: Its sign, type: uint, view: true}
@@ -381,6 +382,31 @@ messages:
     length: 2
     fields: [{at: 16, bits: 32, name: Values, type: uint, count: rest, up_to: 2}]
   - {name: No fours, id: 0x1501, kind: telecommand, length: 7, reserved: 7}
+  - name: Ends early
+    id: 0x1502
+    kind: telemetry
+    length: 8
+    may_end_early: zeros
+    fields:
+      - {at: 0, bits: 24, name: Value, type: uint}
+      - {at: 28, bits: 12, name: Command, type: uint, const: 0x178}
+      - {at: 40, bits: 24, name: Rest, type: uint}
+  - name: Ends early, command of zeros
+    id: 0x1502
+    kind: telemetry
+    length: 9
+    may_end_early: zeros
+    fields:
+      - {at: 0, bits: 24, name: Value, type: uint}
+      - {at: 28, bits: 12, name: Command, type: uint, const: 0}
+      - {at: 40, bits: 32, name: Rest, type: float}
+  - name: Ends early, any command
+    id: 0x1502
+    kind: telemetry
+    length: 8
+    may_end_early: zeros
+    reserved: 3
+    fields: [{at: 0, bits: 40, name: Value, type: bytes}]
   - {name: Alone, id: 0x0107, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: A, type: uint, const: 5}]}
 """
 
@@ -390,6 +416,8 @@ node: {name: open, title: Messages of variable length, byte_order: big, bit_orde
 enums:
   - name: Gauge
     members: [{value: 1, name: First}, {value: 300, name: Last}]
+  - name: Narrow Gauge
+    members: [{value: -1, name: Before}, {value: 1, name: After}]
 messages:
   - name: Counted
     id: 130
@@ -430,7 +458,7 @@ messages:
     length: 1
     fields:
       - {at: 0, bits: 8, name: Number, type: uint}
-      - {at: 8, bits: 32, name: Values, type: float, count: rest, up_to: 4}
+      - {at: 8, bits: 32, name: Values, type: float, count: rest, up_to: 4, special: [{value: inf, meaning: too much}]}
   - name: Octets
     kind: configuration
     set_id: 7
@@ -444,7 +472,7 @@ messages:
     id: 138
     kind: telemetry
     length: 0
-    fields: [{at: 0, bits: 64, name: Values, type: float, count: rest, up_to: 1}]
+    fields: [{at: 0, bits: 64, name: Values, type: float, count: rest, up_to: 1, special: [{value: -inf, meaning: too little}]}]
   - name: Fives
     id: 139
     kind: telecommand
@@ -452,6 +480,29 @@ messages:
     fields:
       - {at: 0, bits: 8, name: One, type: uint, const: 9}
       - {at: 8, bits: 40, name: Fives, type: uint, count: rest, up_to: 2, min: 4, special: [{value: 1099511627775, meaning: none}]}
+  - name: Cut Off
+    id: 140
+    kind: telemetry
+    length: 23
+    may_end_early: zeros
+    reserved: 2
+    fields:
+      - {at: 0, bits: 12, name: Input, type: int, unit: V, formula: raw*0.01}
+      - {at: 12, bits: 4, name: Length, type: uint, const: 5}
+      - {at: 16, bits: 32, name: Value, type: float}
+      - {at: 48, bits: 8, name: Gauge, type: enum, enum: Narrow Gauge}
+      - {at: 56, bits: 40, name: Words, type: text}
+      - {at: 96, bits: 16, name: Buffer, type: int, count: 3, byte_order: little}
+      - {at: 144, bits: 1, name: Flag, type: bool, count: 8}
+      - {at: 152, bits: 16, name: Whole, type: bytes}
+      - {at: 88, bits: 24, name: Both, type: uint, view: true}
+  - name: Two
+    set_id: 8
+    get_id: 141
+    kind: configuration
+    length: 2
+    may_end_early: zeros
+    fields: [{at: 3, bits: 9, name: Whole, type: uint}]
 """
 
 EMPTY = """\

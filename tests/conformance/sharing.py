@@ -20,6 +20,8 @@ def sharing(draw, first: dict, names, made, open_end) -> list[dict]:
             fields = [*fields, draw(open_end(fields, length))]
         kept = {key: first[key] for key in ("byte_order", "bit_order", "kind", "id") if key in first}
         others.append({**names.one("variant"), **kept, "length": length} | ({"fields": fields} if fields else {}))
+        if length > 1 and not any("up_to" in field for field in fields) and draw(st.integers(0, 4)) == 0:
+            others[-1]["may_end_early"] = "zeros"
     group = [first, *others]
     if way == "lengths":
         taken: set[int] = set()
@@ -50,6 +52,7 @@ def sharing(draw, first: dict, names, made, open_end) -> list[dict]:
 
 def _close(message: dict) -> None:
     """Takes away what makes its frames differ in length."""
+    message.pop("may_end_early", None)
     if "fields" in message:
         message["fields"] = [field for field in message["fields"] if "up_to" not in field]
         if not message["fields"]:

@@ -108,6 +108,8 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         elif draw(st.integers(0, 4)) == 0:
             message["reserved"] = draw(st.integers(1, 9))
             message["length"] += message["reserved"]
+        elif length > 1 and draw(st.integers(0, 4)) == 0:
+            message["may_end_early"] = "zeros"
         if fields:
             message["fields"] = fields
         if "id" in message and draw(st.integers(0, 3)) == 0:
@@ -267,7 +269,9 @@ def _field(draw, enums: list[dict]) -> dict:
         return {"bits": 1, "type": kind, **array}
     if kind == "float":
         formula = {"formula": draw(_curve())} if draw(st.booleans()) else {}
-        return {"bits": draw(st.sampled_from((32, 64))), "type": kind, **array, **formula}
+        values = draw(st.lists(st.sampled_from(("nan", "inf", "-inf", -99.9, 0, 1e30)), max_size=2, unique=True))
+        named = {"special": [_meaning(one, index) for index, one in enumerate(values)]} if values else {}
+        return {"bits": draw(st.sampled_from((32, 64))), "type": kind, **array, **formula, **named}
     if kind == "enum":
         enum = draw(st.sampled_from(enums))
         return {"bits": draw(st.integers(_needed(enum), 64)), "type": kind, "enum": enum["name"], **array}
@@ -283,8 +287,12 @@ def _field(draw, enums: list[dict]) -> dict:
         field["const"] = draw(raw)
     elif draw(st.integers(0, 5)) == 0:
         values = draw(st.lists(raw, min_size=1, max_size=2, unique=True))
-        field["special"] = [{"value": value, "meaning": f'*/ odd \\ " {index}'} for index, value in enumerate(values)]
+        field["special"] = [_meaning(value, index) for index, value in enumerate(values)]
     return field
+
+
+def _meaning(value: float | str, index: int) -> dict:
+    return {"value": value, "meaning": f'*/ odd \\ " {index}'}
 
 
 @st.composite

@@ -28,7 +28,8 @@ def apart(tmp_path_factory) -> Icd:
 def told(icd: Icd, group, frame: bytes) -> object:
     """What generated code does: in order, by length and signs."""
     for one in group:
-        if len(frame) in one.message.lengths and all(frame[at] & mask == value for at, mask, value in signs(one)):
+        whole = frame.ljust(one.message.length, b"\0")
+        if len(frame) in one.message.lengths and all(whole[at] & mask == value for at, mask, value in signs(one)):
             return one.message.name
     length = common_length(group)
     return length if length not in (None, len(frame)) else None

@@ -10,7 +10,16 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.describe.bounds import Bound, bounds, span
-from icdgen.describe.numbers import array_text, bit_range, byte_count, byte_range, exact_text, length_text, value_text
+from icdgen.describe.numbers import (
+    array_text,
+    bit_range,
+    byte_count,
+    byte_range,
+    exact_text,
+    length_text,
+    special_text,
+    value_text,
+)
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.model import CONFIGURATION, Enum, Erratum, Field, Member, Message, Tail
 
@@ -68,6 +77,8 @@ def message_comment(message: Message, log_bit: int | None = None, sharing: str =
         facts.append(f"Bit {log_bit} of the log mask.")
     facts += [sharing] if sharing else []
     facts += (f"Repeats {words(part.message)} from {_from(part.at)}." for part in message.contains)
+    if message.may_end_early:
+        facts.append("Zeros that a frame ends with may be left out.")
     if message.reserved:
         facts.append(f"The last {'byte is' if message.reserved == 1 else f'{message.reserved} bytes are'} reserved.")
     head = f"{words(message.name)}: {kind} {ids}, {length_text(message)}.{_table(message.table)}"
@@ -112,7 +123,7 @@ def field_comment(field: Field, told: Mapping[str, str], tail: Tail | None = Non
         facts.append(f"Always {value_text(field.const)}.")
     if field.limits is not None:
         facts.append(_limits(field))
-    facts += (f"{value_text(special.value)}: {sentence(special.meaning)}" for special in field.special)
+    facts += (f"{special_text(special)}: {sentence(special.meaning)}" for special in field.special)
     if tail is not None and tail.counter == field.name:
         facts.append(f"Counts {words(tail.name)}: at most {tail.most}.")
     place = _place(field) if tail is None or tail.name != field.name else _open_place(field, tail)

@@ -183,7 +183,7 @@ def _lengths(sent: Message, reader: Message, verb: str) -> tuple[str, tuple[str,
     fitting = sum(one in reader.lengths for one in sent.lengths)
     if fitting == len(sent.lengths):
         return YES, ()
-    if sent.tail is None and reader.tail is None:
+    if len(sent.lengths) == len(reader.lengths) == 1:
         return NO, (f"{sent.length} bytes {verb}, {reader.length} are expected",)
     text = f"{length_text(sent)} {verb}, {length_text(reader)} are expected"
     return (PARTLY if fitting else NO), (text,)

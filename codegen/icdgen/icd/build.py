@@ -10,7 +10,7 @@ from functools import partial
 from itertools import chain
 from typing import TypeVar
 
-from icdgen.icd import curve, division, formula, model, tails, wire_ids
+from icdgen.icd import curve, division, floats, formula, model, tails, wire_ids
 from icdgen.icd.errata import Applied
 from icdgen.icd.located import Map, plain
 from icdgen.icd.units import STANDARD, Unit
@@ -133,6 +133,7 @@ class Builder:
             contains=tuple(self.each("contains", lambda p: model.Part(p["message"], p["at"]), item)),
             reserved=item.get("reserved", 0),
             tail=tail,
+            may_end_early=item.get("may_end_early", ""),
             node=self.name,
             errata=self.applied.about(item),
             source=item,
@@ -194,7 +195,7 @@ class Builder:
             scale=scale,
             curve=polynomial,
             const=get("const"),
-            special=tuple(self.each("special", special, item)) if "special" in item else (),
+            special=self.special(item, kind) if "special" in item else (),
             limits=limits(item),
             summary=get("summary", ""),
             byte_order=byte_order,
@@ -203,6 +204,12 @@ class Builder:
             errata=self.applied.about(item),
             source=item,
         )
+
+    def special(self, item: Map, kind: str) -> tuple[model.Special, ...]:
+        """The values with a meaning of a field of a type, but what it cannot hold."""
+        bits = item.get("bits", 0)
+        found = self.each("special", lambda one: special(kind, bits, one["value"], one["meaning"]), item)
+        return tuple(one for one in found if one is not None)
 
     def loggable(self, item: Map) -> model.Loggable:
         errata = self.applied.about(item)
@@ -236,9 +243,23 @@ def calibration(text: str | None, kind: str) -> tuple[formula.Scale | None, curv
     return None, None
 
 
-def special(item: Map) -> model.Special:
-    """A value with a meaning."""
-    return model.Special(item["value"], item["meaning"])
+def special(kind: str, bits: int, value: int | float | str, meaning: str) -> model.Special | None:
+    """A value with a meaning; None if a field of the type has no such value."""
+    if kind != "float":
+        return model.Special(value, meaning) if isinstance(value, int) else None
+    raw = float_bits(value, bits)
+    return None if raw is None else model.Special(raw, meaning, floats.text_of(floats.value_of(raw, bits), bits))
+
+
+def float_bits(value: int | float | str, bits: int) -> int | None:
+    """The bits of what an ICD says is the value of a float of that width; None if that is none."""
+    if bits not in floats.WIDTHS or (isinstance(value, str) and value not in floats.NAMED):
+        return None
+    with suppress(OverflowError):
+        return (
+            floats.bits_of(floats.NAMED[value], bits) if isinstance(value, str) else floats.nearest(exact(value), bits)
+        )
+    return None
 
 
 def limits(item: Map) -> model.Limits | None:

@@ -13,6 +13,7 @@ from typing import Any
 
 from icdgen.frozen import dataclass
 from icdgen.icd.curve import Curve, leads_back
+from icdgen.icd.erratum import Erratum as Erratum
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, unread
 from icdgen.icd.units import Unit
@@ -22,33 +23,6 @@ TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configurati
 # Where the ICD gives no other numbers.
 CAN_DATA_BYTES = 8  # of a packet
 CAN_PACKETS = 256  # of an extended message
-
-
-@dataclass(frozen=True, slots=True)
-class Erratum:
-    """A decision about a fault of the manual; or a note, which holds and accepts nothing: ``why`` is what it says."""
-
-    id: str
-    title: str
-    why: str
-    evidence: str
-    confidence: str  # "certain" | "likely" | "open"; a note may do without: ""
-    tables: tuple[int, ...] = ()
-    printed: tuple[tuple[str, object], ...] = ()
-    held: tuple[tuple[str, object], ...] = ()
-    changes: bool = False
-    is_note: bool = False
-    source: Map = field(default_factory=unread, compare=False, repr=False)
-
-    @property
-    def label(self) -> str:
-        """What it is called in comments and on pages."""
-        return "Note" if self.is_note else "Erratum"
-
-    @property
-    def sureness(self) -> str:
-        """Its confidence in brackets behind a name, if it has one."""
-        return f" ({self.confidence})" if self.confidence else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,10 +68,11 @@ class Enum:
 
 @dataclass(frozen=True, slots=True)
 class Special:
-    """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out'."""
+    """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out', or NaN for 'not known'."""
 
-    value: int
+    value: int  # of a float its bits
     meaning: str
+    number: str = ""  # of a float: `nan`, `inf`, `-inf`, or the shortest decimal
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,9 +118,7 @@ class Field:
     unit: Unit | None = None
     formula: str = ""  # as held, for documentation
     scale: Scale | None = None  # of a number, where the formula is a line
-    curve: Curve | None = (
-        None  # of any other formula, and of one on floats; without either, the physical value is the raw one
-    )
+    curve: Curve | None = None  # of any other formula, and of one on floats; without either it is the raw value
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
@@ -294,6 +267,7 @@ class Message:
     contains: tuple[Part, ...] = ()
     reserved: int = 0  # bytes at the end that are said to be reserved
     tail: Tail | None = None  # where frames differ in length
+    may_end_early: str = ""  # "zeros": frames may be sent without the zeros that they end with; else empty
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
@@ -301,6 +275,8 @@ class Message:
     @property
     def least(self) -> int:
         """Bytes of the shortest frame."""
+        if self.may_end_early:
+            return min(1, self.length)  # of zeros alone, one is sent
         return self.length - (self.tail.most * self.tail.step if self.tail else 0)
 
     @property

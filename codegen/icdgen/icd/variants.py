@@ -76,7 +76,7 @@ def is_narrower(one: Spoken, other: Spoken) -> bool:
 
 
 def constants(message: Message) -> tuple[Field, ...]:
-    """The fields that have one value only and are in every frame: of an open end there is none."""
+    """The fields that have one value only in every frame: none of an open end; zeros that are cut off are there, too."""
     end = 8 * message.least
     return tuple(one for one in message.owners if one.const is not None and (message.tail is None or one.at < end))
 

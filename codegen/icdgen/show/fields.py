@@ -8,7 +8,7 @@ from fractions import Fraction
 from icdgen import layout
 from icdgen.describe.bounds import allowed_ends, bounds
 from icdgen.describe.comments import orders_text
-from icdgen.describe.numbers import exact_text, factor_text, value_text
+from icdgen.describe.numbers import exact_text, factor_text, special_text, value_text
 from icdgen.icd.model import Field, Message, Node
 from icdgen.tables import Column, render
 
@@ -67,7 +67,7 @@ def remarks(
         if bound.key in ("above", "below"):
             yield f"{bound.kind.words} {number(bound.value)}"
     for special in field.special:
-        yield f"{number(Fraction(special.value))}: {special.meaning}"
+        yield f"{special_text(special) if special.number else number(Fraction(special.value))}: {special.meaning}"
 
 
 def _notes(field: Field, message: Message) -> list[str]:

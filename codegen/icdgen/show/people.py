@@ -91,7 +91,7 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
             "/".join(map(str, m.ids)),
             m.kind,
             m.name,
-            str(m.length) if m.tail is None else f"{m.least} to {m.length}",
+            str(m.length) if len(m.lengths) == 1 else f"{m.least} to {m.length}",
             str(len(m.fields)),
             _number(m.table),
             m.group,

@@ -63,9 +63,14 @@ def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
     for message in messages:
         node, known = icd.node(message.node), constants(message)
         for around in (bytes(message.length), b"\xff" * message.length, patterns.random_frame(message, "shared id")):
+            if message.may_end_early:
+                yield from (around[:1], around[: (message.length + 1) // 2])
             for frame in _cut(message, node, around):
                 whole = codec.decode(node, message, frame) | {field.name: field.const or 0 for field in known}
-                yield codec.encode(node, message, whole)
+                made = codec.encode(node, message, whole)
+                yield made
+                if message.may_end_early:
+                    yield made.rstrip(b"\0") or made[:1]
         for field in known:
             for bit in range(field.bits):
                 mine = int(whole[field.name]) & (1 << field.bits) - 1 ^ 1 << bit

@@ -29,6 +29,7 @@ __all__ = [
     "cubeacp",
     "cubemag",
     "cubewheel",
+    "is_special",
 ]
 
 TYPE_CHECKING = False
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from ._base import FieldInfo as FieldInfo
     from ._base import Message as Message
     from ._enumeration import OpenEnum as OpenEnum
+    from ._floats import is_special as is_special
 
 NODES = (
     "bootloader",
@@ -54,6 +56,7 @@ _HOMES = {
     "FieldInfo": "._base",
     "Message": "._base",
     "OpenEnum": "._enumeration",
+    "is_special": "._floats",
 }
 
 

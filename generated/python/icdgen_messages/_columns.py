@@ -61,6 +61,11 @@ def _columns(
 def _together(message: type[Message], frames: Frames) -> tuple[Buffer, list[int]]:
     """Frames that follow each other; where they differ in length, the longest, and the elements of each."""
     is_one = isinstance(frames, (bytes, bytearray, memoryview))
+    if message.ENDS_EARLY and not is_one:
+        given: list[Any] = list(frames)
+        for frame in given:
+            message.from_bytes(frame)  # if it is one
+        return b"".join(padded(message, frame) for frame in given), []
     if message.TAIL is None:
         return (frames if is_one else b"".join(frames)), []  # type: ignore[return-value, arg-type]
     if is_one:

@@ -48,6 +48,10 @@ def compiled(message: type[_lazy.Message], name: str) -> _lazy.Any:
             function = {"from_bytes": _tails.decoder, "to_bytes": _tails.encoder}[name](
                 owner, function
             )
+        elif message.ENDS_EARLY and name == "from_bytes":
+            from . import _tails
+
+            function = _tails.filling_decoder(owner, function)
         _functions[owner, name] = function
         told = getattr(_lazy.Message, name)
         function.__doc__, function.__module__ = told.__doc__, owner.__module__

@@ -37,7 +37,7 @@ class FieldInfo:
         scale: tuple[int, int, int] = (1, 0, 1),
         enum: _lazy.Optional[type[_lazy.OpenEnum]] = None,
         const: _lazy.Optional[int] = None,
-        special: tuple[tuple[int, str], ...] = (),
+        special: tuple[tuple[float, str], ...] = (),
         minimum: _lazy.Optional[float] = None,
         maximum: _lazy.Optional[float] = None,
         above: _lazy.Optional[float] = None,

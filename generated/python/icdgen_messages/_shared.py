@@ -24,8 +24,9 @@ class Shared(Message):
         """The message in a frame. Raises `UnknownIdError` if it is none of them, `LengthError` if all have another length."""
         frame = bytes(data)
         for message, lengths, signs in cls.FRAMES:
+            whole = frame.ljust(lengths[-1], b"\0")
             if len(frame) in lengths and all(
-                frame[byte] & mask == value for byte, mask, value in signs
+                whole[byte] & mask == value for byte, mask, value in signs
             ):
                 return message.from_bytes(frame)
         ends = ((lengths[0], lengths[-1]) for _, lengths, _ in cls.FRAMES)

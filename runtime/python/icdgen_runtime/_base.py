@@ -145,6 +145,8 @@ class Message(Spoken[N_contra], metaclass=MessageType):
         """Bytes of a frame, without the id; of the longest, where frames differ."""
         TAIL: ClassVar[Tail | None]
         """The end of frames that differ in length."""
+        ENDS_EARLY: ClassVar[bool]
+        """Whether frames may lack the zeros that they end with."""
         IDS: ClassVar[tuple[int, ...]]
         """Its ids: one, or the id to set it and the id to get it."""
         TABLE: ClassVar[int | None]
@@ -162,7 +164,7 @@ class Message(Spoken[N_contra], metaclass=MessageType):
     else:
         IDS = FIELDS = VIEWS = PARTS = ()
         TABLE = TAIL = None
-        ACKNOWLEDGED = True
+        ENDS_EARLY, ACKNOWLEDGED = False, True
         BYTE_ORDER, BIT_ORDER = "little", "lsb0"
         __dataclass_fields__ = _DataclassFields()
 
@@ -279,7 +281,7 @@ class Message(Spoken[N_contra], metaclass=MessageType):
 
         The names are those of `as_dict`. What stands on whole bytes is a view of the
         frames, or of a copy of them if they can change. Raises `LengthError` if they
-        are not whole frames. Frames that differ in length are given one by one, as a
+        are not whole frames. Frames that differ in length, or end early, are given one by one, as a
         list; what ends them is an array of arrays, or of bytes. Needs numpy.
         """
         from . import _columns

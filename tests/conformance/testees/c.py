@@ -42,6 +42,7 @@ class FieldRow(NamedTuple):
     view: str  # the function; its type is ``c_type``
     c_type: str
     special: list[str]
+    float_bits: int
     limits: list[Limit]
 
 
@@ -170,6 +171,7 @@ class _Rows:
             view=f"{stem}_{one.name}" if field.view else "",
             c_type=type_of(one) if field.view else "",
             special=[name for key, name in macros if key == "special"],
+            float_bits=field.bits if field.type == "float" else 0,
             limits=[Limit(key, name) for key, name in macros if key not in ("const", "special")],
         )
 

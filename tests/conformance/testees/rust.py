@@ -115,7 +115,8 @@ def _field(field: FieldDescription) -> FieldEntry:
         scale = f"Some(Scale {{ get: {get}, set: {set} }})"
     names = [(one.key, f"Self::{one.name.upper()}") for one in field.constants if one.key != "const"]
     if field.model.special:
-        special = f"|| vec![{', '.join(f'i128::from({name})' for key, name in names if key == 'special')}]"
+        bits = ".to_bits()" if field.model.type == "float" else ""
+        special = f"|| vec![{', '.join(f'i128::from({name}{bits})' for key, name in names if key == 'special')}]"
     if field.bounds:
         values = ", ".join(f'("{key}", {name} as f64)' for key, name in names if key != "special")
         limits = f"|| vec![{values}]"

@@ -10,7 +10,8 @@ from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
 from icdgen import layout
-from icdgen.icd.build import calibration
+from icdgen.icd import floats
+from icdgen.icd.build import calibration, special
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Field, Limits, Message, Node
 
@@ -106,12 +107,14 @@ def _values(field: Field) -> Iterator[tuple[Change, Field]]:
     if field.const is not None:
         for step in (-1, 1):
             yield _step("const", field.source, "const", field.const, step), replace(field, const=field.const + step)
-    for index, special in enumerate(field.special):
-        for step in (-1, 1):
-            others = list(field.special)
-            others[index] = replace(special, value=special.value + step)
-            change = _step("special", field.source["special"][index], "value", special.value, step)
-            yield change, replace(field, special=tuple(others))
+    for index, old in enumerate(field.special):
+        source = field.source["special"][index]
+        named = [name for name in floats.NAMED if old.number in floats.NAMED and name != old.number]
+        for now in named or [source["value"] + step for step in (-1, 1)]:
+            new = special(field.type, field.bits, now, old.meaning)
+            if new is not None and new != old:
+                change = Change("special", source, "value", source["value"], now)
+                yield change, replace(field, special=(*field.special[:index], new, *field.special[index + 1 :]))
     held = field.limits or Limits()
     for key in _LIMITS:
         value: Fraction | None = getattr(held, key)
@@ -195,6 +198,8 @@ def _is_plain(field: Field) -> bool:
 
 def _can_be(field: Field, kind: str) -> bool:
     """Whether a field of this width and with what else its line says may be of that type."""
+    if field.type == "float" and field.special:
+        return False
     if kind == "bool":
         return field.bits == 1 and not any(key in field.source for key in _OF_SCALED)
     if kind == "float":

@@ -17,7 +17,7 @@ from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, text_comment, words
 from icdgen.describe.description import TailDescription
-from icdgen.describe.numbers import byte_count
+from icdgen.describe.numbers import byte_count, length_text
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from icdgen.render import Renderer
 
 _SPELLING = (
-    byte_count, call, comment, described, head, like, literal, prose, names.constant, names.enumerator,
+    byte_count, call, comment, described, head, length_text, like, literal, prose, names.constant, names.enumerator,
     names.enumerator_of, names.stem, sentence, text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}

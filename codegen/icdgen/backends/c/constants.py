@@ -10,6 +10,7 @@ from icdgen.backends.c.types import mask
 from icdgen.describe import EnumDescription, FieldDescription, MessageDescription
 from icdgen.describe.constants import Constant
 from icdgen.describe.numbers import exact_text
+from icdgen.icd import floats
 
 _MAX_ENUMERATOR = 32767
 """What every `int` can hold."""
@@ -21,12 +22,23 @@ def of_fields(message: MessageDescription) -> list[tuple[Constant, str]]:
 
 
 def _value(one: Constant, field: FieldDescription) -> str:
+    if one.number:
+        return _float(one, field.model.bits)
     if isinstance(one.value, int) and one.key in ("const", "special") and not field.storage.signed:
         return mask(one.value, field.storage.bits)
     text = exact_text(one.value)
     if not one.is_raw and text.lstrip("-").isdigit():
         text += ".0"  # a physical value is a double
     return f"({text})" if one.value < 0 and one.key not in ("const", "special") else text
+
+
+def _float(one: Constant, bits: int) -> str:
+    """A special value of a float; what is no number by its bits, for not every target has a name for it."""
+    assert isinstance(one.value, int)
+    if one.number in floats.NAMED:
+        return f"icd_f{bits}_of({mask(one.value, bits)})"
+    text = f"{one.number}{'f' if bits == 32 else ''}"
+    return f"({text})" if text.startswith("-") else text
 
 
 def initial(message: MessageDescription) -> list[str]:

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from icdgen.backends.c.names import constant
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.lines import STEP, bracketed
-from icdgen.describe.description import TailDescription
 from icdgen.describe.nodes import Candidate
 
 _COMPOUND = re.compile(r" (?:<<|>>|&) \w+\Z")
@@ -42,10 +41,13 @@ def assigned_byte(target: str, terms: Sequence[str]) -> str:
 
 
 def like(candidate: Candidate) -> str:
-    """Whether a frame is that of a message: its length, and the bytes of its constants."""
-    terms = _lengths(constant(candidate.message, "length"), candidate.message.tail)
+    """Whether a frame is that of a message: its length, and the bytes of its constants; 0 where zeros are cut off."""
+    message = candidate.message
+    terms = _lengths(message.model.lengths, constant(message, "length"))
     for sign in candidate.signs:
         byte = f"buffer[{sign.byte}]"
+        if sign.byte >= message.model.least:
+            byte = f"((length > {sign.byte}u) ? {byte} : 0u)"
         masked = byte if sign.mask == 0xFF else f"({byte} & 0x{sign.mask:02X}u)"
         terms.append(f"{masked} == 0x{sign.value:02X}u")
     if len(terms) == 1:
@@ -53,15 +55,16 @@ def like(candidate: Candidate) -> str:
     return f" &&\n{STEP * 3}".join(f"({term})" for term in terms)
 
 
-def _lengths(longest: str, tail: TailDescription | None) -> list[str]:
+def _lengths(lengths: range, longest: str) -> list[str]:
     """What holds of the ``length`` of a frame; ``longest`` is the macro of the longest."""
-    if tail is None:
+    least, step = lengths[0], lengths.step
+    if len(lengths) == 1:
         return [f"length == {longest}"]
-    tests = [f"length >= {tail.least}u"] if tail.least else []
+    tests = [f"length >= {least}u"] if least else []
     tests.append(f"length <= {longest}")
-    if tail.step > 1:
-        rest = f"(length - {tail.least}u)" if tail.least else "length"
-        tests.append(f"({rest} % {tail.step}u) == 0u")
+    if step > 1:
+        rest = f"(length - {least}u)" if least else "length"
+        tests.append(f"({rest} % {step}u) == 0u")
     return tests
 
 

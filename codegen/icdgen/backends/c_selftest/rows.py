@@ -59,7 +59,6 @@ class TailRow(NamedTuple):
     least: int
     counter: int
     most: int
-    lengths: list[str]
     frames: list[str]
     frame_lengths: list[int]
 
@@ -75,6 +74,7 @@ class MessageRow(NamedTuple):
     doubles: list[str]
     texts: list[str]
     fields: list[FieldRow]
+    lengths: list[str]  # of the frames; none where all have one
     refused_lengths: list[int]
     tail: TailRow | None
 
@@ -148,6 +148,11 @@ class _Rows:
             doubles=in_rows(doubles, NUMBERS_IN_ROW),
             texts=[f"{_text(text)}," for row in vectors.rows for text in row.texts.values()],
             fields=fields,
+            lengths=(
+                in_rows((str(len(row.frame)) for row in vectors.rows), BYTES_IN_ROW)
+                if len(message.model.lengths) > 1
+                else []
+            ),
             refused_lengths=list(vectors.lengths),
             tail=_tail(message, vectors) if message.tail is not None else None,
         )
@@ -201,7 +206,6 @@ def _tail(message: MessageDescription, vectors: MessageVectors) -> TailRow:
         least=tail.least,
         counter=next(place for place, one in enumerate(message.all_fields) if one.model == tail.counter.model),
         most=tail.most,
-        lengths=in_rows((str(len(row.frame)) for row in vectors.rows), BYTES_IN_ROW),
         frames=_bytes(frames),
         frame_lengths=[len(frame) for frame in vectors.miscounted],
     )

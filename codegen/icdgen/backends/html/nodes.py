@@ -131,7 +131,7 @@ def _row(relations: Relations, node: Node, message: Message) -> dict[str, object
         "kind": message.kind,
         "group": message.group,
         "length": message.length,
-        "bytes": message.length if message.tail is None else f"{message.least}\u2013{message.length}",
+        "bytes": message.length if len(message.lengths) == 1 else f"{message.least}\u2013{message.length}",
         "fields": len(message.fields),
         "mask": mask,
         "of": "" if own else relations.icd.node(message.node).title,

@@ -8,7 +8,10 @@ from icdgen.backends.lines import STEP, exploded
 from icdgen.backends.python.names import class_name
 from icdgen.backends.python.text import literal
 from icdgen.describe import FieldDescription, MessageDescription, wholes
+from icdgen.describe.constants import Constant
 from icdgen.describe.wholes import Whole
+from icdgen.icd import floats
+from icdgen.icd.model import Special
 
 _WIDTH = 120  # columns of a declaration
 _KEYWORDS = {"min": "minimum", "max": "maximum"}
@@ -56,11 +59,23 @@ def _told(field: FieldDescription) -> list[str]:
     if one.const is not None:
         items.append(f"const={one.const}")
     if one.special:
-        pairs = [f"({special.value}, {literal(special.meaning)})" for special in one.special]
+        pairs = [f"({special_value(special, one.bits)}, {literal(special.meaning)})" for special in one.special]
         items.append(exploded("special=(", pairs, ")", " " * 8))
     items += (f'{key}="{value}"' for key in ("byte_order", "bit_order") if (value := getattr(one, key)))
     items += (f"{_KEYWORDS.get(bound.key, bound.key)}={number(bound.value)}" for bound in field.bounds)
     return items
+
+
+def constant(one: Constant, field: FieldDescription) -> str:
+    """A literal of a constant of the field."""
+    return special_value(one, field.model.bits) if one.number else number(one.value)
+
+
+def special_value(one: Special | Constant, bits: int) -> str:
+    """A literal of the raw value; of one of a float as the attribute has it."""
+    if one.number in floats.NAMED:
+        return f'float("{one.number}")'
+    return repr(floats.value_of(int(one.value), bits)) if one.number else str(one.value)
 
 
 def declaration(field: FieldDescription) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from icdgen.backends.python import names
-from icdgen.backends.python.fields import number
+from icdgen.backends.python.fields import constant
 from icdgen.describe import EnumDescription, MessageDescription
 from icdgen.describe.parts import parts_of
 
@@ -14,7 +14,7 @@ def values(message: MessageDescription) -> dict[str, object]:
     parts = [(begin, part.message) for part in parts_of(message) for begin in part.begins]
     return {
         "imports": sorted(_import(enum, message) for enum in enums),
-        "constants": [(one, number(one.value)) for field in message.all_members for one in field.constants],
+        "constants": [(one, constant(one, field)) for field in message.all_members for one in field.constants],
         "parts": sorted(parts, key=lambda one: one[0]),
     }
 

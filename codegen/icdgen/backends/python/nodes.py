@@ -16,7 +16,7 @@ _OF_NODE = (
     "DIGEST", "ENUMS", "NAME", "TELECOMMANDS", "TELEMETRY", "TITLE", "decode_telecommand", "decode_telemetry",
 )  # fmt: skip
 _OF_PACKAGE = (
-    "NODES", "FieldInfo", "IcdError", "LengthError", "Message", "OpenEnum", "RangeError", "UnknownIdError",
+    "NODES", "FieldInfo", "IcdError", "LengthError", "Message", "OpenEnum", "RangeError", "UnknownIdError", "is_special",
 )  # fmt: skip
 
 

@@ -14,6 +14,10 @@ def of_fields(message: MessageDescription) -> list[tuple[Constant, str, str]]:
 
 
 def _value(field: FieldDescription, one: Constant) -> tuple[str, str]:
+    if one.number:
+        kind = f"f{field.model.bits}"
+        named = {"nan": "NAN", "inf": "INFINITY", "-inf": "NEG_INFINITY"}.get(one.number)
+        return kind, f"{kind}::{named}" if named else double(float(one.number))
     if field.model.type == "bool" and one.is_raw:
         return "bool", "true" if one.value else "false"
     if isinstance(one.value, int):

@@ -40,7 +40,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "text_array": has_text,
         "counted": tail is not None and not tail.counter.model.implied,
         "elements": tail is not None,
-        "longest": tail is not None,
+        "longest": tail is not None or bool(message.model.may_end_early),
         "present": tail is not None,
         "words": any("words(" in reading for reading in readings),
         "Big": message.has_wide_steps,

@@ -6,7 +6,6 @@ from icdgen.backends.lines import STEP
 from icdgen.backends.rust.text import WIDTH, code, doc, integer, mask, prose
 from icdgen.describe import NodeDescription
 from icdgen.describe.comments import sentence
-from icdgen.describe.description import TailDescription
 from icdgen.describe.nodes import Candidate
 from icdgen.describe.storage import holding
 from icdgen.icd.model import Node
@@ -39,9 +38,12 @@ def typed(value: int) -> str:
 
 def guarded(candidate: Candidate, path: str) -> str:
     """What an arm takes: the id, and what of the bytes shows that they are of this message, its length and its constants."""
-    terms = _lengths(f"{path}::LENGTH", candidate.message.tail)
+    model = candidate.message.model
+    terms = _lengths(model.lengths, f"{path}::LENGTH")
     for sign in candidate.signs:
         byte = f"bytes[{sign.byte}]"
+        if sign.byte >= model.least:  # a zero that may be cut off
+            byte = f"bytes.get({sign.byte}).map_or(0, |byte| *byte)"
         masked = byte if sign.mask == 0xFF else f"{byte} & {mask(sign.mask)}"
         terms.append(f"{masked} == {mask(sign.value)}")
     id = f"{STEP * 3}{path}::{candidate.id_name.upper()}"
@@ -50,12 +52,12 @@ def guarded(candidate: Candidate, path: str) -> str:
     return line if len(line) <= WIDTH - len(" => {") else f"{id}\n{STEP * 4}if {rows}"
 
 
-def _lengths(longest: str, tail: TailDescription | None) -> list[str]:
+def _lengths(lengths: range, longest: str) -> list[str]:
     """What holds of the length of a frame; ``longest`` is the constant of the longest."""
-    if tail is None:
+    least, step = lengths[0], lengths.step
+    if len(lengths) == 1:
         return [f"bytes.len() == {longest}"]
-    least = tail.least
     tests = [f"({least}..={longest}).contains(&bytes.len())" if least else f"bytes.len() <= {longest}"]
-    if tail.step > 1:
-        tests.append(f"{f'(bytes.len() - {least})' if least else 'bytes.len()'} % {tail.step} == 0")
+    if step > 1:
+        tests.append(f"{f'(bytes.len() - {least})' if least else 'bytes.len()'} % {step} == 0")
     return tests

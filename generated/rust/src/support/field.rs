@@ -41,6 +41,14 @@ enum Formula {
     Curve(&'static Curve),
 }
 
+/// Whether a float is a special value, which no comparison says of NaN: all NaNs are the same here, and both zeros.
+#[must_use]
+#[allow(clippy::float_cmp)] // special values are exact
+pub fn is_special<T: Into<f64>>(value: T, special: T) -> bool {
+    let (value, special) = (value.into(), special.into());
+    value == special || (value.is_nan() && special.is_nan())
+}
+
 impl Field {
     pub(crate) const fn new(name: &'static str, at: usize, bits: usize) -> Self {
         Self {

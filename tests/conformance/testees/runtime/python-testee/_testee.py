@@ -226,7 +226,7 @@ def _constants(node: Any, words: Words) -> str:
     said = [f" name={_hex(message.NAME)} length={message.LENGTH} ids={ids}"]
     for one in _elements(message):
         info = one.info
-        special = ",".join(str(value) for value, _ in info.special)
+        special = ",".join(str(_shown(info, value)) for value, _ in info.special)
         said.append(f"{_field(message, one)} special={special}")
         for key, name in _LIMITS.items():
             bound = getattr(info, name)

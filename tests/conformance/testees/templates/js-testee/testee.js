@@ -25,14 +25,17 @@ function messageOf(node, direction, word) {
   return name === undefined ? found[0] : found.find((one) => hexOfText(one.name) === name);
 }
 
+/** What not every frame of a message has all of. */
+const endOf = (plan) => (plan.endsEarly ? { least: 1, step: 1 } : plan.tail);
+
 /** Name and bytes of the message that a frame of a shared id is. */
 function told(candidates, frame) {
-  const [place] = candidates.find(([at, signs]) => isLike(messages[at].length, messages[at].tail, signs, frame)) ?? [];
+  const [place] = candidates.find(([at, signs]) => isLike(messages[at].length, endOf(messages[at]), signs, frame)) ?? [];
   if (place !== undefined) {
     const plan = messages[place];
     return `name=${hexOfText(plan.name)} bytes=${hexOf(codec.encode(plan, codec.decode(plan, frame)))}`;
   }
-  const lengths = new Set(candidates.flatMap(([at]) => [messages[at].tail?.least ?? messages[at].length, messages[at].length]));
+  const lengths = new Set(candidates.flatMap(([at]) => [endOf(messages[at])?.least ?? messages[at].length, messages[at].length]));
   if (lengths.size > 1 || lengths.has(frame.length)) throw new codec.CodecError("unknown-id");
   throw new codec.CodecError("length", "", { expected: [...lengths][0], actual: frame.length });
 }
