@@ -269,7 +269,7 @@ def _field(draw, enums: list[dict]) -> dict:
         return {"bits": 1, "type": kind, **array}
     if kind == "float":
         formula = {"formula": draw(_curve())} if draw(st.booleans()) else {}
-        values = draw(st.lists(st.sampled_from(("nan", "inf", "-inf", -99.9, 0, 1e30)), max_size=2, unique=True))
+        values = draw(st.lists(st.sampled_from(("nan", "inf", "-inf", -99.9, 0, 1e15)), max_size=2, unique=True))
         named = {"special": [_meaning(one, index) for index, one in enumerate(values)]} if values else {}
         return {"bits": draw(st.sampled_from((32, 64))), "type": kind, **array, **formula, **named}
     if kind == "enum":
