@@ -30,6 +30,8 @@ def sharing(draw, first: dict, names, made, open_end) -> list[dict]:
             _grow(message, next(n for n in range(300) if message["length"] + n not in taken))
             taken.add(message["length"])
         return group
+    if any("struct" in field for field in first.get("fields", ())):
+        way = "constants"  # what stands in structs keeps its constants
     bits = draw(st.integers(2, 20))
     size = (bits + 7) // 8
     values = draw(st.lists(st.integers(0, (1 << bits) - 1), min_size=len(group), max_size=len(group), unique=True))

@@ -6,7 +6,11 @@ values with names, and the paragraphs of comments. A backend only spells it.
 
 from __future__ import annotations
 
-from icdgen.describe.description import FieldDescription, MessageDescription
+from icdgen.describe.description import (
+    FieldDescription,
+    MessageDescription,
+    StructDescription,
+)
 from icdgen.describe.enums import EnumDescription
 from icdgen.describe.nodes import NodeDescription
 from icdgen.describe.whole import Description, describe
@@ -17,5 +21,6 @@ __all__ = [
     "FieldDescription",
     "MessageDescription",
     "NodeDescription",
+    "StructDescription",
     "describe",
 ]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from icdgen.describe.description import MessageDescription, Whole
+from icdgen.describe.description import Composite, MessageDescription, StructDescription, Whole
 from icdgen.describe.enums import EnumDescription
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Node
@@ -76,6 +76,16 @@ class NodeDescription:
     def enums(self) -> tuple[EnumDescription, ...]:
         """Those that it declares."""
         return tuple(map(self._description.enum, self.model.enums))
+
+    @cached_property
+    def structs(self) -> tuple[StructDescription, ...]:
+        """Those that it declares, each after those that it has in it."""
+        return tuple(map(self._description.struct, self.model.structs))
+
+    @property
+    def composites(self) -> tuple[Composite[Any], ...]:
+        """Structs and messages that it declares, each after those that it has in it."""
+        return (*self.structs, *self.messages)
 
     @cached_property
     def spoken(self) -> tuple[MessageDescription, ...]:

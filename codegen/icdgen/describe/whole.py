@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from icdgen.describe.description import MessageDescription
+from icdgen.describe.description import MessageDescription, StructDescription
 from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.nodes import NodeDescription
 from icdgen.describe.storage import holding
-from icdgen.icd.model import Enum, Icd, Message, Node
+from icdgen.icd.model import Enum, Icd, Message, Node, Struct
 from icdgen.icd.variants import Ids
 
 
@@ -20,6 +20,7 @@ class Description:
         self._enum_bits = enum_widths(icd)
         self._messages: dict[tuple[str, str], MessageDescription] = {}
         self._enums: dict[tuple[str, str], EnumDescription] = {}
+        self._structs: dict[tuple[str, str], StructDescription] = {}
         self._nodes = {node.name: NodeDescription(self, node) for node in icd.nodes}
         self.nodes = tuple(self._nodes.values())
 
@@ -51,6 +52,14 @@ class Description:
         found = self._messages.get(key)
         if found is None or found.model is not message:
             found = self._messages[key] = MessageDescription(self, message, self.icd.node(message.node))
+        return found
+
+    def struct(self, struct: Struct) -> StructDescription:
+        """The description of a struct, whoever uses it."""
+        key = struct.node, struct.name
+        found = self._structs.get(key)
+        if found is None or found.model is not struct:
+            found = self._structs[key] = StructDescription(self, struct, self.icd.node(struct.node))
         return found
 
     def enum(self, enum: Enum) -> EnumDescription:
