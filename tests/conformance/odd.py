@@ -142,7 +142,8 @@ icdgen: 1
 node: {name: wide, title: Wide ids, byte_order: little, bit_order: lsb0, id_bits: 32}
 enums:
   - name: Turn
-    members: [{value: -5, name: Left}, {value: 100, name: Right}]
+    members: [{value: -5, name: Left}, {value: 100, name: Right}, {value: -100, to: -50, name: Away},
+              {value: 10, to: 12, name: Near}]
 structs:
   - name: Odd
     length: 9
@@ -487,7 +488,8 @@ icdgen: 1
 node: {name: open, title: Messages of variable length, byte_order: big, bit_order: msb0}
 enums:
   - name: Gauge
-    members: [{value: 1, name: First}, {value: 300, name: Last}]
+    members: [{value: 1, name: First}, {value: 300, name: Last},
+              {value: 2, to: 255, name: "Between \\" */"}, {value: 400, to: 401, name: Two}]
   - name: Narrow Gauge
     members: [{value: -1, name: Before}, {value: 1, name: After}]
 messages:

@@ -38,10 +38,15 @@ class Comment(NamedTuple):
         return self.head, *self.rest, *self.errata
 
 
+def one_line(text: str) -> str:
+    """The words of a text, one blank apart."""
+    return text.strip() if text.isprintable() and "  " not in text else " ".join(text.split())
+
+
 @lru_cache(maxsize=8192)
 def words(text: str) -> str:
     """Text of the ICD, for a paragraph: on one line, without backticks."""
-    return " ".join(text.replace("`", "'").split())
+    return one_line(text.replace("`", "'"))
 
 
 def sentence(text: str) -> str:

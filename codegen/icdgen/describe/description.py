@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from functools import cached_property
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from icdgen import layout, naming
@@ -21,6 +20,7 @@ from icdgen.icd.curve import Curve
 from icdgen.icd.model import Enum, Field, Icd, Message, Node, Struct
 from icdgen.icd.paths import Step, placed
 from icdgen.icd.variants import Ids
+from icdgen.once import cached_property
 
 
 class Whole(Protocol):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import Any, NamedTuple
 
 from icdgen.describe.description import Composite, MessageDescription, StructDescription, Whole
@@ -11,6 +10,7 @@ from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Node
 from icdgen.icd.variants import Ids, Variant, common_length, ids_of
 from icdgen.layout import Sign, signs
+from icdgen.once import cached_property
 
 
 class Direction(NamedTuple):

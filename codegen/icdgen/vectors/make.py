@@ -60,7 +60,7 @@ def make(icd: Icd, node: Node) -> NodeVectors:
         node=node,
         ids=_ids(icd, node),
         shared=tuple(shared.rows(icd, node)),
-        enums=tuple((enum, _no_member(enum)) for enum in node.enums),
+        enums=tuple((enum, enum.unnamed) for enum in node.enums),
         messages=tuple(message_vectors(node, message) for message in node.messages),
     )
 
@@ -139,8 +139,3 @@ def _ids(icd: Icd, node: Node) -> dict[str, dict[int, list[str]]]:
         direction: {id: [message.name for message in messages] for id, messages in ids.items()}
         for direction, ids in found.items()
     }
-
-
-def _no_member(enum: Enum) -> int | None:
-    values = {member.value for member in enum.members}
-    return next(value for value in range(len(values) + 1) if value not in values)
