@@ -8,8 +8,9 @@ The words are described with icdgen's conformance tests.
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from importlib import import_module
-from typing import Any, Iterator, NamedTuple, Optional
+from typing import Any, NamedTuple, Optional
 
 from . import _floats
 from ._base import FieldInfo, Message
@@ -58,7 +59,8 @@ def _message(node: Any, words: Words) -> type[Message]:
     if not name:
         return messages[int(id)]  # type: ignore[no-any-return]
     wanted = bytes.fromhex(name).decode()
-    return next(one for one in messages.of(int(id)) if wanted == one.NAME)
+    sharing: tuple[type[Message], ...] = messages.of(int(id))
+    return next(one for one in sharing if wanted == one.NAME)
 
 
 def _decode(node: Any, words: Words) -> str:
