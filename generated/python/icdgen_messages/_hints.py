@@ -58,3 +58,6 @@ def message_of(message: SpokenBy[Any]) -> _lazy.Message:
 
 Candidate = tuple[str, range, tuple[tuple[int, int, int], ...]]
 """A message of an id that several have: its name, its lengths, and byte, mask and value of its constants."""
+
+Known = Union[str, tuple[Candidate, ...]]
+"""What is known of an id: the message, or the messages that it may be."""

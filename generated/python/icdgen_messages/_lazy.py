@@ -17,6 +17,7 @@ __all__ = [
     "FieldInfo",
     "Frames",
     "Iterator",
+    "Known",
     "Literal",
     "M",
     "Mapping",
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     from ._base import Message, Struct
     from ._enumeration import OpenEnum
     from ._fields import FieldInfo
-    from ._hints import Buffer, Candidate, Frames, M, S, T
+    from ._hints import Buffer, Candidate, Frames, Known, M, S, T
 else:
     _NAMED = {
         "Any": "typing",
@@ -48,6 +49,7 @@ else:
         "FieldInfo": "._fields",
         "Frames": "._hints",
         "Iterator": "collections.abc",
+        "Known": "._hints",
         "Literal": "typing",
         "M": "._hints",
         "Mapping": "collections.abc",
@@ -88,7 +90,7 @@ class Messages:
         module: dict[str, _lazy.Any],
         node: str,
         kind: str,
-        names: _lazy.Mapping[int, str | tuple[_lazy.Candidate, ...]],
+        names: _lazy.Mapping[int, _lazy.Known],
     ) -> None:
         self._module, self._node, self._kind, self._names = module, node, kind, names
         self._loaded: dict[int, type[Message]] = {}
