@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 
 from icdgen.icd.curve import Curve
-from icdgen.icd.model import Field, Message, Node, Special
+from icdgen.icd.model import Field, Icd, Message, Node, Special
 
 
 class CodecError(ValueError):
@@ -75,6 +75,41 @@ def counted(node: Node, message: Message, frame: bytes, count: int) -> bytes:
 def is_there(message: Message, field: Field, count: int) -> bool:
     """Whether a frame holds a field, if its open end has ``count`` elements; bytes and text that are cut off are there."""
     return not field.path or message.tail is None or field.at < 8 * (message.least + count * message.tail.step)
+
+
+def which(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | None:
+    """Of messages that share an id the one that a frame is of; None if it is of none of them.
+
+    It is of a length and has the constants of that message, but for those that all of them have alike and for those in an
+    open end; of several that of the most constants. Raises `LengthError` if no message has that length and all have the same.
+    """
+    fitting = []
+    for message in known:
+        if len(frame) not in message.lengths:
+            continue
+        node, bits = icd.node(message.node), int.from_bytes(frame, "little")
+        constants = _in_every_frame(message)
+        telling = [one for one in constants if not all(_has_alike(icd, other, one, node) for other in known)]
+        if all(_read(node, one, bits) == one.const for one in telling):
+            fitting.append((len(constants), message))
+    if fitting:
+        return max(fitting, key=lambda one: one[0])[1]
+    if all(message.least == message.length == known[0].length != len(frame) for message in known):
+        raise LengthError(known[0], known[0].length, len(frame))
+    return None
+
+
+def _in_every_frame(message: Message) -> list[Field]:
+    """The constants of a message, without those of elements that not every frame has."""
+    return [one for one in message.owners if one.const is not None and is_there(message, one, 0)]
+
+
+def _has_alike(icd: Icd, message: Message, constant: Field, node: Node) -> bool:
+    """Whether a message has the constant that a field of another one, declared by ``node``, is."""
+    place = _runs(constant.at, constant.bits, *constant.orders(node))
+    owner = icd.node(message.node)
+    same = (one for one in _in_every_frame(message) if one.const == constant.const)
+    return any(_runs(one.at, one.bits, *one.orders(owner)) == place for one in same)
 
 
 def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> bytes:

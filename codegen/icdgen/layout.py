@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.icd.model import Field, Message, Node
+from icdgen.icd.variants import Variant
 
 
 class Piece(NamedTuple):
@@ -54,6 +55,25 @@ def mask(field: Field, node: Node) -> int:
     if field.is_bytes:
         return ((1 << field.bits) - 1) << field.at
     return sum(piece.mask << 8 * piece.byte for piece in pieces(field, node))
+
+
+class Sign(NamedTuple):
+    """What a byte of the frame holds, in the bits of ``mask``, where a constant is in it."""
+
+    byte: int
+    mask: int
+    value: int
+
+
+def signs(variant: Variant) -> tuple[Sign, ...]:
+    """The bytes by which a frame of the right length is known to be the message, in their order; none without constants."""
+    masks: dict[int, tuple[int, int]] = {}
+    for field in variant.constants:
+        for piece in pieces(field, variant.node):
+            mask, value = masks.get(piece.byte, (0, 0))
+            here = (field.const or 0) >> piece.at & (1 << piece.bits) - 1
+            masks[piece.byte] = mask | piece.mask, value | here << piece.shift
+    return tuple(Sign(byte, *found) for byte, found in sorted(masks.items()))
 
 
 def byte_range(field: Field) -> range:

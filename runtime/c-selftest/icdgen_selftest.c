@@ -425,6 +425,16 @@ static void dispatcher(run_t *run, const icdgen_selftest_dispatcher_t *one)
             run, !known || one->decode(id, run->node->buffer, length + 1u) == ICD_ERROR_LENGTH, "dispatcher",
             "wrong length");
     }
+    for (i = 0; i < one->frame_count; i++) {
+        const icdgen_selftest_frame_t *row = &one->frames[i];
+        const icd_status_t status = one->decode(row->id, row->frame, row->length);
+        run->vector = i;
+        check(run, status == row->status, "dispatcher", "a frame of a shared id");
+        check(
+            run,
+            status != ICD_OK || row->name == NULL || strcmp(one->name(row->id, row->frame, row->length), row->name) == 0,
+            "dispatcher", row->name);
+    }
 }
 
 void icdgen_selftest(

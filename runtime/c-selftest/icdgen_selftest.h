@@ -139,12 +139,24 @@ typedef struct {
     uint16_t least; /* of its frames that have none but zeros */
 } icdgen_selftest_id_t;
 
+/** A frame that came under an id which several messages have: what the dispatcher answers, and the name of the message. */
+typedef struct {
+    uint32_t id;
+    uint16_t length;
+    const uint8_t *frame;
+    icd_status_t status;
+    const char *name; /* NULL if it is none of them */
+} icdgen_selftest_frame_t;
+
 /** The dispatcher of a direction, and the ids that it is asked for. */
 typedef struct {
     const icdgen_selftest_id_t *ids;
     uint16_t id_count;
     icd_status_t (*length)(uint32_t id, size_t *length);
     icd_status_t (*decode)(uint32_t id, const uint8_t *buffer, size_t length);
+    const icdgen_selftest_frame_t *frames;
+    uint16_t frame_count;
+    const char *(*name)(uint32_t id, const uint8_t *buffer, size_t length); /* NULL if there are no such frames */
 } icdgen_selftest_dispatcher_t;
 
 /** A value of an enumeration and its name; NULL if it has none. */

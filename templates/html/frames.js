@@ -73,6 +73,13 @@ const icdgenFrames = (() => {
     return Uint8Array.from([escape, start, ...body.flatMap(escaped), escape, end]);
   }
 
-  return { parseHex, hex, crc, checksum, check, framed };
+  /** Whether data are of a message that shares its id: `signs` are byte, mask and value where it has a constant; of a `tail` not every frame has all; zeros that are cut off are read. */
+  function isLike(length, tail, signs, data) {
+    const { least, step } = tail ?? { least: length, step: 1 };
+    const hasLength = data.length >= least && data.length <= length && (data.length - least) % step === 0;
+    return hasLength && signs.every(([byte, mask, value]) => ((data[byte] ?? 0) & mask) === value);
+  }
+
+  return { parseHex, hex, crc, checksum, check, framed, isLike };
 })();
 if (typeof module !== "undefined") module.exports = icdgenFrames;

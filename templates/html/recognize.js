@@ -108,8 +108,9 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
     const found = [];
     for (const speaker of talking) {
       for (const [what, ids] of directions(speaker)) {
-        for (const [id, number] of Object.entries(ids)) {
-          const read = withChecksum(index, speaker, what, Number(id), number, data);
+        for (const id of Object.keys(ids)) {
+          const number = numberOf(index, ids[id], data);
+          const read = number === undefined ? null : withChecksum(index, speaker, what, Number(id), number, data);
           if (read) found.push(read);
         }
       }
@@ -124,10 +125,11 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
     if (!apart) return;
     const [id, data] = apart;
     for (const [what, ids] of directions(speaker)) {
-      if (ids[id] === undefined) continue;
-      const read = withChecksum(index, speaker, what, id, ids[id], data);
+      const number = numberOf(index, ids[id], data);
+      if (number === undefined) continue;
+      const read = withChecksum(index, speaker, what, id, number, data);
       if (read) yield read;
-      if (what === "telemetry" && !data.length && !fits(index, ids[id], data)) yield reading(index, speaker, "request", ids[id], id);
+      if (what === "telemetry" && !data.length && !fits(index, number, data)) yield reading(index, speaker, "request", number, id);
     }
     const [size, idAt, errorAt] = speaker.acknowledge ?? [];
     if (body.length === size && speaker.telemetry[id] === undefined && speaker.telecommands[body[idAt]] !== undefined) {
@@ -145,6 +147,13 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
 
   const lengthOf = (index, number) => index.messages[number][2];
 
+  /** The message of an id; of those that share it the one that the data are of, if there is one. */
+  function numberOf(index, known, data) {
+    if (!Array.isArray(known)) return known;
+    return known.find(([number, signs]) => frames.isLike(lengthOf(index, number), index.messages[number][4], signs, data))?.[0];
+  }
+
+  const numbersOf = (known) => (Array.isArray(known) ? known.map(([number]) => number) : known === undefined ? [] : [known]);
   /** Whether a message can have these data: by their number, and by what they say of it where frames differ in length. */
   function fits(index, number, data) {
     const [length, tail] = [lengthOf(index, number), index.messages[number][4]];
@@ -234,7 +243,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
     const apart = talking.map((speaker) => [speaker, takenApart(speaker, body)]).filter(([, both]) => both);
     const known = new Map(
       apart.flatMap(([speaker, [id, data]]) =>
-        directions(speaker).filter(([, ids]) => ids[id] !== undefined).map(([what, ids]) => [`${what} ${ids[id]}`, { speaker, number: ids[id], id, data }]),
+        directions(speaker).flatMap(([what, ids]) => numbersOf(ids[id]).map((number) => [`${what} ${number}`, { speaker, number, id, data }])),
       ),
     );
     if (!apart.length) return new Error("bytes are missing: not even the id is complete");
@@ -248,6 +257,9 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
     }
     const told = [...known.values()].map(({ number }) => `${index.messages[number][0]} has ${lengthText(index, number)} bytes`);
     const [{ id, data }] = known.values();
+    if (known.size > 1 && [...known.values()].some(({ number }) => frames.isLike(lengthOf(index, number), index.messages[number][4], [], data))) {
+      return new Error(`the ${data.length} bytes after the id ${id} have the constants of none of its messages`);
+    }
     return new Error(`${told.join(" or ")}, ${data.length} given after the id ${id}`);
   }
 

@@ -10,7 +10,17 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 
 from icdgen.icd.model import Icd
-from tests.conformance.cases import DIRECTIONS, Case, MessageCases, enum_cases, member_names, node_cases, node_itself
+from tests.conformance.cases import (
+    DIRECTIONS,
+    Case,
+    MessageCases,
+    enum_cases,
+    member_names,
+    node_cases,
+    node_itself,
+    shared_ids,
+    shared_names,
+)
 from tests.conformance.compare import difference
 from tests.conformance.reference import Reference
 from tests.conformance.robust import line
@@ -47,7 +57,7 @@ class Vectors:
     def _of_message(self, node: str, name: str) -> Iterator[tuple[int, list[Case]]]:
         data = self.files[node]
         message = next(one for one in data["messages"] if one["name"] == name)
-        cases = MessageCases(node, message, self.names, data["never_set"])
+        cases = MessageCases(node, message, self.names, data["never_set"], shared_names(data))
         constants = cases.constants()
         of_fields = ("default", "special", "limits")
         at = self._after(node, 0, {"name": name, "kind": message["kind"]}, ",")
@@ -73,7 +83,10 @@ class Vectors:
                 ]
         for direction in DIRECTIONS:
             at = self._after(node, 0, {direction: data["ids"][direction]}, "")
-            yield at, [case for case in node_cases(data) if case.request.get("kind") == direction]
+            alone = {key: value for key, value in data.items() if key != "shared_ids"}
+            yield at, [case for case in node_cases(alone) if case.request.get("kind") == direction]
+        for row in data.get("shared_ids", ()):
+            yield self._after(node, 0, row), list(shared_ids({**data, "shared_ids": [row]}))
         for enum in data["enums"]:
             yield self._after(node, 0, enum), [
                 case for case in enum_cases(data) if case.request["enum"] == enum["name"]

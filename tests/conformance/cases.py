@@ -38,7 +38,16 @@ def name_of(members: list[list], value: int) -> str | None:
 class MessageCases:
     """The cases of one message, as spoken by ``node`` (the one that declares it or one that includes that)."""
 
-    def __init__(self, node: str, message: dict, enums: dict[str, list[list]], never_set: list[str]) -> None:
+    def __init__(
+        self,
+        node: str,
+        message: dict,
+        enums: dict[str, list[list]],
+        never_set: list[str],
+        shared: frozenset[str] = frozenset(),
+    ) -> None:
+        """``shared``: the messages of the node that have no id of their own, and so go by their names, too."""
+        self.named = {"message": message["name"]} if message["name"] in shared else {}
         self.node, self.message, self.enums, self.never_set = node, message, enums, never_set
         self.fields: list[dict] = message["fields"]
         self.views = {field["name"] for field in self.fields if "view" in field}
@@ -66,7 +75,7 @@ class MessageCases:
         yield from self.set_views()
 
     def request(self, op: str, **more: object) -> dict:
-        return {"op": op, "node": self.node, "kind": self.message["kind"], "id": self.id, **more}
+        return {"op": op, "node": self.node, "kind": self.message["kind"], "id": self.id, **self.named, **more}
 
     def frame(self, vector: dict) -> Iterator[Case]:
         """Decoding, and encoding from raw and from physical values."""
@@ -210,14 +219,42 @@ def node_cases(data: dict) -> Iterator[Case]:
     yield node_itself(data)
     for direction in DIRECTIONS:
         known = data["ids"][direction]
+        for id, names in known.items():
+            for name in names if isinstance(names, list) else ():
+                request = {"op": "constants", "node": node, "kind": direction, "id": int(id), "message": name}
+                yield Case(f"{direction} {id}, {name}", request, {"ok": True, "name": name, ...: ...})
         for id in (*worth_asking(map(int, known)), 65535, 65536, -1):
-            if str(id) in known:
+            if isinstance(known.get(str(id)), list):
+                request = {"op": "constants", "node": node, "kind": direction, "id": id}
+                yield Case(f"{direction} {id}, of several", request, {"ok": False, "error": "request"})
+            elif str(id) in known:
                 request = {"op": "constants", "node": node, "kind": direction, "id": id}
                 yield Case(f"{direction} {id}", request, {"ok": True, "name": known[str(id)], ...: ...})
             else:
                 request = {"op": "decode", "node": node, "kind": direction, "id": id, "bytes": ""}
                 yield Case(f"{direction} {id}", request, {"ok": False, "error": "unknown-id"})
+    yield from shared_ids(data)
     yield from enum_cases(data)
+
+
+def shared_names(data: dict) -> frozenset[str]:
+    """The messages that a node knows by ids which others have, too."""
+    known = (names for ids in data["ids"].values() for names in ids.values() if isinstance(names, list))
+    return frozenset(name for names in known for name in names)
+
+
+def shared_ids(data: dict) -> Iterator[Case]:
+    """Which message each frame of an id is that several have."""
+    for row in data.get("shared_ids", ()):
+        about = {"node": data["node"], "kind": row["direction"], "id": row["id"], "bytes": row["bytes"]}
+        if row["message"] is not None:
+            answer = {"ok": True, "message": row["message"], "bytes": ...}
+        elif "expected" in row:
+            actual = len(row["bytes"]) // 2
+            answer = {"ok": False, "error": "length", "expected": row["expected"], "actual": actual}
+        else:
+            answer = {"ok": False, "error": "unknown-id"}
+        yield Case(f"a frame of the shared {row['direction']} id {row['id']}", {"op": "decode", **about}, answer)
 
 
 def node_itself(data: dict) -> Case:

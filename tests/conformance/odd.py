@@ -289,6 +289,180 @@ messages:
   - {name: All ones, set_id: 0xFFFFFFFF, get_id: 0xFFFFFFFF, kind: configuration, length: 0}
 """
 
+COMMON = """\
+icdgen: 1
+node: {name: common, title: Included, byte_order: big, bit_order: msb0, id_bits: 16}
+messages:
+  - name: Any command
+    id: 0x004C
+    kind: telecommand
+    length: 6
+    fields:
+      - {at: 0, bits: 16, name: Command, type: uint}
+      - {at: 16, bits: 32, name: Parameter, type: float}
+  - name: Reset command
+    id: 0x004C
+    kind: telecommand
+    length: 6
+    fields:
+      - {at: 0, bits: 16, name: Command, type: uint, const: 0x1234}
+      - {at: 16, bits: 32, name: Delay, type: uint, unit: s, formula: raw*0.001}
+  - name: Short command
+    id: 0x004C
+    kind: telecommand
+    length: 2
+    fields:
+      - {at: 0, bits: 16, name: Command, type: uint, const: 0x1234}
+"""
+
+APART = """\
+icdgen: 1
+node: {name: apart, title: Ids that are shared, byte_order: little, bit_order: lsb0, id_bits: 16}
+include: [common.yaml]
+enums:
+  - name: Action
+    members: [{value: -2, name: Stop}, {value: 1, name: Go}]
+messages:
+  - name: Arm command
+    id: 0x004C
+    kind: telecommand
+    length: 6
+    fields:
+      - {at: 0, bits: 16, name: Command, type: uint, const: 0x5678, byte_order: big}
+      - {at: 16, bits: 32, name: Key, type: uint}
+  - name: Arm at once
+    id: 0x004C
+    kind: telecommand
+    length: 6
+    fields:
+      - {at: 0, bits: 16, name: Command, type: uint, const: 0x5678, byte_order: big}
+      - {at: 16, bits: 32, name: Key, type: uint, const: 0}
+  - name: Aiding, first version
+    id: [0x13, 0x00]
+    kind: telemetry
+    length: 5
+    fields:
+      - {at: 0, bits: 8, name: Same everywhere, type: uint, const: 9}
+      - {at: 8, bits: 3, name: Version, type: uint, const: 1}
+      - {at: 11, bits: 9, name: Signed one, type: int, const: -3}
+      - {at: 20, bits: 20, name: Angle, type: int, unit: deg, formula: raw*0.01}
+  - name: Aiding, second version
+    id: [0x13, 0x00]
+    kind: telemetry
+    length: 5
+    fields:
+      - {at: 0, bits: 8, name: Same everywhere, type: uint, const: 9}
+      - {at: 8, bits: 3, name: Version, type: uint, const: 2}
+      - {at: 11, bits: 9, name: Signed one, type: int, const: 3}
+      - {at: 20, bits: 20, name: Angle, type: uint, unit: rad, formula: raw*0.001}
+  - name: Aiding, longer
+    id: [0x13, 0x00]
+    kind: telemetry
+    length: 8
+    fields:
+      - {at: 0, bits: 8, name: Same everywhere, type: uint, const: 9}
+      - {at: 8, bits: 16, count: 2, name: Words, type: uint, const: 0x0102}
+      - {at: 40, bits: 24, name: Rest, type: bytes}
+  - name: Longer with an action
+    id: [0x13, 0x00]
+    kind: telemetry
+    length: 8
+    fields:
+      - {at: 0, bits: 8, name: Same everywhere, type: uint, const: 9}
+      - {at: 8, bits: 16, name: First word, type: uint}
+      - {at: 24, bits: 16, name: Second word, type: uint, const: 0x0103}
+      - {at: 45, bits: 5, name: Turned, type: enum, enum: Action, bit_order: msb0, const: -2}
+      - {at: 56, bits: 8, name: Rest, type: uint}
+  - {name: Poll, id: 0x0601, kind: telecommand, length: 0}
+  - name: Settings
+    set_id: 0x0601
+    get_id: 0x0602
+    kind: configuration
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Version, type: uint, const: 0}
+      - {at: 8, bits: 8, name: Rate, type: uint, unit: Hz}
+  - name: Other settings
+    set_id: 0x0601
+    get_id: 0x0602
+    kind: configuration
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Version, type: uint, const: 1}
+      - {at: 8, bits: 8, name: Rate, type: int, unit: Hz}
+  - name: Open, first version
+    id: 0x1500
+    kind: telemetry
+    length: 3
+    fields:
+      - {at: 0, bits: 12, name: Version, type: int, const: -1}
+      - {at: 16, bits: 8, name: Values Count, type: uint}
+      - {at: 24, bits: 16, name: Values, type: int, count: Values Count, up_to: 5, byte_order: big}
+  - name: Open, second version
+    id: 0x1500
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 12, name: Version, type: int, const: 2}
+      - {at: 16, bits: 24, name: Values, type: uint, count: rest, up_to: 3, const: 0x010203}
+  - name: Open, third version
+    id: 0x1500
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 12, name: Version, type: int, const: 3}
+      - {at: 16, name: Remark, type: text, size: rest, up_to: 20}
+  - name: Open, closed
+    id: 0x1500
+    kind: telemetry
+    length: 7
+    reserved: 5
+    fields:
+      - {at: 0, bits: 12, name: Version, type: int, const: 4}
+  - name: Open, any other
+    id: 0x1500
+    kind: telemetry
+    length: 2
+    fields: [{at: 16, name: Data, type: bytes, size: rest, up_to: 9}]
+  - name: Fours from none
+    id: 0x1501
+    kind: telecommand
+    length: 0
+    fields: [{at: 0, bits: 32, name: Values, type: float, count: rest, up_to: 3}]
+  - name: Fours from two
+    id: 0x1501
+    kind: telecommand
+    length: 2
+    fields: [{at: 16, bits: 32, name: Values, type: uint, count: rest, up_to: 2}]
+  - {name: No fours, id: 0x1501, kind: telecommand, length: 7, reserved: 7}
+  - name: Ends early
+    id: 0x1502
+    kind: telemetry
+    length: 8
+    may_end_early: zeros
+    fields:
+      - {at: 0, bits: 24, name: Value, type: uint}
+      - {at: 28, bits: 12, name: Command, type: uint, const: 0x178}
+      - {at: 40, bits: 24, name: Rest, type: uint}
+  - name: Ends early, command of zeros
+    id: 0x1502
+    kind: telemetry
+    length: 9
+    may_end_early: zeros
+    fields:
+      - {at: 0, bits: 24, name: Value, type: uint}
+      - {at: 28, bits: 12, name: Command, type: uint, const: 0}
+      - {at: 40, bits: 32, name: Rest, type: float}
+  - name: Ends early, any command
+    id: 0x1502
+    kind: telemetry
+    length: 8
+    may_end_early: zeros
+    reserved: 3
+    fields: [{at: 0, bits: 40, name: Value, type: bytes}]
+  - {name: Alone, id: 0x0107, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: A, type: uint, const: 5}]}
+"""
+
 NESTED = """\
 icdgen: 1
 node: {name: nested, title: Structs of another node, byte_order: big, bit_order: msb0, id_bits: 32}
@@ -452,6 +626,8 @@ _TEXTS = {
     "other": OTHER,
     "wide": WIDE,
     "nested": NESTED,
+    "common": COMMON,
+    "apart": APART,
     "open": OPEN,
     "empty": EMPTY,
 }

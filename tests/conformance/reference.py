@@ -10,6 +10,7 @@ import re
 import struct
 import sys
 from pathlib import Path
+from typing import Any
 
 from icdgen import codec
 from icdgen.icd.model import Enum, Field, Icd, Message, Node
@@ -55,8 +56,8 @@ class Reference:
         except (ValueError, OverflowError, RecursionError) as error:
             return {"ok": False, "error": "request", "detail": str(error)}
 
-    def message(self, request: dict) -> tuple[Node, Message]:
-        """The message that is meant and the node that declares it."""
+    def message(self, request: dict) -> tuple[Node, Any]:
+        """The message that is meant and the node that declares it; all of a shared id, where a frame is to tell."""
         name, kind, id = key(request, "node", str), key(request, "kind", str), key(request, "id", int)
         picks = {
             "telecommand": ["telecommand_id"],
@@ -66,11 +67,25 @@ class Reference:
         if kind not in picks:
             raise Refusal("request", detail="there is no such kind")
         node = self.node(name)
+        named = key(request, "message", str) if "message" in request else None
         for pick in picks[kind]:
-            for message in self.icd.messages_of(node):
-                if getattr(message, pick) == id:
-                    return self.icd.node(message.node), message
+            found = [message for message in self.icd.messages_of(node) if getattr(message, pick) == id]
+            if len(found) > 1 and named is None:
+                if request["op"] != "decode":
+                    raise Refusal("request", detail="several messages have the id, and `message` names none")
+                return node, found
+            found = [message for message in found if named in (None, message.name)]
+            if found:
+                return self.icd.node(found[0].node), found[0]
         raise Refusal("unknown-id")
+
+    def dispatched(self, messages: list[Message], frame: bytes) -> dict:
+        """Which of the messages of an id a frame is."""
+        found = codec.which(self.icd, messages, frame)
+        if found is None:
+            raise Refusal("unknown-id")
+        node = self.icd.node(found.node)
+        return {"message": found.name, "bytes": codec.encode(node, found, codec.decode(node, found, frame)).hex()}
 
     def node(self, name: str) -> Node:
         try:
@@ -85,6 +100,8 @@ class Reference:
             raise Refusal("request")
         node, message = self.message(request)
         try:
+            if isinstance(message, list):
+                return self.dispatched(message, frame)
             return described(node, message, codec.decode(node, message, frame), names)
         except codec.LengthError as error:
             raise Refusal("length", expected=error.expected, actual=error.actual) from None

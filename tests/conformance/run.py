@@ -21,7 +21,7 @@ from icdgen.vectors.make import frame_row
 from icdgen.vectors.write import raw_json
 from tests.conformance import robust
 from tests.conformance.build import BuildError, build
-from tests.conformance.cases import Case, MessageCases, member_names, node_cases
+from tests.conformance.cases import Case, MessageCases, member_names, node_cases, shared_names
 from tests.conformance.compare import difference
 from tests.conformance.driver import Answering, InProcess, Testee
 from tests.conformance.icds import COMMITTED, icd_of, read_vectors, vectors_of
@@ -71,7 +71,7 @@ def batches(icd: Icd, files: dict[str, dict], frames: int, seed: int) -> Iterato
         spoken = [*icd.included(node), node]
         for declaring in spoken:
             for message in files[declaring.name]["messages"]:
-                cases = MessageCases(node.name, message, enums, data["never_set"])
+                cases = MessageCases(node.name, message, enums, data["never_set"], shared_names(data))
                 label = f"{node.name} {message['name']!r}"
                 count = len(message["vectors"])
                 for batch in _batch(label, cases.all()):
@@ -80,7 +80,7 @@ def batches(icd: Icd, files: dict[str, dict], frames: int, seed: int) -> Iterato
         own = {message["name"]: message for message in data["messages"]}
         for message in node.messages:
             if frames:
-                cases = MessageCases(node.name, own[message.name], enums, data["never_set"])
+                cases = MessageCases(node.name, own[message.name], enums, data["never_set"], shared_names(data))
                 yield from _random(icd, message, cases, frames, seed)
         if data["messages"]:
             yield from _robust(data, enums)
@@ -122,7 +122,7 @@ def _robust(data: dict, enums: dict) -> Iterator[Batch]:
     answers: list[dict] = [{"ok": False, "error": "request"}] * len(lines)
     about = [f"bad line {line[:60]!r}" for line in lines]
     largest = max(data["messages"], key=lambda m: len({f["type"] for f in m["fields"]}))
-    cases = MessageCases(data["node"], largest, enums, data["never_set"])
+    cases = MessageCases(data["node"], largest, enums, data["never_set"], shared_names(data))
     for request, answer in robust.bad_requests(cases):
         lines.append(robust.line(request))
         answers.append(answer)

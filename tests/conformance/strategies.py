@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 from hypothesis import strategies as st
 
 from icdgen.icd import exact, formula
+from tests.conformance.sharing import sharing
 
 # Words that mean something to a language, to generated code, or to a template; alone each would be a bad identifier.
 _WORDS = (
@@ -113,7 +115,11 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
             message["may_end_early"] = "zeros"
         if fields:
             message["fields"] = fields
-        messages.append(message)
+        if "id" in message and draw(st.integers(0, 3)) == 0:
+            made = _fields(enums, orders | own, structs)
+            messages += draw(sharing(message, names, made, partial(_open_end, enums=enums, structs=structs)))
+        else:
+            messages.append(message)
     messages.append(_uses_all(names.one("message"), enums, structs, ids(first_id + 59)))
     node = {"name": name, "title": draw(st.sampled_from(("Plain", 'Odd "*/ {{ \\'))), **orders}
     if ids.bits != 8:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import random
 import struct
+from collections import Counter
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -29,6 +30,7 @@ class Agreement:
     impossible: int = 0  # the library's value has more bits than the field
     special: int = 0  # values that have a meaning, where the library has a value or says that there is none
     refused: int = 0  # frames that the library takes for another message
+    unread: set[str] = field(default_factory=set)  # messages of which the library reads no frame at all
     differences: list[str] = field(default_factory=list)
 
     def __str__(self) -> str:
@@ -37,29 +39,42 @@ class Agreement:
             f"{self.special} special values, "
             f"{self.rounded} rounded wrongly by the library, {self.impossible} of it wider than the field, "
             f"{self.refused} frames of other layouts"
+            + (f"; the library reads no frame of {', '.join(sorted(self.unread))}" if self.unread else "")
         )
 
 
 def compare(node: str, messages: list[Definition], testee: Answering, frames: int, seed: int, into: Agreement) -> None:
     """Puts ``frames`` random frames of each message to the testee and to the library."""
     chance = random.Random(f"{seed} {node}")
-    asked = [(one, data) for one in messages for data in _frames(one.length, chance, frames)]
+    asked = [(one, data) for one in messages for data in random_frames(one, chance, frames)]
+    sharing = Counter((one.kind, one.id) for one in messages)
     requests = [
         {"op": "decode", "node": node, "kind": one.kind, "id": one.id, "bytes": data.hex()} for one, data in asked
     ]
-    answers = testee.ask([json.dumps(request).encode() for request in requests])
-    for (one, data), answer in zip(asked, answers, strict=True):
+    plain = testee.ask([json.dumps(request).encode() for request in requests])  # of a shared id: which message it is
+    named = [{**request, "message": one.name} for request, (one, _) in zip(requests, asked, strict=True)]
+    shared = [sharing[one.kind, one.id] > 1 for one, _ in asked]
+    of_shared = iter(
+        testee.ask([json.dumps(one).encode() for one, is_shared in zip(named, shared, strict=True) if is_shared])
+    )
+    read = set()
+    for (one, data), answer, is_shared in zip(asked, plain, shared, strict=True):
+        told = json.loads(answer or b"{}").get("message") if is_shared else one.name
+        answer = next(of_shared) if is_shared else answer
         try:
             raw, physical = one.raw(data), one.physical(data)
         except NotHeld:
             into.refused += 1
             continue
         into.frames += 1
+        read.add(one.name)
         said = json.loads(answer or b"{}")
         about = f"{node} {one.name} {data.hex()}"
         if not said.get("ok"):
             into.differences.append(f"{about}: {said}")
             continue
+        if told != one.name:
+            into.differences.append(f"{about}: taken for {told}")
         for part in one.fields:
             name = part["name"]
             if name in raw:
@@ -82,12 +97,19 @@ def compare(node: str, messages: list[Definition], testee: Answering, frames: in
                 formula = next(part["formula"] for part in one.fields if part["name"] == name)
                 _physical(about, name, _double(bits), physical[name], _exact(formula, said["raw"][name]), into)
     into.messages += len(messages)
+    into.unread |= {one.name for one in messages} - read
 
 
 def _ours(raw: dict[str, object], part: dict) -> object:
-    """A raw value of an answer; of an array a list."""
-    name = part["name"]
-    return [raw[f"{name}[{index}]"] for index in range(part["count"])] if "count" in part else raw[name]
+    """A raw value of an answer; of an array a list, of what is open at the end as much as there is."""
+    name, count = part["name"], part.get("count")
+    if "up_to" in part:
+        said = count or part["size"]
+        counter = f"{name} {'Count' if count else 'Size'}" if said == "rest" else said
+        count = int(str(raw[counter]))
+        if "size" in part:
+            return str(raw[name])[: 2 * count]
+    return raw[name] if count is None else [raw[f"{name}[{index}]"] for index in range(count)]
 
 
 def _means_something(raw: object, part: dict) -> bool:
@@ -110,9 +132,38 @@ def _physical(about: str, name: str, ours: float, theirs: object, exact: float, 
             into.differences.append(f"{about}: {name} is {ours!r}, the library says {theirs!r}")
 
 
-def _frames(length: int, chance: random.Random, count: int) -> list[bytes]:
-    fixed = [bytes(length), b"\xff" * length] if length else [b""]
-    return [*fixed, *(chance.randbytes(length) for _ in range(count - 2))] if length else fixed
+def random_frames(one: Definition, chance: random.Random, count: int) -> list[bytes]:
+    """Frames of a message: zeros, ones, random bytes; with its constants, and as many elements as they say."""
+    end = one.end
+    if end is None and not one.length:
+        return [b""]
+    found = []
+    for number in range(count):
+        elements = _elements(end, number, chance)
+        length = one.length + elements * (end.get("bits", 8) // 8 if end else 0)
+        data = bytes(length) if number == 0 else b"\xff" * length if number == 1 else chance.randbytes(length)
+        if end is not None and end["type"] == "text":
+            data = data[: one.length] + bytes(chance.choices(range(32, 127), k=elements))
+        for part in one.fields:
+            if "const" in part:
+                data = _put(data, part, part["const"])
+            if end is not None and part["name"] in (end.get("count"), end.get("size")):
+                data = _put(data, part, elements)
+        found.append(data)
+    return found
+
+
+def _elements(end: dict | None, number: int, chance: random.Random) -> int:
+    """How many elements the frame of a number has: none, all, one, or any number."""
+    most = end["up_to"] if end else 0
+    return (0, most, min(1, most))[number] if number < 3 else chance.randint(0, most)
+
+
+def _put(data: bytes, part: dict, value: int) -> bytes:
+    """The frame with another value in a field, of a node that counts bits from the least significant one."""
+    mask = (1 << part["bits"]) - 1 << part["at"]
+    bits = int.from_bytes(data, "little") & ~mask | value << part["at"] & mask
+    return bits.to_bytes(len(data), "little")
 
 
 def _exact(formula: str, raw: int) -> float:

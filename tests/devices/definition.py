@@ -34,12 +34,24 @@ class Definition:
 
     def tree(self) -> dict:
         """As it stands in an ICD; bytes at the end that nothing describes are reserved."""
-        end = max((one["at"] + one["bits"] * one.get("count", 1) for one in self.fields), default=0)
+        closed = [one for one in self.fields if "up_to" not in one]
+        end = max((one["at"] + one["bits"] * one.get("count", 1) for one in closed), default=0)
         rest = self.length - -(-end // 8)
         return {
             "name": self.name, "id": self.id, "kind": self.kind, "length": self.length, **self.more,
             **({"reserved": rest} if rest > 0 else {}), "fields": self.fields,
         }  # fmt: skip
+
+    @property
+    def end(self) -> dict | None:
+        """The field of which not every frame has all."""
+        return next((one for one in self.fields if "up_to" in one), None)
+
+
+def open_end(name: str, at: int, bits: int, type_: str, counter: str, most: int) -> dict:
+    """What ends a message of variable length: elements that a field counts, or up to the end (`rest`); bytes and text as one."""
+    number = {"size": counter} if type_ in ("bytes", "text") else {"bits": bits, "count": counter}
+    return {"at": at, "name": name, "type": type_, **number, "up_to": most}
 
 
 @dataclass

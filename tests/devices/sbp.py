@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from tests.devices.definition import Definition, Definitions, NotHeld, node
+from tests.devices.definition import Definition, Definitions, NotHeld, node, open_end
+
+LONGEST = 255  # bytes of a payload
 
 LETTERS = {"B": ("uint", 8), "H": ("uint", 16), "L": ("uint", 32), "Q": ("uint", 64), "b": ("int", 8), "h": ("int", 16),
            "l": ("int", 32), "q": ("int", 64), "f": ("float", 32), "d": ("float", 64)}  # fmt: skip
@@ -52,9 +54,24 @@ def _fields(parts: list[Any], fields: list[dict], at: int, before: str) -> int:
         elif kind == "Array":
             for number in range(inner.count):
                 at = _fields(inner.subcon.subcons, fields, at, f"{name} {number + 1} ")
+        elif kind.startswith("Greedy"):
+            if part is not parts[-1] or before:
+                raise NotHeld("more behind what goes up to the end")
+            fields.append(_end(name, kind, inner, at))
         else:
-            raise NotHeld("a part that goes up to the end" if kind.startswith("Greedy") else kind)
+            raise NotHeld(kind)
     return at
+
+
+def _end(name: str, kind: str, inner: Any, at: int) -> dict:
+    """What goes up to the end of a frame. Raises `NotHeld`."""
+    left = LONGEST - at // 8
+    if kind == "GreedyBytes":
+        return open_end(name, at, 8, "bytes", "rest", left)
+    if type(inner.subcon).__name__ != "FormatField":
+        raise NotHeld("structs up to the end")
+    type_, bits = LETTERS[inner.subcon.fmtstr[-1]]
+    return open_end(name, at, bits, type_, "rest", left * 8 // bits)
 
 
 def _read(parser: Any, data: bytes) -> dict[str, object]:

@@ -48,8 +48,8 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
 
 def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | None, str | None, str | bytes]:
     """Node, message and frame: a word is the node or the message if there is one of that name."""
-    from icdgen.values.errors import NotFound
-    from icdgen.values.find import by_name, find_message, find_node, only_node
+    from icdgen.values.errors import Ambiguous, NotFound
+    from icdgen.values.find import by_name, find_message, find_node, find_sharing, only_node
 
     node = message = None
     only = only_node(icd)
@@ -68,6 +68,10 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
         except NotFound:
             if not _is_frame(words):
                 raise
+        except Ambiguous:
+            if not find_sharing(icd, node, words[0], kind):
+                raise
+            message = words.pop(0)
         else:
             message = words.pop(0)
     return node, message, _content(words)

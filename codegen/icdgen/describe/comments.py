@@ -65,8 +65,11 @@ def _said(erratum: Erratum, teller: str | None) -> str:
     return f"see {words(teller)}." if teller else f"{sentence(erratum.title)} {sentence(erratum.why)}".strip()
 
 
-def message_comment(message: Message, log_bit: int | None = None) -> Comment:
-    """Name, kind, ids, length, table; summary; what is special about it. ``log_bit``: the bit of the log mask that selects it."""
+def message_comment(message: Message, log_bit: int | None = None, sharing: str = "") -> Comment:
+    """Name, kind, ids, length, table; summary; what is special about it.
+
+    ``log_bit``: the bit of the log mask that selects it. ``sharing``: with whom it shares its id.
+    """
     ids = str(message.id)
     if message.kind == CONFIGURATION:
         ids = f"set by telecommand {message.set_id}, got by telemetry {message.get_id}"
@@ -78,6 +81,7 @@ def message_comment(message: Message, log_bit: int | None = None) -> Comment:
         facts.append("The node does not acknowledge it.")
     if log_bit is not None:
         facts.append(f"Bit {log_bit} of the log mask.")
+    facts += [sharing] if sharing else []
     facts += (f"Repeats {words(part.message)} from {_from(part.at)}." for part in message.contains)
     if message.may_end_early:
         facts.append("Zeros that a frame ends with may be left out.")

@@ -1,4 +1,4 @@
-"""A set of ICDs, its nodes, their messages and the fields of these, which know each other."""
+"""Messages and their fields, which know each other."""
 
 from __future__ import annotations
 
@@ -14,11 +14,13 @@ from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription
 from icdgen.describe.errata import Thing, tellers, told_elsewhere
 from icdgen.describe.named import Id, Named
+from icdgen.describe.shared_ids import sharing
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.curve import Curve
 from icdgen.icd.model import Enum, Field, Icd, Message, Node, Struct
 from icdgen.icd.paths import Step, placed
+from icdgen.icd.variants import Ids
 from icdgen.once import cached_property
 
 
@@ -33,6 +35,8 @@ class Whole(Protocol):
     def log_bits(self, node: Node) -> dict[int, int]: ...
 
     def spoken(self, node: Node) -> tuple[MessageDescription, ...]: ...
+
+    def known_ids(self, node: Node) -> Ids: ...
 
     def message(self, message: Message) -> MessageDescription: ...
 
@@ -435,6 +439,6 @@ class MessageDescription(Composite[Message]):
 
     @cached_property
     def comment(self) -> Comment:
-        bits = self._description.log_bits(self.node)
-        telemetry_id = self.model.telemetry_id
-        return message_comment(self.model, None if telemetry_id is None else bits.get(telemetry_id))
+        whole, telemetry_id = self._description, self.model.telemetry_id
+        bit = None if telemetry_id is None else whole.log_bits(self.node).get(telemetry_id)
+        return message_comment(self.model, bit, sharing(whole.known_ids(self.node), self.model))

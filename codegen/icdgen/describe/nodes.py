@@ -1,4 +1,4 @@
-"""Nodes: what they declare, and what they speak in each direction."""
+"""Nodes: what they declare, and what they speak in each direction under which ids."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from icdgen.describe.description import Composite, MessageDescription, StructDes
 from icdgen.describe.enums import EnumDescription
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Node
+from icdgen.icd.variants import Ids, Variant, common_length, ids_of
+from icdgen.layout import Sign, signs
 from icdgen.once import cached_property
 
 
@@ -16,6 +18,43 @@ class Direction(NamedTuple):
 
     kind: str  # "telecommand" | "telemetry"
     messages: tuple[tuple[MessageDescription, str], ...]
+
+
+class Candidate(NamedTuple):
+    """A message under an id, the name of its id there, and what bytes show that a frame of its length is it."""
+
+    message: MessageDescription
+    id_name: str
+    signs: tuple[Sign, ...]
+
+
+class Under(NamedTuple):
+    """The messages of one id, in the order in which a frame is tried with them."""
+
+    id: int
+    candidates: tuple[Candidate, ...]
+    length: int | None  # that all of them have; None if they have several
+
+    @property
+    def first(self) -> Candidate:
+        """One of them, whose constant says the id."""
+        return self.candidates[0]
+
+    @property
+    def is_shared(self) -> bool:
+        """Whether it takes more than the id to know the message."""
+        return len(self.candidates) > 1
+
+    @property
+    def rest(self) -> Candidate | None:
+        """The candidate that is left when the frame is none of the others: nothing but its length may be wrong."""
+        last = self.candidates[-1]
+        return last if not self.is_shared or (self.length is not None and not last.signs) else None
+
+    @property
+    def tried(self) -> tuple[Candidate, ...]:
+        """Those that a frame has to be looked at for."""
+        return self.candidates if self.rest is None else self.candidates[:-1]
 
 
 class NodeDescription:
@@ -71,6 +110,37 @@ class NodeDescription:
             Direction("telemetry", tuple((one, one.telemetry_id_name) for one in self.telemetry)),
         )
         return tuple(direction for direction in found if direction.messages)
+
+    def ids(self, direction: str) -> tuple[Under, ...]:
+        """The messages of a direction by their ids, in the order of the ICD."""
+        return self._ids[direction]
+
+    def shares_ids(self, direction: str) -> bool:
+        """Whether messages of the direction have an id in common."""
+        return any(one.is_shared for one in self._ids[direction])
+
+    @cached_property
+    def known_ids(self) -> Ids:
+        """All messages that it speaks, by their ids."""
+        return ids_of(self._description.icd, self.model)
+
+    @cached_property
+    def _ids(self) -> dict[str, tuple[Under, ...]]:
+        known = self.known_ids
+        named = {"telecommand": "set_id", "telemetry": "get_id"}
+        return {
+            direction: tuple(self._under(other, id, those) for id, those in getattr(known, direction).items())
+            for direction, other in named.items()
+        }
+
+    def _under(self, other_name: str, id: int, variants: tuple[Variant, ...]) -> Under:
+        candidates = (
+            Candidate(
+                self._description.message(one.message), "id" if one.message.id is not None else other_name, signs(one)
+            )
+            for one in variants
+        )
+        return Under(id, tuple(candidates), common_length(variants))
 
     @property
     def is_linked(self) -> bool:

@@ -7,6 +7,7 @@ from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.nodes import NodeDescription
 from icdgen.describe.storage import holding
 from icdgen.icd.model import Enum, Icd, Message, Node, Struct
+from icdgen.icd.variants import Ids
 from icdgen.once import cached_property
 
 
@@ -39,6 +40,10 @@ class Description:
     def spoken(self, node: Node) -> tuple[MessageDescription, ...]:
         """See `NodeDescription.spoken`."""
         return self.node(node).spoken
+
+    def known_ids(self, node: Node) -> Ids:
+        """See `NodeDescription.known_ids`."""
+        return self.node(node).known_ids
 
     def message(self, message: Message) -> MessageDescription:
         """The description of a message, whoever speaks it."""

@@ -90,18 +90,27 @@ def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False
     for node in match.nodes:
         if node.before is None:
             continue
-        old = {getattr(m, key): m for m in match.old.messages_of(node.old) if getattr(m, key) is not None}
-        new = {getattr(m, key): m for m in match.new.messages_of(node.new)} if node.both else {}
+        old = [(getattr(m, key), m) for m in match.old.messages_of(node.old) if getattr(m, key) is not None]
+        new: dict[int, list[Message]] = {}
+        for one in match.new.messages_of(node.new) if node.both else ():
+            new.setdefault(getattr(one, key), []).append(one)
         wanted = _loggable(node) if logged else None
-        for number, message in old.items():
+        for number, message in old:
             if wanted is not None and number not in wanted:
                 continue
-            verdict, reasons = _verdict(comparison, key, message, new.get(number), judge)
+            now = _now(comparison, message, new.get(number, []))
+            verdict, reasons = _verdict(comparison, key, message, now, judge)
             if (id(message), verdict) in seen:
                 continue
             seen.add((id(message), verdict))
             found.append(None if verdict == YES else Frame(node.old.name, message.name, number, verdict, reasons))
     return found
+
+
+def _now(comparison: Comparison, old: Message, known: list[Message]) -> Message | None:
+    """What of the messages of an id is the old one, or else has its place."""
+    after = comparison.match.messages[id(old)].after
+    return next((one for one in known if one is after), known[0] if len(known) == 1 else None)
 
 
 def _loggable(node: NodePair) -> set[int] | None:

@@ -75,14 +75,14 @@ def place(field: Map, part: Map, byte_order: str, bit_order: str) -> int:
 def lies_together(field: Map, part: Map, byte_order: str, bit_order: str) -> bool:
     """Whether a field at that place has the part's bits, in their order."""
     wanted = _wanted(field, part, byte_order, bit_order)
-    return _bits(min(wanted), part["bits"], byte_order, bit_order) == wanted
+    return bits_of(min(wanted), part["bits"], byte_order, bit_order) == wanted
 
 
 def _wanted(field: Map, part: Map, byte_order: str, bit_order: str) -> list[int]:
-    return _bits(field["at"], field["bits"], byte_order, bit_order)[part["at"] : part["at"] + part["bits"]]
+    return bits_of(field["at"], field["bits"], byte_order, bit_order)[part["at"] : part["at"] + part["bits"]]
 
 
-def _bits(at: int, count: int, byte_order: str, bit_order: str) -> list[int]:
+def bits_of(at: int, count: int, byte_order: str, bit_order: str) -> list[int]:
     """Which bit of the frame each bit of a value is, the least significant first."""
     runs: dict[int, list[int]] = {}
     for bit in range(at, at + count):

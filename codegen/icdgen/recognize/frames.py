@@ -16,7 +16,7 @@ from icdgen.recognize.given import of_message
 from icdgen.recognize.pasted import Pasted, read
 from icdgen.recognize.reading import Reading, Speaker
 from icdgen.values.errors import Ambiguous, BadHex, BadLength, NotFound
-from icdgen.values.find import KINDS, find_message, find_node
+from icdgen.values.find import KINDS, find_message, find_node, find_sharing
 from icdgen.values.frame import frame
 
 
@@ -29,7 +29,7 @@ def recognize(
     each is a frame of its own are read one by one. Raises `BadHex`, `BadLength`, `NotFound` or `Ambiguous`.
     """
     asked = find_node(icd, node) if node is not None else None
-    message = find_message(icd, asked.name, key, kind) if asked and key is not None else None
+    message = _named(icd, asked, key, kind, text) if asked and key is not None else None
     if isinstance(text, bytes):
         return _readings(icd, Pasted(text), asked, message, kind)
     lines = [line for line in text.splitlines() if line.strip()]
@@ -42,6 +42,24 @@ def recognize(
         if apart:
             return apart
         raise
+
+
+def _named(icd: Icd, node: Node, key: str, kind: str | None, text: str | bytes) -> Message:
+    """The message that is asked for; of those that share an id the one that the frame is, which may have the id in front."""
+    try:
+        return find_message(icd, node.name, key, kind)
+    except Ambiguous:
+        known = find_sharing(icd, node.name, key, kind)
+        data = b"" if not known else text if isinstance(text, bytes) else read(text).data
+        both = Speaker(icd, node, facts.of(icd, node)).taken_apart(data) if known else None
+        found = match.message_of(icd, known, data) if known else None
+        if found is None and both is not None and both[0] in known[0].ids:
+            found = match.message_of(icd, known, both[1])
+        if found is None and known:
+            raise match.none_of(known, f"{len(data)} byte{'' if len(data) == 1 else 's'}") from None
+        if found is None:
+            raise
+        return found
 
 
 def _line_by_line(

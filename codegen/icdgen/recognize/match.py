@@ -9,8 +9,8 @@ from icdgen_runtime.wire.i2c import i2c_write
 from icdgen import codec
 from icdgen.describe.numbers import length_text
 from icdgen.icd import wire_ids
-from icdgen.icd.model import Message
-from icdgen.protocol.facts import Facts
+from icdgen.icd.model import Icd, Message
+from icdgen.icd.variants import Variant
 from icdgen.recognize.reading import ACKNOWLEDGE, REQUEST, TELECOMMAND, TELEMETRY, Reading, Speaker
 from icdgen.values.errors import Ambiguous, BadLength, NotFound
 from icdgen.values.find import describe
@@ -28,9 +28,10 @@ def by_length(speakers: Sequence[Speaker], data: bytes) -> list[Reading]:
     """What bytes without an id can be, by their number alone, and with a checksum if one is right."""
     found = []
     for speaker in speakers:
-        for what, messages in _directions(speaker.facts):
-            for id, message in messages.items():
-                read = _with_checksum(speaker, what, id, message, data)
+        for what, known in _directions(speaker):
+            for id, those in known.items():
+                message = message_of(speaker.icd, [one.message for one in those], data)
+                read = _with_checksum(speaker, what, id, message, data) if message else None
                 if read:
                     found.append(read)
     return _each_once(found)
@@ -41,8 +42,8 @@ def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
     if apart is None:
         return
     id, data = apart
-    for what, messages in _directions(facts):
-        message = messages.get(id)
+    for what, known in _directions(speaker):
+        message = message_of(speaker.icd, [one.message for one in known.get(id, ())], data)
         read = _with_checksum(speaker, what, id, message, data) if message else None
         if read:
             yield read
@@ -55,8 +56,18 @@ def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
             yield Reading(speaker, ACKNOWLEDGE, facts.telecommands[told], told, error=error)
 
 
-def _directions(facts: Facts) -> tuple[tuple[str, dict[int, Message]], ...]:
-    return (TELECOMMAND, facts.telecommands), (TELEMETRY, facts.telemetry)
+def message_of(icd: Icd, known: Sequence[Message], data: bytes) -> Message | None:
+    """The message of an id; of those that share it the one that the data are of, if there is one."""
+    if len(known) < 2:
+        return known[0] if known else None
+    try:
+        return codec.which(icd, known, data)
+    except codec.LengthError:
+        return None
+
+
+def _directions(speaker: Speaker) -> tuple[tuple[str, dict[int, tuple[Variant, ...]]], ...]:
+    return (TELECOMMAND, speaker.ids.telecommand), (TELEMETRY, speaker.ids.telemetry)
 
 
 def _with_checksum(speaker: Speaker, what: str, id: int, message: Message, data: bytes) -> Reading | None:
@@ -95,8 +106,8 @@ def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
     known = {
         (what, message.node, message.name): (speaker, message, id, data)
         for speaker, (id, data) in apart
-        for what, messages in _directions(speaker.facts)
-        if (message := messages.get(id))
+        for what, messages in _directions(speaker)
+        for message, *_ in messages.get(id, ())
     }
     names = ", ".join(dict.fromkeys(speaker.node.name for speaker in speakers))
     if not apart:
@@ -114,9 +125,18 @@ def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
             return wrong
     told = " or ".join(f"`{m.name}` ({describe(m)}) has {length_text(m)}" for _, m, _, _ in known.values())
     _, first, id, data = next(iter(known.values()))
+    if len(known) > 1 and any(len(data) in message.lengths for _, message, _, data in known.values()):
+        return none_of([message for _, message, _, _ in known.values()], f"the {len(data)} bytes after the id {id}")
     return BadLength(
         f"{told}, {len(data)} given after the id {id}", first.length, len(data), "bytes are missing, or too many"
     )
+
+
+def none_of(messages: Sequence[Message], data: str) -> NotFound:
+    """Data that are of none of the messages that share an id."""
+    told = ", ".join(f"`{one.name}` ({describe(one)}, {length_text(one)})" for one in messages)
+    help = "a byte was damaged, or there are too many; name the message to have them read all the same"
+    return NotFound(f"{data} are like none of {told}, by length and constants", help)
 
 
 def miscounted(speaker: Speaker, message: Message, data: bytes) -> BadLength | None:

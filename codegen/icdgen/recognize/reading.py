@@ -10,6 +10,7 @@ from icdgen_runtime.wire.link import Link
 from icdgen.backends.python.objects.links import link_of
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.variants import Ids, ids_of
 from icdgen.protocol.facts import Facts
 from icdgen.values.find import KINDS, describe
 from icdgen.values.frame import Frame
@@ -29,6 +30,11 @@ class Speaker:
     def link(self) -> Link:
         """What the wire layer has to know of it."""
         return link_of(self.icd, self.facts)
+
+    @cached_property
+    def ids(self) -> Ids:
+        """The messages that it speaks, by their ids."""
+        return ids_of(self.icd, self.node)
 
     def taken_apart(self, body: bytes) -> tuple[int, bytes] | None:
         """The id that bytes begin with, and the rest; None if there are too few."""

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 
 from icdgen.describe.errata import errata_of_enum, errata_of_message
 from icdgen.describe.numbers import length_text
+from icdgen.describe.shared_ids import sharing
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node
+from icdgen.icd.variants import ids_of
 from icdgen.icd.wire_ids import DEFAULT_BITS, size
 from icdgen.show.fields import field_table
 from icdgen.tables import Column, clean, render
@@ -136,6 +138,7 @@ def _message(icd: Icd, message: Message, width: int | None) -> str:
     ]
     lines = [f"{node.name}: {message.name}", "; ".join(filter(None, facts)), message.summary]
     lines += [f"Dangerous: {message.hazard}"] if message.hazard else []
+    lines += filter(None, [sharing(ids_of(icd, node), message)])
     lines += [f"From bit {part.at} it repeats {part.message}." for part in message.contains]
     text = _lines(lines, width)
     table = field_table(message, node, width)

@@ -81,16 +81,30 @@ def find_message(icd: Icd, node_name: str, key: str, kind: str | None = None) ->
     """
     node = find_node(icd, node_name)
     messages = [m for m in icd.messages_of(node) if kind is None or is_of_kind(m, kind)]
-    found = by_name(messages, key, node.vocabulary)
-    if not found and _NUMBER.fullmatch(key.strip()):
-        wanted = int(key, 0) if key.strip()[:2] in ("0x", "0X") else int(key)
-        found = [m for m in messages if wanted in _ids(m, kind)]
+    found = by_name(messages, key, node.vocabulary) or _by_id(messages, key, kind)
     if len(found) == 1:
         return found[0]
     if found:
         listed = ", ".join(f"`{m.name}` ({describe(m)})" for m in found)
         raise Ambiguous(f"`{key}` fits several messages of {node.name}: {listed}", "give the full name, or the kind")
     raise NotFound(f"{node.name} has no {kind or 'message'} `{key}`", _message_help(icd, node, messages, key, kind))
+
+
+def find_sharing(icd: Icd, node_name: str, key: str, kind: str | None = None) -> list[Message]:
+    """The messages that share the id, in one direction; none if the key is no id, or that of one message. Raises `NotFound`."""
+    messages = icd.messages_of(find_node(icd, node_name))
+    for direction in (TELECOMMAND, TELEMETRY):
+        found = _by_id([m for m in messages if is_of_kind(m, direction)], key, direction)
+        if len(found) > 1 and kind in (None, direction):
+            return found
+    return []
+
+
+def _by_id(messages: Sequence[Message], key: str, kind: str | None) -> list[Message]:
+    if not _NUMBER.fullmatch(key.strip()):
+        return []
+    wanted = int(key, 0) if key.strip()[:2] in ("0x", "0X") else int(key)
+    return [m for m in messages if wanted in _ids(m, kind)]
 
 
 def find_field(message: Message, key: str, vocabulary: tuple[str, ...] = ()) -> Field:

@@ -19,10 +19,11 @@ class MessageLines:
 
 @dataclass(slots=True)
 class NodeLines:
-    """``head``: key of the file's head -> line; ``ids``: direction -> line; the others by their names."""
+    """``head``: key of the file's head -> line; ``ids``: direction -> line; ``shared``: in order; the others by name."""
 
     head: dict[str, int] = field(default_factory=dict)
     ids: dict[str, int] = field(default_factory=dict)
+    shared: list[int] = field(default_factory=list)
     enums: dict[str, int] = field(default_factory=dict)
     messages: dict[str, MessageLines] = field(default_factory=dict)
 
@@ -38,7 +39,9 @@ def lines(vectors: NodeVectors, text: str) -> NodeLines:
     for direction in vectors.ids:
         found.ids[direction] = next(rest)[0]
     for _, line in rest:
-        if line == '"enums": [':
+        if line == '"shared_ids": [':
+            found.shared = [next(rest)[0] for _ in vectors.shared]
+        elif line == '"enums": [':
             found.enums = {enum.name: next(rest)[0] for enum, _ in vectors.enums}
         elif line == '"messages": [':
             break

@@ -9,7 +9,7 @@ from typing import Any
 
 from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node
-from icdgen.vectors import patterns
+from icdgen.vectors import patterns, shared
 from icdgen.vectors.settings import Settings, bits_of, settings
 
 FORMAT = 1
@@ -48,7 +48,8 @@ class NodeVectors:
     """The vectors of what a node declares; those of included nodes are in files of their own."""
 
     node: Node
-    ids: dict[str, dict[int, str]]  # direction -> id -> message; every other id is unknown
+    ids: dict[str, dict[int, list[str]]]  # direction -> id -> the messages of it; every other id is unknown
+    shared: tuple[shared.SharedRow, ...]  # frames of ids that several messages have
     enums: tuple[tuple[Enum, int | None], ...]  # with a value that has no member, where 64 bits leave one
     messages: tuple[MessageVectors, ...]
 
@@ -58,6 +59,7 @@ def make(icd: Icd, node: Node) -> NodeVectors:
     return NodeVectors(
         node=node,
         ids=_ids(icd, node),
+        shared=tuple(shared.rows(icd, node)),
         enums=tuple((enum, enum.unnamed) for enum in node.enums),
         messages=tuple(message_vectors(node, message) for message in node.messages),
     )
@@ -123,15 +125,17 @@ def known_text(raw: bytes) -> str | None:
     return None if "\ufffd" in said else said
 
 
-def _ids(icd: Icd, node: Node) -> dict[str, dict[int, str]]:
-    ids: dict[str, dict[int, str]] = {TELECOMMAND: {}, TELEMETRY: {}, CONFIGURATION: {}}
-    for message in icd.messages_of(node):
-        if message.telecommand_id is not None:
-            ids[TELECOMMAND][message.telecommand_id] = message.name
-        if message.telemetry_id is not None:
-            ids[TELEMETRY][message.telemetry_id] = message.name
-    for pick in ("get_id", "set_id"):  # a set_id wins over an equal get_id
+def _ids(icd: Icd, node: Node) -> dict[str, dict[int, list[str]]]:
+    found = {direction: shared.ids(icd, node, direction) for direction in (TELECOMMAND, TELEMETRY)}
+    settings: dict[int, list[Message]] = {}
+    for pick in ("set_id", "get_id"):  # a set_id wins over an equal get_id
+        known = set(settings)
         for message in icd.messages_of(node):
-            if message.kind == CONFIGURATION:
-                ids[CONFIGURATION][getattr(message, pick)] = message.name
-    return {direction: dict(sorted(found.items())) for direction, found in ids.items()}
+            id = getattr(message, pick)
+            if id is not None and id not in known:
+                settings.setdefault(id, []).append(message)
+    found[CONFIGURATION] = dict(sorted(settings.items()))
+    return {
+        direction: {id: [message.name for message in messages] for id, messages in ids.items()}
+        for direction, ids in found.items()
+    }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from functools import lru_cache
 
@@ -11,6 +11,7 @@ from icdgen import __version__
 from icdgen.icd.model import Field
 from icdgen.vectors.make import FORMAT, MessageVectors, NodeVectors, Row
 from icdgen.vectors.settings import NEVER
+from icdgen.vectors.shared import SharedRow
 
 
 def text(vectors: NodeVectors) -> str:
@@ -30,6 +31,8 @@ def text(vectors: NodeVectors) -> str:
     parts = [f"{_json(key)}: {_json(value)}" for key, value in head.items()]
     parts.append(f'"never_set": {_json(list(NEVER))}')
     parts.append('"ids": {\n' + ",\n".join(_ids(vectors)) + "\n}")
+    if vectors.shared:
+        parts.append(_array("shared_ids", list(_shared(vectors.shared))))
     parts.append(_array("enums", list(_enums(vectors))))
     parts.append(_array("messages", [_message(message) for message in vectors.messages]))
     return "{\n" + ",\n".join(parts) + "\n}\n"
@@ -66,7 +69,14 @@ def raw_json(field: Field, value: int | bytes | None) -> int | str | None:
 
 def _ids(vectors: NodeVectors) -> Iterator[str]:
     for direction, known in vectors.ids.items():
-        yield f"{_json(direction)}: {_json({str(id): name for id, name in known.items()})}"
+        named = {str(id): names[0] if len(names) == 1 else names for id, names in known.items()}
+        yield f"{_json(direction)}: {_json(named)}"
+
+
+def _shared(rows: Iterable[SharedRow]) -> Iterator[str]:
+    for row in rows:
+        line = {"direction": row.direction, "id": row.id, "bytes": row.frame.hex(), "message": row.message}
+        yield _json(line if row.expected is None else {**line, "expected": row.expected})
 
 
 def _enums(vectors: NodeVectors) -> Iterator[str]:

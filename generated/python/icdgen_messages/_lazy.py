@@ -13,9 +13,11 @@ __all__ = [
     "Any",
     "Buffer",
     "Callable",
+    "Candidate",
     "FieldInfo",
     "Frames",
     "Iterator",
+    "Known",
     "Literal",
     "M",
     "Mapping",
@@ -37,15 +39,17 @@ if TYPE_CHECKING:
     from ._base import Message, Struct
     from ._enumeration import OpenEnum
     from ._fields import FieldInfo
-    from ._hints import Buffer, Frames, M, S, T
+    from ._hints import Buffer, Candidate, Frames, Known, M, S, T
 else:
     _NAMED = {
         "Any": "typing",
         "Buffer": "._hints",
         "Callable": "collections.abc",
+        "Candidate": "._hints",
         "FieldInfo": "._fields",
         "Frames": "._hints",
         "Iterator": "collections.abc",
+        "Known": "._hints",
         "Literal": "typing",
         "M": "._hints",
         "Mapping": "collections.abc",
@@ -75,10 +79,18 @@ def attribute(
 
 
 class Messages:
-    """The messages of a node by id: ``TELEMETRY[146]`` is a class."""
+    """The messages of a node by id: ``TELEMETRY[146]`` is a class.
+
+    For an id that several messages have it stands for all of them: its `from_bytes` gives
+    the one that a frame is.
+    """
 
     def __init__(
-        self, module: dict[str, _lazy.Any], node: str, kind: str, names: dict[int, str]
+        self,
+        module: dict[str, _lazy.Any],
+        node: str,
+        kind: str,
+        names: _lazy.Mapping[int, _lazy.Known],
     ) -> None:
         self._module, self._node, self._kind, self._names = module, node, kind, names
         self._loaded: dict[int, type[Message]] = {}
@@ -92,10 +104,24 @@ class Messages:
     def _load(self, id: int) -> type[_lazy.Message]:
         if not isinstance(id, int) or id not in self._names:
             raise UnknownIdError(self._node, self._kind, id)
-        name = self._names[id]
-        message: type[Message] = attribute(self._module, self._module["_HOMES"], name)
+        names = self._names[id]
+        if isinstance(names, str):
+            message = self._named(names)
+        else:
+            from ._shared import shared
+
+            message = shared(self._node, self._kind, id, names, self._named)
         self._loaded[id] = message
         return message
+
+    def _named(self, name: str) -> type[_lazy.Message]:
+        found: type[Message] = attribute(self._module, self._module["_HOMES"], name)
+        return found
+
+    def of(self, id: int) -> tuple[type[_lazy.Message], ...]:
+        """All messages of an id: one, unless several share it. Raises `UnknownIdError`."""
+        found: _lazy.Any = self[id]
+        return tuple(one for one, _, _ in getattr(found, "FRAMES", ())) or (found,)
 
     def __contains__(self, id: object) -> bool:
         return isinstance(id, int) and id in self._names

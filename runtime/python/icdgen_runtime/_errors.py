@@ -30,14 +30,15 @@ class RangeError(IcdError):
 
 
 class UnknownIdError(IcdError):
-    """The node has no such message: ``node``, ``kind`` and ``id``."""
+    """The node has no such message: ``node``, ``kind`` and ``id``; ``why``, where it is not for the id."""
 
-    def __init__(self, node: str, kind: str, id: object) -> None:
-        super().__init__(f"{node} has no {kind} {_shortly(id)}")
-        self.node, self.kind, self.id = node, kind, id
+    def __init__(self, node: str, kind: str, id: object, why: str = "") -> None:
+        what = f"{node} has no {kind} {_shortly(id)}"
+        super().__init__(f"{what} like this: {why}" if why else what)
+        self.node, self.kind, self.id, self.why = node, kind, id, why
 
-    def __reduce__(self) -> tuple[type[UnknownIdError], tuple[str, str, object]]:
-        return UnknownIdError, (self.node, self.kind, self.id)
+    def __reduce__(self) -> tuple[type[UnknownIdError], tuple[str, str, object, str]]:
+        return UnknownIdError, (self.node, self.kind, self.id, self.why)
 
 
 def _shortly(value: object) -> str:

@@ -53,3 +53,10 @@ def class_of(message: KindOf[Any, M]) -> type[M]:
 def message_of(message: SpokenBy[Any]) -> _lazy.Message:
     """The message that it is."""
     return cast("_lazy.Message", message)
+
+
+Candidate = tuple[str, range, tuple[tuple[int, int, int], ...]]
+"""A message of an id that several have: its name, its lengths, and byte, mask and value of its constants."""
+
+Known = Union[str, tuple[Candidate, ...]]
+"""What is known of an id: the message, or the messages that it may be."""

@@ -48,29 +48,49 @@ class Front:
             raise Refusal("unknown-node")
         return place
 
-    def route(self, node: int, kind: str, id: int) -> tuple[tuple[int, int, int], dict[str, Any] | None]:
-        """Node, direction and id that lead to a message, and what is known of it: None if the ICD has none there."""
+    def route(
+        self, node: int, kind: str, id: int, name: str | None = None
+    ) -> tuple[tuple[int, int, int | str], dict[str, Any] | None]:
+        """Node, direction and id that lead to a message, and what is known of it: None if the ICD has none there.
+
+        Of an id that several messages have ``name`` says which is meant; without it the id leads to none of them: see `is_shared`.
+        """
         if not 0 <= id < 1 << self.plan["nodes"][node]["id_bits"]:
             raise Refusal("unknown-id")
-        found = self._routes[node].get((kind, id))
-        if found is None and kind == "configuration":
+        found = self._routes[node].get((kind, id), [])
+        if not found and kind == "configuration":
             raise Refusal("unknown-id")
-        direction, message = found or (DIRECTIONS[kind], None)
+        if len(found) > 1 and name is None:
+            return (node, found[0][0], id), None
+        found = [one for one in found if name in (None, one[1]["name"])]
+        if name is not None and not found:
+            raise Refusal("unknown-id")
+        direction, message = found[0] if found else (DIRECTIONS[kind], None)
+        if message is not None and self.is_shared(node, list(DIRECTIONS)[direction], id):
+            return (node, direction, f"{id}:{message['name'].encode().hex()}"), message
         return (node, direction, id), message
 
-    def _routes_of(self, speaks: list[int]) -> dict[tuple[str, int], tuple[int, dict[str, Any]]]:
-        found: dict[tuple[str, int], tuple[int, dict[str, Any]]] = {}
-        for message in (self.plan["messages"][place] for place in speaks):
-            set_id, get_id = message["configuration"]
+    def is_shared(self, node: int, kind: str, id: int) -> bool:
+        """Whether several messages have the id."""
+        return len(self._routes[node].get((kind, id), [])) > 1
+
+    def _routes_of(self, speaks: list[int]) -> dict[tuple[str, int], list[tuple[int, dict[str, Any]]]]:
+        found: dict[tuple[str, int], list[tuple[int, dict[str, Any]]]] = {}
+        spoken = [self.plan["messages"][place] for place in speaks]
+        for message in spoken:
+            set_id, _ = message["configuration"]
             for kind, id, direction in (
                 ("telecommand", message["telecommand"], 0),
                 ("telemetry", message["telemetry"], 1),
                 ("configuration", set_id, 0),
             ):
                 if id is not None:
-                    found[kind, id] = direction, message
-            if get_id is not None:
-                found.setdefault(("configuration", get_id), (1, message))
+                    found.setdefault((kind, id), []).append((direction, message))
+        set_ids = set(found)
+        for message in spoken:
+            got = ("configuration", message["configuration"][1])
+            if got[1] is not None and got not in set_ids:
+                found.setdefault(got, []).append((1, message))
         return found
 
     def _wire(self, op: str, request: dict[str, Any]) -> dict[str, Any]:

@@ -26,6 +26,8 @@ def decode(front: Front, request: Request) -> dict[str, Any]:
         raise Refusal("request", detail="`names` is neither true nor false")
     route, message = _message(front, request)
     reply = front.ask("decode", *route, frame.hex())
+    if message is None and "name" in reply.facts and front.is_shared(route[0], request["kind"], request["id"]):
+        return {"message": text_of(reply.facts["name"]), "bytes": reply.facts["bytes"]}
     if message is None:
         raise Refusal("dispatcher", detail="decodes a message that does not exist")
     return _described(message["fields"], reply, names)
@@ -116,17 +118,20 @@ OPS: dict[str, Callable[[Front, Request], dict[str, Any]]] = {
 }
 
 
-def _message(front: Front, request: Request) -> tuple[tuple[int, int, int], dict[str, Any] | None]:
+def _message(front: Front, request: Request) -> tuple[tuple[int, int, int | str], dict[str, Any] | None]:
     text(request, "node")
     kind, id = text(request, "kind"), _integer(request.get("id"))
     if kind not in KINDS:
         raise Refusal("request", detail="there is no such kind")
-    return front.route(front.node(request), kind, id)
+    name = text(request, "message") if "message" in request else None
+    return front.route(front.node(request), kind, id, name)
 
 
-def _known(front: Front, request: Request) -> tuple[tuple[int, int, int], list[Field]]:
+def _known(front: Front, request: Request) -> tuple[tuple[int, int, int | str], list[Field]]:
     """The route to a message and its fields; where the ICD has none, what the program says of that id."""
     route, message = _message(front, request)
+    if message is None and front.is_shared(route[0], request["kind"], request["id"]):
+        raise Refusal("request", detail="several messages have the id, and `message` names none")
     if message is None:
         front.ask("decode", *route, "")
         raise Refusal("dispatcher", detail="decodes a message that does not exist")

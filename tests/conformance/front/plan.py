@@ -31,6 +31,7 @@ def plan(icd: Icd) -> dict[str, Any]:
 
 def _message(message: Message) -> dict[str, Any]:
     return {
+        "name": message.name,
         "telecommand": message.telecommand_id,
         "telemetry": message.telemetry_id,
         "configuration": [message.set_id, message.get_id],

@@ -70,6 +70,7 @@ class Route(NamedTuple):
     """An id that leads to a message."""
 
     id: str
+    which: str  # message of the direction it is, where messages share ids
     stem: str
 
 
@@ -78,6 +79,7 @@ class Dispatcher(NamedTuple):
 
     direction: str
     name: str
+    is_shared: bool
     routes: list[Route]
     is_open: bool  # frames of some of its messages differ in length
 
@@ -135,10 +137,13 @@ class _Rows:
         }
 
     def dispatcher(self, direction: str, messages: list[tuple[MessageDescription, str]]) -> Dispatcher:
-        routes = [Route(names.constant(one, id), names.stem(one)) for one, id in messages]
-        return Dispatcher(
-            direction, f"{self.node.name}_{direction}", routes, any(one.tail is not None for one, _ in messages)
-        )
+        name, is_shared = f"{self.node.name}_{direction}", self.node.shares_ids(direction)
+        routes = [
+            Route(names.constant(one, id), names.enumerator_of(name, one) if is_shared else "0u", names.stem(one))
+            for one, id in messages
+        ]
+        is_open = any(one.tail is not None for one, _ in messages)
+        return Dispatcher(direction, name, is_shared, routes, is_open)
 
     def message(self, message: MessageDescription) -> MessageRow:
         return MessageRow(

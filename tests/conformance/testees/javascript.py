@@ -11,7 +11,9 @@ from pathlib import PurePosixPath
 
 from icdgen.backends import Identifier
 from icdgen.backends.html.plan import enum_plan, message_plan
+from icdgen.backends.html.recognition import numbers_of
 from icdgen.icd.model import Icd, Message
+from icdgen.icd.variants import ids_of
 from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
 
@@ -26,7 +28,8 @@ class JsTesteeBackend:
 
     def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
         """``testee.js`` and what it needs."""
-        yield PurePosixPath("codec.js"), Renderer("html")("codec.js")
+        for name in ("codec.js", "frames.js"):
+            yield PurePosixPath(name), Renderer("html")(name)
         yield PurePosixPath("testee.js"), render("testee.js")
         yield PurePosixPath("nodes.json"), json.dumps(_plans(icd), separators=(",", ":")) + "\n"
 
@@ -40,15 +43,12 @@ def _plans(icd: Icd) -> dict[str, object]:
     places = {(one.node, one.name): place for place, one in enumerate(_messages(icd))}
     nodes = []
     for node in icd.nodes:
-        spoken = {places[one.node, one.name]: one for one in icd.messages_of(node)}
+        known = ids_of(icd, node)
         nodes.append(
             {
                 "facts": {"node_type": node.node_type, "interface_version": node.interface_version},
                 "enums": [enum_plan(enum) for enum in node.enums],
-                "ways": [
-                    {one.telecommand_id: place for place, one in spoken.items() if one.telecommand_id is not None},
-                    {one.telemetry_id: place for place, one in spoken.items() if one.telemetry_id is not None},
-                ],
+                "ways": [numbers_of(known.telecommand, places), numbers_of(known.telemetry, places)],
             }
         )
     declaring = {node.name: node for node in icd.nodes}

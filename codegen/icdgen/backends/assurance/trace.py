@@ -9,6 +9,7 @@ from functools import cached_property
 from icdgen.backends.assurance import changes
 from icdgen.backends.assurance.changes import Change
 from icdgen.backends.assurance.noticing import MessageWatch
+from icdgen.backends.assurance.shared_ids import SharedIds
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node, Struct
@@ -86,6 +87,7 @@ class Trace:
             for one in vectors.messages:
                 name = one.message.name
                 self._watches[node.name, name] = MessageWatch(node, one, found.messages[name])
+        self._shared = SharedIds(icd, self._vectors, self._lines)
 
     def elements(self, node: Node) -> Iterator[Element]:
         """Those of a node that the ICD has lines for: itself, its enumerations with members, its messages with fields."""
@@ -108,19 +110,28 @@ class Trace:
                 if field.implied:
                     continue
                 found = changes.of_field(field, message, node)
-                own = tuple(Traced(change, _noticed(node, watch.member(place, field, now))) for change, now in found)
+                own = tuple(self._of_member(message, node, watch, place, field, *one) for one in found)
                 yield Element("field", node, message, field, row, own)
                 place += len(field.elements)
+
+    def _of_member(
+        self, message: Message, node: Node, watch: MessageWatch, place: int, field: Field, change: Change, now: Field
+    ) -> Traced:
+        fields = (*message.fields[:place], *now.elements, *message.fields[place + len(field.elements) :])
+        others = self._shared.of_message(message, replace(message, fields=fields))
+        return Traced(change, together([_noticed(node, watch.member(place, field, now)), others]))
 
     def _of_struct(self, struct: Struct, field: Field, node: Node) -> Iterator[Traced]:
         """The changes of a member of a struct, noticed wherever the struct stands."""
         for change, now in changes.of_field(field, struct, node):
             others = tuple(one for member in struct.members for one in (now if member == field else member).elements)
-            changed, found = replace(struct, fields=others), []
+            changed = replace(struct, fields=others)
+            found: list[Noticed] = []
             for watch in self._watches.values():
                 fields = changes.with_struct(watch.message.fields, struct, changed)
                 if fields is not watch.message.fields:
-                    found.append(_noticed(watch.node, watch.struct(fields)))
+                    shared = self._shared.of_message(watch.message, replace(watch.message, fields=fields))
+                    found += (_noticed(watch.node, watch.struct(fields)), shared)
             yield Traced(change, together(found))
 
     def _of_node(self, node: Node) -> Iterator[Traced]:
@@ -130,7 +141,7 @@ class Trace:
             else:
                 watches = (self._watches[node.name, message.name] for message in node.messages)
                 rows = [line for watch in watches for line in watch.places(watch.message.fields, now)]
-                yield Traced(change, _noticed(node, rows))
+                yield Traced(change, together([_noticed(node, rows), self._shared.of_node(node, now)]))
 
     def _of_enum(self, enum: Enum) -> Iterator[Traced]:
         for change, now in changes.of_enum(enum):
@@ -154,18 +165,19 @@ class Trace:
         watch = self._watches[node.name, message.name]
         for change, now in changes.of_message(message, node):
             if change.kind == "id":
-                yield Traced(change, together([self._ids(message, now), _noticed(node, watch.id(change.key))]))
+                found = together([self._ids(message, now), _noticed(node, watch.id(change.key))])
             elif change.kind == "length":
-                yield Traced(change, _noticed(node, watch.length()))
+                found = _noticed(node, watch.length())
             else:
-                yield Traced(change, _noticed(node, watch.places(now.fields, node)))
+                found = _noticed(node, watch.places(now.fields, node))
+            yield Traced(change, together([found, self._shared.of_message(message, now)]))
 
     def _ids(self, message: Message, now: Message) -> Noticed:
         """The lists of ids, of each node that speaks the message, in which one is no longer its own."""
         found: Noticed = {}
         for node in self.icd.nodes:
             for direction, known in self._vectors[node.name].ids.items() if _speaks(self.icd, node, message) else ():
-                mine = {id for id, name in known.items() if name == message.name}
+                mine = {id for id, names in known.items() if message.name in names}
                 if mine & (set(message.ids) - set(now.ids)):
                     found.setdefault(node.name, []).append(self._lines[node.name].ids[direction])
         return found

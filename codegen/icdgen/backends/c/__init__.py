@@ -12,7 +12,7 @@ from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.member_groups import in_groups
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
-from icdgen.backends.c.statement import call, head
+from icdgen.backends.c.statement import call, head, like
 from icdgen.backends.c.text import FILE, comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from icdgen.render import Renderer
 
 _SPELLING = (
-    byte_count, call, comment, described, head, length_text, literal, prose, names.constant, names.enumerator, names.stem,
-    sentence, text_comment, words,
+    byte_count, call, comment, described, head, length_text, like, literal, prose, names.constant, names.enumerator,
+    names.enumerator_of, names.stem, sentence, text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}
 """What templates spell names and text with."""

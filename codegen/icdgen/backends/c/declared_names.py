@@ -47,7 +47,13 @@ def _node(node: NodeDescription) -> Iterator[Identifier]:
         for end in ("t", "name", "length", "size", "decode", "encode"):
             owner = f"{kind} of node `{node.name}`"
             yield Identifier(FILE, f"{node.name}_{kind}_{end}", owner, node.model.source)
+        if node.shares_ids(kind):
+            for end in ("which", "which_t"):
+                yield Identifier(FILE, f"{node.name}_{kind}_{end}", owner, node.model.source)
     for direction in node.directions:
+        if node.shares_ids(direction.kind):
+            stem = f"{node.name}_{direction.kind}"
+            yield from (one.identifier(FILE, names.enumerator_of(stem, one)) for one, _ in direction.messages)
         for one, _ in direction.messages:
             yield one.identifier(f"members of {node.name}_{direction.kind}_t", one.name)
     if node.enums:

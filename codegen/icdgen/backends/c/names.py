@@ -32,3 +32,8 @@ def writing(message: MessageDescription, tail: TailDescription) -> str:
 def constant(message: Composite[Any], name: str) -> str:
     """``DEMO_RESET_MAGIC_NUMBER_CONST``; ``DEMO_RESET_ID``"""
     return f"{stem(message)}_{name}".upper()
+
+
+def enumerator_of(direction: str, message: MessageDescription) -> str:
+    """``DEMO_TELEMETRY_IS_STATUS``, where messages of ``demo_telemetry`` share ids."""
+    return f"{direction}_is_{message.name}".upper()

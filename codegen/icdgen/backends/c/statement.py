@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from icdgen.backends.c.names import constant
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.lines import STEP, bracketed
+from icdgen.describe.nodes import Candidate
 
 _COMPOUND = re.compile(r" (?:<<|>>|&) \w+\Z")
 
@@ -36,6 +38,34 @@ def assigned_byte(target: str, terms: Sequence[str]) -> str:
         return line
     rows = f" |\n{STEP * 2}".join(map(grouped, terms))
     return f"{target} = ICDGEN_U8(\n{STEP * 2}{rows});"
+
+
+def like(candidate: Candidate) -> str:
+    """Whether a frame is that of a message: its length, and the bytes of its constants; 0 where zeros are cut off."""
+    message = candidate.message
+    terms = _lengths(message.model.lengths, constant(message, "length"))
+    for sign in candidate.signs:
+        byte = f"buffer[{sign.byte}]"
+        if sign.byte >= message.model.least:
+            byte = f"((length > {sign.byte}u) ? {byte} : 0u)"
+        masked = byte if sign.mask == 0xFF else f"({byte} & 0x{sign.mask:02X}u)"
+        terms.append(f"{masked} == 0x{sign.value:02X}u")
+    if len(terms) == 1:
+        return terms[0]
+    return f" &&\n{STEP * 3}".join(f"({term})" for term in terms)
+
+
+def _lengths(lengths: range, longest: str) -> list[str]:
+    """What holds of the ``length`` of a frame; ``longest`` is the macro of the longest."""
+    least, step = lengths[0], lengths.step
+    if len(lengths) == 1:
+        return [f"length == {longest}"]
+    tests = [f"length >= {least}u"] if least else []
+    tests.append(f"length <= {longest}")
+    if step > 1:
+        rest = f"(length - {least}u)" if least else "length"
+        tests.append(f"({rest} % {step}u) == 0u")
+    return tests
 
 
 def head(returned: str, name: str, *parameters: str) -> str:

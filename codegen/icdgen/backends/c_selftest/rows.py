@@ -19,6 +19,7 @@ from icdgen.vectors.ids import worth_asking
 from icdgen.vectors.make import MessageVectors, Row, make
 from icdgen.vectors.patterns import values
 from icdgen.vectors.settings import NEVER, Settings
+from icdgen.vectors.shared import SharedRow
 
 BYTES_IN_ROW, NUMBERS_IN_ROW = 16, 4
 TYPES = {"bool": "BOOL", "bytes": "BYTES", "text": "BYTES"}
@@ -104,7 +105,7 @@ class _Rows:
             "enums": [names.stem(enum) for enum in node.enums],
             "names": list(self.names()),
             "messages": [self.message(*both) for both in zip(node.messages, self.vectors.messages, strict=True)],
-            "dispatchers": [(f"{node.name}_{one.kind}", self.lengths(one, id_bits)) for one in node.directions],
+            "dispatchers": [self.dispatcher(one, id_bits) for one in node.directions],
             "id_type": f"uint{id_bits}_t",
             "longest": max((one.model.length for one in node.spoken), default=0),
             "constant": names.constant,
@@ -121,11 +122,16 @@ class _Rows:
             if unknown is not None:
                 yield stem, _unsigned(unknown), "NULL"
 
-    def lengths(self, direction: Direction, id_bits: int) -> list[str]:
-        """Some ids and the lengths of their messages, -1 where there is none."""
-        lengths = {getattr(one.model, f"{direction.kind}_id"): one.model for one, _ in direction.messages}
-        known = ((id, lengths.get(id)) for id in worth_asking(lengths, id_bits))
-        return [f"{{{id}u, {one.length}, {one.least}u}}" if one else f"{{{id}u, -1, 0u}}" for id, one in known]
+    def dispatcher(self, direction: Direction, id_bits: int) -> tuple[str, list[str], bool, list[str]]:
+        """Its name; some ids and the lengths of their messages, -1 where there is none; the frames of ids that are shared."""
+        known = self.node.ids(direction.kind)
+        lengths = {one.id: one.first.message.model for one in known if not one.is_shared}
+        shared = {one.id for one in known if one.is_shared}
+        asked = (id for id in worth_asking((*lengths, *shared), id_bits) if id not in shared)
+        known_or_not = ((id, lengths.get(id)) for id in asked)
+        rows = [f"{{{id}u, {one.length}, {one.least}u}}" if one else f"{{{id}u, -1, 0u}}" for id, one in known_or_not]
+        frames = [_frame(row) for row in self.vectors.shared if row.direction == direction.kind]
+        return f"{self.node.name}_{direction.kind}", rows, bool(shared), frames
 
     def message(self, message: MessageDescription, vectors: MessageVectors) -> MessageRow:
         kept = bytes(message.model.length)
@@ -187,6 +193,14 @@ class _Rows:
             scaled=_scaled(one, vectors.settings.get(field.name)) if one.is_scaled else None,
             text=_texts(one, vectors.settings[field.name]) if one.is_text else None,
         )
+
+
+def _frame(row: SharedRow) -> str:
+    """A frame of an id that several messages have, and what becomes of it."""
+    octets = f"(const uint8_t[]){{{', '.join(f'0x{byte:02X}' for byte in row.frame)}}}" if row.frame else "NULL"
+    refused = "ICD_ERROR_UNKNOWN_ID" if row.expected is None else "ICD_ERROR_LENGTH"
+    status, name = ("ICD_OK", literal(row.message)) if row.message is not None else (refused, "NULL")
+    return f"{{{row.id}u, {len(row.frame)}u, {octets}, {status}, {name}}}"
 
 
 def _tail(message: MessageDescription, vectors: MessageVectors) -> TailRow:

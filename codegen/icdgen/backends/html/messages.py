@@ -12,6 +12,7 @@ from icdgen.backends.html.usage import names, snippets
 from icdgen.describe import describe
 from icdgen.describe.errata import errata_of_message
 from icdgen.describe.numbers import length_text
+from icdgen.describe.shared_ids import sharing
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
 
@@ -66,6 +67,10 @@ def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str
         facts.append(("End", "may be left out as far as it is zeros", ""))
     if message.reserved:
         facts.append(("Reserved", f"last {texts.count(message.reserved, 'byte')}", ""))
+    shared = describe(relations.icd).node(node).known_ids
+    told = sharing(shared, message)
+    if told:
+        facts.append(("Id", told, ""))
     if message.group:
         facts.append(("Group", message.group, ""))
     if message.telecommand_id is not None:

@@ -10,6 +10,8 @@ from icdgen.backends.html import wire
 from icdgen.backends.html.relations import Relations
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
+from icdgen.icd.variants import Variant, ids_of
+from icdgen.layout import signs
 from icdgen.protocol import facts
 
 
@@ -39,17 +41,23 @@ def script(relations: Relations) -> str:
     return f'"use strict";\nglobalThis.icdgenFrameIndex = {json.dumps(index(relations), separators=(",", ":"))};\n'
 
 
+def numbers_of(ids: dict[int, tuple[Variant, ...]], numbers: dict[tuple[str, str], int]) -> dict[str, Any]:
+    """The number of the message of each id; where several share it, each with the bytes that its constants are in."""
+    return {str(id): _number(those, numbers) for id, those in ids.items()}
+
+
+def _number(variants: tuple[Variant, ...], numbers: dict[tuple[str, str], int]) -> object:
+    found = [(numbers[one.message.node, one.message.name], signs(one)) for one in variants]
+    return found if len(found) > 1 else found[0][0]
+
+
 def _speaker(relations: Relations, node: Node, numbers: dict[tuple[str, str], int]) -> dict[str, Any]:
-    known = facts.of(relations.icd, node)
-
-    def ids(messages: dict[int, Message]) -> dict[str, int]:
-        return {str(id): numbers[one.node, one.name] for id, one in messages.items()}
-
+    known, ids = facts.of(relations.icd, node), ids_of(relations.icd, node)
     found: dict[str, Any] = {
         "node": node.name,
         "title": node.title,
-        "telecommands": ids(known.telecommands),
-        "telemetry": ids(known.telemetry),
+        "telecommands": numbers_of(ids.telecommand, numbers),
+        "telemetry": numbers_of(ids.telemetry, numbers),
         "id_bytes": wire_ids.size(node.id_bits),
         "errors": {str(code): key.replace("_", " ") for key, code in known.errors.items()},
     }

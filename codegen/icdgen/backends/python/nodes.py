@@ -11,7 +11,8 @@ from icdgen.backends.python.text import docstring, literal, paragraph
 from icdgen.describe import Description, EnumDescription, NodeDescription
 from icdgen.describe.comments import sentence
 from icdgen.describe.description import Composite
-from icdgen.icd.model import Node
+from icdgen.describe.nodes import Under
+from icdgen.icd.model import Message, Node
 
 _OF_NODE = (
     "DIGEST", "ENUMS", "NAME", "TELECOMMANDS", "TELEMETRY", "TITLE", "decode_telecommand", "decode_telemetry",
@@ -34,10 +35,32 @@ def values(node: NodeDescription, description: Description) -> dict[str, object]
         "imports": sorted(f"from {home} import {name} as {name}" for home, name in declared),
         "public": sorted({*_OF_NODE, *_facts(node.model), *(name for _, name in declared)}),
         "homes": [(name, home) for home, name in sorted(declared)],
-        "telecommands": sorted((one.model.telecommand_id or 0, names.class_name(one)) for one in node.telecommands),
+        "telecommands": _by_id(node, "telecommand"),
         "enums": [(one.model.name, names.class_name(one)) for one in node.enums],
-        "telemetry": sorted((one.model.telemetry_id or 0, names.class_name(one)) for one in node.telemetry),
+        "telemetry": _by_id(node, "telemetry"),
     }
+
+
+def _by_id(node: NodeDescription, direction: str) -> list[tuple[int, str]]:
+    """The ids of a direction, and as literals what is known of each: the class, or all that a frame of it may be."""
+    return sorted((one.id, _known(one)) for one in node.ids(direction))
+
+
+def _known(under: Under) -> str:
+    if not under.is_shared:
+        return literal(names.class_name(under.first.message))
+    rows = []
+    for one in under.candidates:
+        signs = "".join(f"({sign.byte}, 0x{sign.mask:02X}, 0x{sign.value:02X}), " for sign in one.signs)
+        rows.append(
+            f"({literal(names.class_name(one.message))}, {_lengths(one.message.model)}, ({signs.rstrip(' ')})),"
+        )
+    return "(\n        " + "\n        ".join(rows) + "\n    )"
+
+
+def _lengths(message: Message) -> str:
+    lengths = message.lengths
+    return f"range({lengths.start}, {lengths.stop}{f', {lengths.step}' if lengths.step > 1 else ''})"
 
 
 def _facts(node: Node) -> list[str]:
@@ -62,10 +85,14 @@ def spoken(node: NodeDescription, description: Description) -> dict[str, object]
     return {"included": included, "bases": f"({', '.join(f'_{name}' for name in included)})" if included else ""}
 
 
-def mapping(pairs: Sequence[tuple[str | int, str]]) -> str:
+def mapping(pairs: Sequence[tuple[str, str]]) -> str:
     """A dictionary of names."""
-    rows = (f"{literal(key) if isinstance(key, str) else key}: {literal(value)}" for key, value in pairs)
-    return exploded("{", list(rows), "}")
+    return literals((literal(key), literal(value)) for key, value in pairs)
+
+
+def literals(pairs: Iterable[tuple[str | int, str]]) -> str:
+    """A dictionary of what is a literal already."""
+    return exploded("{", [f"{key}: {value}" for key, value in pairs], "}")
 
 
 def _documentation(node: Node) -> list[str]:

@@ -57,7 +57,8 @@ class RustBackend:
             digested = {**common, "origin": origin(node.model, with_digest=True)}
             link = found.get(node.name)
             about = nodes.about(node, client_example(node, link, self.crate) if link else [])
-            yield folder / "mod.rs", render("node.rs.j2", node=node, about=about, typed=nodes.typed, **digested)
+            functions = {"about": about, "typed": nodes.typed, "guarded": nodes.guarded}
+            yield folder / "mod.rs", render("node.rs.j2", node=node, **functions, **digested)
             shared = {**common, "origin": origin(node.model), "wired": wired}
             if node.enums:
                 yield folder / "enums.rs", render("enums.rs.j2", enums=node.enums, **shared)

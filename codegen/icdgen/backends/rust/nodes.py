@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from icdgen.backends.rust.text import code, doc, integer, prose
+from icdgen.backends.lines import STEP
+from icdgen.backends.rust.text import WIDTH, code, doc, integer, mask, prose
 from icdgen.describe import NodeDescription
 from icdgen.describe.comments import sentence
+from icdgen.describe.nodes import Candidate
 from icdgen.describe.storage import holding
 from icdgen.icd.model import Node
 
@@ -32,3 +34,30 @@ def about(node: NodeDescription, example: list[str]) -> str:
 def typed(value: int) -> str:
     """Type and literal of a number: ``u8 = 10``."""
     return f"u{holding(value.bit_length())} = {integer(value)}"
+
+
+def guarded(candidate: Candidate, path: str) -> str:
+    """What an arm takes: the id, and what of the bytes shows that they are of this message, its length and its constants."""
+    model = candidate.message.model
+    terms = _lengths(model.lengths, f"{path}::LENGTH")
+    for sign in candidate.signs:
+        byte = f"bytes[{sign.byte}]"
+        if sign.byte >= model.least:  # a zero that may be cut off
+            byte = f"bytes.get({sign.byte}).map_or(0, |byte| *byte)"
+        masked = byte if sign.mask == 0xFF else f"{byte} & {mask(sign.mask)}"
+        terms.append(f"{masked} == {mask(sign.value)}")
+    id = f"{STEP * 3}{path}::{candidate.id_name.upper()}"
+    line = f"{id} if {' && '.join(terms)}"
+    rows = f"\n{STEP * 5}&& ".join(terms)
+    return line if len(line) <= WIDTH - len(" => {") else f"{id}\n{STEP * 4}if {rows}"
+
+
+def _lengths(lengths: range, longest: str) -> list[str]:
+    """What holds of the length of a frame; ``longest`` is the constant of the longest."""
+    least, step = lengths[0], lengths.step
+    if len(lengths) == 1:
+        return [f"bytes.len() == {longest}"]
+    tests = [f"({least}..={longest}).contains(&bytes.len())" if least else f"bytes.len() <= {longest}"]
+    if step > 1:
+        tests.append(f"{f'(bytes.len() - {least})' if least else 'bytes.len()'} % {step} == 0")
+    return tests

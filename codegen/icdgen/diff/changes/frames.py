@@ -51,10 +51,10 @@ def id_taken_over(ctx: Context) -> Iterator[Found]:
         for kind, key in DIRECTIONS.items():
             before, after = (_spoken(icd.messages_of(side), key) for icd, side in ctx.sides(node))
             for number in sorted(before.keys() & after.keys()):
-                old, new = before[number], after[number]
-                gone, come = ctx.pair(old), ctx.pair(new)
-                if gone is come or (id(old), id(new), kind) in seen:
+                old, new = _exchanged(ctx, before[number], after[number])
+                if old is None or new is None or (id(old), id(new), kind) in seen:
                     continue
+                gone, come = ctx.pair(old), ctx.pair(new)
                 seen.add((id(old), id(new), kind))
                 same = " Both have the same length, so nobody will notice." if old.length == new.length else ""
                 yield Found(
@@ -70,8 +70,21 @@ def id_taken_over(ctx: Context) -> Iterator[Found]:
 _ID = ("id", "set_id", "get_id")
 
 
-def _spoken(messages: tuple[Message, ...], key: str) -> dict[int, Message]:
-    return {getattr(m, key): m for m in messages if getattr(m, key) is not None}
+def _exchanged(ctx: Context, before: list[Message], after: list[Message]) -> tuple[Message | None, Message | None]:
+    """Of the messages of an id one that no longer has it, and one that has it now: of the same length, if there is such."""
+    left = [one for one in before if not any(ctx.pair(one) is ctx.pair(other) for other in after)]
+    come = [one for one in after if not any(ctx.pair(one) is ctx.pair(other) for other in before)]
+    both = [(old, new) for old in left for new in come]
+    return min(both, key=lambda pair: pair[0].length != pair[1].length, default=(None, None))
+
+
+def _spoken(messages: tuple[Message, ...], key: str) -> dict[int, list[Message]]:
+    found: dict[int, list[Message]] = {}
+    for message in messages:
+        number = getattr(message, key)
+        if number is not None:
+            found.setdefault(number, []).append(message)
+    return found
 
 
 @rule("DIF105", "message")

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from icdgen.icd import wire_ids
+from icdgen.icd import variants, wire_ids
 from icdgen.icd.located import Map
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Node
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.duplicates import is_news, together
 from icdgen.icd.rules.fault import Fault
@@ -31,13 +31,14 @@ class Use(NamedTuple):
     id: int
     source: Map
     key: str
+    message: Message | None = None  # None: it is said to be missing
 
 
 def _used(node: Node) -> Iterator[Use]:
     """The ids of its messages."""
     for message in node.messages:
         for key, direction in KEYS[message.kind]:
-            yield Use(node, direction, wire_ids.number(message.source[key]), message.source, key)
+            yield Use(node, direction, wire_ids.number(message.source[key]), message.source, key, message)
 
 
 def _uses(node: Node) -> Iterator[Use]:
@@ -56,16 +57,40 @@ def _is_id(value: object) -> bool:
 
 
 @rule("ICD055")
-def ids_distinct(ctx: Context) -> Iterator[Fault]:
+def ids_told_apart(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        seen: dict[tuple[str, int], Use] = {}
+        is_linked = bool(ctx.protocol_of(node))
+        seen: dict[tuple[str, int], list[Use]] = {}
         for use in (u for n in ctx.scope(node) for u in _uses(n)):
-            first = seen.setdefault((use.direction, use.id), use)
-            if first is not use and is_news(ctx, node, first.node, use.node):
-                place = use.source.at(use.key)
-                other = f"{quote(first.source.get('name'))} ({line_of(first.source.at(first.key), place)})"
-                message = f"{use.direction} id {use.id} already belongs to {other}{together(node, use.node)}"
-                yield Fault(use.source, place, message, f"correct one `{use.key}`")
+            before = seen.setdefault((use.direction, use.id), [])
+            for first in before:
+                if not is_linked and _are_told_apart(first, use):
+                    continue
+                if is_news(ctx, node, first.node, use.node) or (is_linked and not ctx.protocol_of(use.node)):
+                    yield _same_id(node, first, use, is_linked)
+                    break
+            before.append(use)
+
+
+def _are_told_apart(one: Use, other: Use) -> bool:
+    """Whether a frame shows which of the two it is. What is said to be missing has nothing to show."""
+    if one.message is None or other.message is None:
+        return False
+    return variants.are_told_apart((one.message, one.node), (other.message, other.node))
+
+
+def _same_id(node: Node, first: Use, use: Use, is_linked: bool) -> Fault:
+    place = use.source.at(use.key)
+    other = f"{quote(first.source.get('name'))} ({line_of(first.source.at(first.key), place)})"
+    message = f"{use.direction} id {use.id} already belongs to {other}{together(node, use.node)}"
+    help = f"correct one `{use.key}`"
+    if first.message is not None and use.message is not None:
+        if not is_linked:
+            message += ", and nothing tells the two apart"
+            help += ", or give each a field with another `const` at the same place"
+        elif _are_told_apart(first, use):
+            message += ", and the links that `protocol` describes tell a message by its id alone"
+    return Fault(use.source, place, message, help)
 
 
 @rule("ICD056")

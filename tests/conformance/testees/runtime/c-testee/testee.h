@@ -36,13 +36,15 @@ typedef struct {
     const testee_field_t *fields;
     size_t field_count;
     void (*init)(void *message);
+    icd_status_t (*decode)(void *message, const uint8_t *buffer, size_t length);
     const char *(*misfit)(const void *message); /* NULL if every value of every member fits */
     size_t (*frame_size)(const void *message);  /* NULL unless frames differ in length */
 } testee_message_t;
 
-/* A message that is reached under an id. */
+/* A message that is reached under an id; `which` of its direction, where messages share ids. */
 typedef struct {
     uint32_t id;
+    unsigned which;
     const testee_message_t *message;
 } testee_route_t;
 
@@ -52,12 +54,13 @@ typedef struct {
     size_t offset;
     const testee_route_t *routes;
     size_t route_count;
-    void (*select)(void *any, uint32_t id);
+    void (*select)(void *any, uint32_t id, unsigned which);
+    unsigned (*which)(const void *any); /* NULL if the id tells the message */
     icd_status_t (*decode)(void *any, uint32_t id, const uint8_t *buffer, size_t length);
     icd_status_t (*encode)(const void *any, uint8_t *buffer, size_t capacity);
-    icd_status_t (*length)(uint32_t id, size_t *length);
+    icd_status_t (*length)(uint32_t id, unsigned which, size_t *length);
     icd_status_t (*frame_size)(const void *any, size_t *size); /* NULL if no frames differ in length */
-    const char *(*name)(uint32_t id);
+    const char *(*name)(uint32_t id, unsigned which);
 } testee_dispatcher_t;
 
 typedef const char *testee_enum_t(uint64_t value, bool is_negative); /* the name of a member, or NULL */

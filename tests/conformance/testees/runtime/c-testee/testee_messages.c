@@ -134,31 +134,49 @@ typedef struct {
     const testee_dispatcher_t *dispatcher;
     const testee_message_t *message; /* NULL if the tables have none of that id */
     uint32_t id;
+    unsigned which;
+    bool is_named; /* one of several messages of that id */
+    bool is_shared;
     void *any;
     void *value;
 } subject_t;
+
+/* Whether a word that begins with an id goes on with the name of a message, in hex. */
+static bool names_it(const char *word, const char *name)
+{
+    const octets_t octets = octets_of(strchr(word, ':') + 1);
+    return octets.length == strlen(name) && memcmp(octets.data, name, octets.length) == 0;
+}
 
 /* Finds the message that the next three words mean and makes room for a value of it. */
 static bool find(subject_t *subject)
 {
     const testee_node_t *node = testee_nodes[next_number()];
     const testee_dispatcher_t *dispatcher = next_number() == 0u ? node->telecommand : node->telemetry;
-    size_t i;
-    subject->id = next_number();
+    const char *word = next_word();
+    size_t i, found = 0;
+    subject->id = number_of(word);
     subject->message = NULL;
+    subject->which = 0u;
+    subject->is_named = strchr(word, ':') != NULL;
     if (dispatcher == NULL) {
         refuse("unknown-id");
         return false;
     }
     for (i = 0; i < dispatcher->route_count; i++) {
-        if (dispatcher->routes[i].id == subject->id) {
-            subject->message = dispatcher->routes[i].message;
+        const testee_route_t *route = &dispatcher->routes[i];
+        if (route->id == subject->id &&
+            (!subject->is_named || names_it(word, dispatcher->name(route->id, route->which)))) {
+            subject->message = route->message;
+            subject->which = route->which;
+            found++;
         }
     }
+    subject->is_shared = found > 1u;
     subject->dispatcher = dispatcher;
     subject->any = memory(dispatcher->size);
     subject->value = (char *)subject->any + dispatcher->offset;
-    dispatcher->select(subject->any, subject->id);
+    dispatcher->select(subject->any, subject->id, subject->which);
     return true;
 }
 
@@ -246,6 +264,26 @@ static void put_message(const subject_t *subject)
     }
 }
 
+/* The message that the dispatcher has found. */
+static void put_found(const subject_t *subject)
+{
+    const unsigned which = subject->dispatcher->which(subject->any);
+    size_t length = 0;
+    uint8_t *buffer;
+    if (subject->dispatcher->length(subject->id, which, &length) != ICD_OK) {
+        refuse("dispatcher");
+        return;
+    }
+    buffer = (uint8_t *)memory(length);
+    if (subject->dispatcher->encode(subject->any, buffer, length) != ICD_OK) {
+        refuse("encoding");
+        return;
+    }
+    put_row("ok");
+    put_text("name", subject->dispatcher->name(subject->id, which));
+    put_octets("bytes", buffer, length);
+}
+
 static void decode(void)
 {
     subject_t subject;
@@ -256,17 +294,23 @@ static void decode(void)
         return;
     }
     frame = next_octets();
-    status = subject.dispatcher->decode(subject.any, subject.id, frame.data, frame.length);
+    if (subject.is_named && subject.message != NULL) {
+        status = subject.message->decode(subject.value, frame.data, frame.length);
+    } else {
+        status = subject.dispatcher->decode(subject.any, subject.id, frame.data, frame.length);
+    }
     if (status == ICD_ERROR_LENGTH && subject.message != NULL && subject.message->frame_size != NULL) {
         refuse("length"); /* which of its lengths it should have, is not told */
         put_number("actual", frame.length);
     } else if (status == ICD_ERROR_LENGTH) {
-        (void)subject.dispatcher->length(subject.id, &expected);
+        (void)subject.dispatcher->length(subject.id, subject.which, &expected);
         refuse_length("length", expected, frame.length);
     } else if (status != ICD_OK) {
         refuse_status(status);
     } else if (subject.message == NULL) {
         refuse("dispatcher");
+    } else if (subject.is_shared) {
+        put_found(&subject);
     } else {
         put_message(&subject);
     }
@@ -303,13 +347,13 @@ static void constants(void)
     if (!find(&subject)) {
         return;
     }
-    if (subject.dispatcher->length(subject.id, &expected) != ICD_OK || expected != subject.message->length) {
+    if (subject.dispatcher->length(subject.id, subject.which, &expected) != ICD_OK || expected != subject.message->length) {
         refuse("dispatcher");
         return;
     }
     subject.message->init(subject.value);
     put_row("ok");
-    put_text("name", subject.dispatcher->name(subject.id));
+    put_text("name", subject.dispatcher->name(subject.id, subject.which));
     put_number("length", subject.message->length);
     put_list("ids");
     for (i = 0; i < subject.message->id_count; i++) {

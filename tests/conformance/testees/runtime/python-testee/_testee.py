@@ -8,8 +8,9 @@ The words are described with icdgen's conformance tests.
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from importlib import import_module
-from typing import Any, Iterator, NamedTuple, Optional
+from typing import Any, NamedTuple, Optional
 
 from . import _compiled, _floats
 from ._base import FieldInfo, Message
@@ -54,12 +55,20 @@ def _node(words: Words) -> Any:
 
 def _message(node: Any, words: Words) -> type[Message]:
     messages = node.TELEMETRY if next(words) == "1" else node.TELECOMMANDS
-    return messages[int(next(words))]  # type: ignore[no-any-return]
+    id, _, name = next(words).partition(":")
+    if not name:
+        return messages[int(id)]  # type: ignore[no-any-return]
+    wanted = bytes.fromhex(name).decode()
+    sharing: tuple[type[Message], ...] = messages.of(int(id))
+    return next(one for one in sharing if wanted == one.NAME)
 
 
 def _decode(node: Any, words: Words) -> str:
-    frame = _message(node, words).from_bytes(bytes.fromhex(next(words)))
-    return _described(frame, names=True)
+    message = _message(node, words)
+    frame = message.from_bytes(bytes.fromhex(next(words)))
+    if isinstance(frame, message):
+        return _described(frame, names=True)
+    return f" name={_hex(frame.NAME)} bytes={frame.to_bytes().hex()}"
 
 
 def _encode(node: Any, words: Words) -> str:

@@ -3,6 +3,7 @@
 const path = require("node:path");
 const readline = require("node:readline");
 const codec = require("./codec.js");
+const { isLike } = require("./frames.js");
 const { messages, nodes } = require(path.join(__dirname, "nodes.json"));
 
 const hexOf = (bytes) => Buffer.from(bytes).toString("hex");
@@ -10,11 +11,33 @@ const hexOfText = (text) => hexOf(Buffer.from(text, "utf8"));
 const bytesOf = (hex) => Uint8Array.from(Buffer.from(hex, "hex"));
 const bound = ([numerator, denominator]) => codec.doubleBits(codec.nearestDouble(BigInt(numerator), BigInt(denominator)));
 
-/** The message that an id of a direction leads to. */
-function messageOf(node, direction, id) {
-  const place = nodes[node].ways[direction][id];
-  if (place === undefined) throw new codec.CodecError("unknown-id");
-  return messages[place];
+/** The messages that an id of a direction leads to, the narrower ones first: place and signs of each. */
+function candidatesOf(node, direction, id) {
+  const found = nodes[node].ways[direction][id];
+  if (found === undefined) throw new codec.CodecError("unknown-id");
+  return Array.isArray(found) ? found : [[found, []]];
+}
+
+/** The message that is meant by an id, or by an id and a name. */
+function messageOf(node, direction, word) {
+  const [id, name] = word.split(":");
+  const found = candidatesOf(node, direction, id).map(([place]) => messages[place]);
+  return name === undefined ? found[0] : found.find((one) => hexOfText(one.name) === name);
+}
+
+/** What not every frame of a message has all of. */
+const endOf = (plan) => (plan.endsEarly ? { least: 1, step: 1 } : plan.tail);
+
+/** Name and bytes of the message that a frame of a shared id is. */
+function told(candidates, frame) {
+  const [place] = candidates.find(([at, signs]) => isLike(messages[at].length, endOf(messages[at]), signs, frame)) ?? [];
+  if (place !== undefined) {
+    const plan = messages[place];
+    return `name=${hexOfText(plan.name)} bytes=${hexOf(codec.encode(plan, codec.decode(plan, frame)))}`;
+  }
+  const lengths = new Set(candidates.flatMap(([at]) => [endOf(messages[at])?.least ?? messages[at].length, messages[at].length]));
+  if (lengths.size > 1 || lengths.has(frame.length)) throw new codec.CodecError("unknown-id");
+  throw new codec.CodecError("length", "", { expected: [...lengths][0], actual: frame.length });
 }
 
 function fieldsOf(plan, raw) {
@@ -60,6 +83,8 @@ function setAgain(field, value) {
 
 const operations = {
   decode(node, direction, id, frame) {
+    const candidates = id.includes(":") ? [] : candidatesOf(node, direction, id);
+    if (candidates.length > 1) return told(candidates, bytesOf(frame));
     const plan = messageOf(node, direction, id);
     return described(plan, codec.decode(plan, bytesOf(frame)));
   },

@@ -154,7 +154,8 @@ pub type Dispatcher = fn(u32, &[u8]) -> Result<(&'static str, Vec<u8>), Error>;
 /// An id that leads to a message.
 pub struct Route {
     pub id: u32,
-    pub answer: fn(&str, &mut Words, u32, Dispatcher) -> Answer,
+    pub title: &'static str,
+    pub answer: fn(&str, &mut Words, u32, Option<Dispatcher>) -> Answer,
 }
 
 pub fn answer(op: &str, words: &mut Words) -> Answer {
@@ -172,18 +173,36 @@ pub fn answer(op: &str, words: &mut Words) -> Answer {
         ];
         return Ok(found.into_iter().flatten().collect());
     }
-    let (direction, id) = (words.number::<usize>(), words.number::<u32>());
+    let direction = words.number::<usize>();
+    let word = words.word();
+    let (id, name) = word.split_once(':').map_or((word, None), |(id, name)| (id, Some(unhex(name))));
+    let id = id.parse::<u32>().unwrap_or_default();
     let dispatcher = node.dispatchers[direction].ok_or_else(|| Refusal("unknown-id".into()))?;
-    let mut routes = node.routes[direction].iter();
-    if let Some(route) = routes.find(|route| route.id == id) {
-        return (route.answer)(op, words, id, dispatcher);
+    let found: Vec<_> = node.routes[direction]
+        .iter()
+        .filter(|route| route.id == id)
+        .filter(|route| name.as_deref().map_or(true, |name| name == route.title.as_bytes()))
+        .collect();
+    match found[..] {
+        [route] => (route.answer)(op, words, id, name.map_or(Some(dispatcher), |_| None)),
+        [] => {
+            dispatcher(id, &words.octets())?;
+            Err(Refusal("dispatcher".into()))
+        }
+        _ => {
+            let (title, bytes) = dispatcher(id, &words.octets())?;
+            Ok(format!("{} bytes={}", named(Some(title)), hex(&bytes)))
+        }
     }
-    dispatcher(id, &words.octets())?;
-    Err(Refusal("dispatcher".into()))
 }
 
-/// Answers a request about message `M`, which `dispatcher` should decode alike.
-pub fn message<M: Subject>(op: &str, words: &mut Words, id: u32, dispatcher: Dispatcher) -> Answer {
+/// Answers a request about message `M`, which `dispatcher`, if the id is its own, should decode alike.
+pub fn message<M: Subject>(
+    op: &str,
+    words: &mut Words,
+    id: u32,
+    dispatcher: Option<Dispatcher>,
+) -> Answer {
     match op {
         "decode" => decode::<M>(words, id, dispatcher),
         "encode" => encode::<M>(words),
@@ -192,12 +211,14 @@ pub fn message<M: Subject>(op: &str, words: &mut Words, id: u32, dispatcher: Dis
     }
 }
 
-fn decode<M: Subject>(words: &mut Words, id: u32, dispatcher: Dispatcher) -> Answer {
+fn decode<M: Subject>(words: &mut Words, id: u32, dispatcher: Option<Dispatcher>) -> Answer {
     let bytes = words.octets();
     let mut message = M::decode(&bytes)?;
-    let (title, again) = dispatcher(id, &bytes)?;
-    if title != M::TITLE || again != message.encode()? {
-        return Err(Refusal("dispatcher".into()));
+    if let Some(dispatcher) = dispatcher {
+        let (title, again) = dispatcher(id, &bytes)?;
+        if title != M::TITLE || again != message.encode()? {
+            return Err(Refusal("dispatcher".into()));
+        }
     }
     described(&mut message)
 }

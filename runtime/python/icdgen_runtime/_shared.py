@@ -1,0 +1,51 @@
+"""Messages that have an id in common."""
+
+from __future__ import annotations
+
+from . import _lazy
+from ._base import Message
+from ._errors import LengthError, UnknownIdError
+
+
+class Shared(Message):
+    """What stands for all messages of an id: `from_bytes` gives the one that a frame is."""
+
+    FRAMES: tuple[
+        tuple[type[Message], range, tuple[tuple[int, int, int], ...]], ...
+    ] = ()
+    """Each with its lengths, and byte, mask and value where it has a constant; those of more constants first."""
+
+    def __init__(self, **values: object) -> None:
+        raise TypeError(f"{self.NAME} are several messages: make one of them")
+
+    @classmethod
+    def from_bytes(cls, data: _lazy.Buffer) -> _lazy.Any:
+        """The message in a frame. Raises `UnknownIdError` if it is none of them, `LengthError` if all have another length."""
+        frame = bytes(data)
+        for message, lengths, signs in cls.FRAMES:
+            whole = frame.ljust(lengths[-1], b"\0")
+            if len(frame) in lengths and all(
+                whole[byte] & mask == value for byte, mask, value in signs
+            ):
+                return message.from_bytes(frame)
+        ends = ((lengths[0], lengths[-1]) for _, lengths, _ in cls.FRAMES)
+        length, *others = {length for both in ends for length in both}
+        if not others and len(frame) != length:
+            raise LengthError(cls.NAME, length, len(frame))
+        raise UnknownIdError(
+            cls.NODE, cls.KIND, cls.IDS[0], f"the frame is no {cls.NAME}"
+        )
+
+
+def shared(
+    node: str,
+    kind: str,
+    id: int,
+    candidates: tuple[_lazy.Candidate, ...],
+    named: _lazy.Callable[[str], type[Message]],
+) -> type[Message]:
+    """The class for an id that several messages have."""
+    frames = tuple((named(name), lengths, signs) for name, lengths, signs in candidates)
+    title = " or ".join(message.NAME for message, _, _ in frames)
+    known = {"NODE": node, "NAME": title, "KIND": kind, "IDS": (id,), "FRAMES": frames}
+    return type("Shared", (Shared,), known)
