@@ -20,6 +20,13 @@ from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
 
 
+class Need(NamedTuple):
+    """What a field that is not always there needs: another one with one of these raw values, in their order."""
+
+    field: FieldDescription
+    values: tuple[int, ...]
+
+
 class FieldDescription(Named[Field]):
     """A field of ``message``; of an array, an element, or among `MessageDescription.members` all of it.
 
@@ -61,6 +68,12 @@ class FieldDescription(Named[Field]):
         """Whether it is the open end of its message, or an element of that."""
         tail, path = self.message.model.tail, self.model.path
         return tail is not None and tail.name == (path[0].name if path else self.model.name)
+
+    @cached_property
+    def needs(self) -> tuple[Need, ...]:
+        """Of a field that is not always there, all that it needs."""
+        known = {one.model.name: one for one in self.message.fields} if self.model.when else {}
+        return tuple(Need(known[one.field], tuple(sorted(one.values))) for one in self.model.when if one.field in known)
 
     @cached_property
     def elements(self) -> tuple[FieldDescription, ...]:
@@ -147,7 +160,7 @@ class FieldDescription(Named[Field]):
     @cached_property
     def comment(self) -> Comment:
         told = told_elsewhere(self.model, self.message.tellers) if self.model.errata else {}
-        return field_comment(self.model, told, self.message.model.tail)
+        return field_comment(self.model, told, self.message.model.tail, self.message.model)
 
 
 class Id(NamedTuple):
@@ -211,6 +224,17 @@ class MessageDescription(Named[Message]):
 
     def _owners(self, fields: tuple[FieldDescription, ...]) -> tuple[FieldDescription, ...]:
         return tuple(field for field in fields if not field.model.view) if self.views else fields
+
+    @cached_property
+    def conditional(self) -> tuple[FieldDescription, ...]:
+        """The members that are not always there."""
+        return tuple(field for field in self.fields if field.model.when)
+
+    @cached_property
+    def steady(self) -> tuple[FieldDescription, ...]:
+        """The fields that are in every frame, each element of an array."""
+        fields = self.sent_fields
+        return tuple(field for field in fields if not field.model.when) if self.conditional else fields
 
     @cached_property
     def tail(self) -> TailDescription | None:

@@ -10,7 +10,7 @@ from functools import partial
 from itertools import chain
 from typing import TypeVar
 
-from icdgen.icd import curve, division, floats, formula, model, tails, wire_ids
+from icdgen.icd import conditions, curve, division, floats, formula, model, tails, wire_ids
 from icdgen.icd.errata import Applied
 from icdgen.icd.located import Map, plain
 from icdgen.icd.units import STANDARD, Unit
@@ -111,7 +111,7 @@ class Builder:
 
     def message(self, item: Map) -> model.Message:
         where = item.get("source") or {}
-        fields = tuple(chain.from_iterable(self.each("fields", partial(self.fields, orders(item)), item)))
+        fields = tuple(chain.from_iterable(self.each("fields", partial(self.fields, item), item)))
         tail, ends = self.tail(item)
         return model.Message(
             name=item["name"],
@@ -154,10 +154,13 @@ class Builder:
         implied = model.implied_count(end, message["length"] + most * tail.step)
         return replace(tail, counter=implied.name), (*end.elements, implied)
 
-    def fields(self, around: Orders, item: Map) -> tuple[model.Field, ...]:
-        """The field, the elements of an array, or the parts that it is divided into; ``around``: the orders of its message."""
-        if tails.is_open(item):
+    def fields(self, message: Map, item: Map) -> tuple[model.Field, ...]:
+        """The field, the elements of an array, or the parts that it is divided into."""
+        around = orders(message)
+        if tails.is_open(item) or id(item.get("when")) in self.broken:
             return ()  # see `tail`
+        if "when" in item:
+            return (replace(self.field(item, around), when=conditions.of(message, item, self.scope.enums)),)
         if "count" in item:
             return replace(self.field(item, around), count=item["count"]).elements
         if "bitfields" not in item:

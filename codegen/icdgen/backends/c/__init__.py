@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from icdgen.backends import Identifier
-from icdgen.backends.c import accessors, bits, constants, decoding, encoding, fields, names, parts, types
+from icdgen.backends.c import accessors, bits, conditional, constants, decoding, encoding, fields, names, parts, types
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
@@ -88,6 +88,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "excess": bits.excess,
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message),
+        "conditional": conditional.conditional(message),
         **(_tail(message, message.tail) if message.tail else {}),
         "views": [accessors.view(field) for field in message.views],
         "whole_accessors": accessors.whole_accessors(message),

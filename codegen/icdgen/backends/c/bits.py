@@ -115,6 +115,10 @@ def _raw(field: FieldDescription) -> str:
 
 def excess(field: FieldDescription, member: str = "") -> str:
     """An expression that is 0 if and only if the raw value of a narrow field fits; ``member`` if it is not the field's."""
+    if field.model.when and not member:
+        from icdgen.backends.c.conditional import has
+
+        return f"{has(field)}(message) ? ({excess(field, field.member)}) : 0u"
     storage, one, member = field.storage, field.model, member or field.member
     wide = 64 if storage.bits == 64 else 32
     if not storage.signed:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names, physical
+from icdgen.backends.c.conditional import has
 from icdgen.backends.c.parts import part_name
 from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription
 from icdgen.describe.parts import parts_of
@@ -83,6 +84,8 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     for field in message.all_members:
         is_view = field.model.view
         yield field.identifier(FILE, f"{stem}_{field.name}") if is_view else field.identifier(members, field.name)
+        if field.model.when:
+            yield field.identifier(FILE, has(field))
         for one in field.constants:
             yield field.identifier(FILE, names.constant(message, one.name))
         for end in _physical_names(field) if field.has_physical else ():

@@ -21,8 +21,7 @@ def statements(message: MessageDescription) -> list[str]:
     if not message.fields:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
     found = [
-        _one(one) if isinstance(one, FieldDescription) else _group(one, message)
-        for one in in_groups(message.sent_fields)
+        _one(one) if isinstance(one, FieldDescription) else _group(one, message) for one in in_groups(message.steady)
     ]
     if message.tail is not None and message.tail.counter.model.implied:
         found.append(
@@ -74,6 +73,11 @@ def _group(group: Flags | Row, message: MessageDescription) -> str:
 def view(field: FieldDescription) -> str:
     """The statement that reads a view."""
     return _number(field, "value")
+
+
+def number(field: FieldDescription) -> str:
+    """The statement that reads a number into its member."""
+    return _number(field, f"message->{field.member}")
 
 
 def _one(field: FieldDescription) -> str:

@@ -36,7 +36,7 @@ class _Frame:
         self.whole: dict[int, tuple[int, str]] = {}  # first byte -> number of bytes, statement
         self.parts: dict[int, list[tuple[int, str]]] = {}  # byte -> (shift, term)
         self.joined: dict[int, list[str]] = {}  # byte -> statements that its terms need
-        for one in in_groups(message.sent_fields):
+        for one in in_groups(message.steady):
             if isinstance(one, FieldDescription):
                 self._one(one)
             else:

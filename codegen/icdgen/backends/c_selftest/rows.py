@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
+from icdgen import codec
 from icdgen.backends.c import names, physical
 from icdgen.backends.c.text import literal, plain
 from icdgen.backends.c.types import type_of
@@ -16,9 +18,9 @@ from icdgen.describe.description import Direction
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from icdgen.vectors.ids import worth_asking
-from icdgen.vectors.make import MessageVectors, Row, make
+from icdgen.vectors.make import MessageVectors, Raw, Row, make
 from icdgen.vectors.patterns import values
-from icdgen.vectors.settings import NEVER, Settings
+from icdgen.vectors.settings import NEVER, Settings, bits_of
 
 BYTES_IN_ROW, NUMBERS_IN_ROW = 16, 4
 TYPES = {"bool": "BOOL", "bytes": "BYTES", "text": "BYTES"}
@@ -128,6 +130,7 @@ class _Rows:
 
     def message(self, message: MessageDescription, vectors: MessageVectors) -> MessageRow:
         kept = bytes(message.model.length)
+        vectors = _plain(message, vectors)
         for row in vectors.rows:  # reserved bits are those that no vector keeps
             kept = bytes(a | b for a, b in zip(kept, row.encoded.ljust(len(kept), b"\0"), strict=True))
         fields = [self.field(field, vectors) for field in message.all_fields]
@@ -182,6 +185,22 @@ class _Rows:
             scaled=_scaled(one, vectors.settings.get(field.name)) if one.is_scaled else None,
             text=_texts(one, vectors.settings[field.name]) if one.is_text else None,
         )
+
+
+def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVectors:
+    """As C sees a message of which a field is not always there: its members are 0 then, and so are bits that are no field's."""
+    if not message.conditional:
+        return vectors
+    absent: Raw = {field.model.name: 0 for field in message.conditional}
+    scaled = [one.model for one in message.all_fields if one.model.has_formula]
+    rows = []
+    for row in vectors.rows:
+        raw = {field.name: (absent | row.raw)[field.name] for field in message.model.fields}
+        doubles = {one.name: bits_of(codec.physical_double(one, _number(raw[one.name])) or 0.0) for one in scaled}
+        rows.append(replace(row, frame=row.encoded, raw=raw, doubles=doubles))
+    always = {name: given for name, given in vectors.unfit.items() if name not in absent}
+    fresh = {field.name: field.fresh for field in message.model.owners}
+    return replace(vectors, rows=tuple(rows), default=vectors.default | fresh, unfit=always)
 
 
 def _tail(message: MessageDescription, vectors: MessageVectors) -> TailRow:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.icd.conditions import exclude
 from icdgen.icd.division import obstacles
 from icdgen.icd.model import Field, Message, Node
 from icdgen.icd.rules.context import Context
@@ -22,6 +23,7 @@ WIDTHS = {
 Overlap = tuple[Fault, tuple[int, int]]  # and the two fields as they were read
 _OVERLAPPING = "correct `at` or `bits`"
 _VIEW = f"{_OVERLAPPING}; if it reads the same bits in another way: `view: true`"
+_ALTERNATIVES = "let them depend on different values of the same field, or correct `at` or `bits`"
 _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 
@@ -55,6 +57,9 @@ def overlap(ctx: Context) -> Iterator[Fault]:
 def _overlaps(ctx: Context) -> Iterator[Overlap]:
     for message, node in ctx.messages:
         fields = message.owners
+        if message.has_conditions:
+            yield from _overlaps_of_alternatives(message, node)
+            continue
         if any(field.bit_order not in ("", node.bit_order) for field in fields):
             yield from _overlaps_among(message, node)
             continue
@@ -81,6 +86,22 @@ def _overlaps_among(message: Message, node: Node) -> Iterator[Overlap]:
         seen.append((field, mask))
 
 
+def _overlaps_of_alternatives(message: Message, node: Node) -> Iterator[Overlap]:
+    """`_overlaps` where fields are not always there: those that are never there together may have the same bits."""
+    seen: list[tuple[Field, int]] = []
+    for field in message.owners:
+        if field.at + field.bits > message.length * 8:
+            continue  # a finding already
+        mask = _mask(field, node)
+        clashes = (
+            (one, shared) for one, other in seen if (shared := mask & other) and not exclude(one.when, field.when)
+        )
+        clash = next(clashes, None)
+        if clash is not None:
+            yield _overlap(clash[0], field, _bits_of(clash[1]))
+        seen.append((field, mask))
+
+
 def _bits_of(mask: int) -> str:
     """``2 bits of byte 1``"""
     low = (mask & -mask).bit_length() - 1
@@ -103,8 +124,9 @@ def _overlap(first: Field, second: Field, bits: str = "") -> Overlap:
     fault = Fault(
         second.source,
         place,
-        f"{quote(second.name)} overlaps {other} in {bits}",
-        _OVERLAPPING if second.path else _VIEW,
+        f"{quote(second.name)} overlaps {other} in {bits}"
+        + (", and both can be there" if first.when or second.when else ""),
+        _ALTERNATIVES if first.when and second.when else _OVERLAPPING if second.path else _VIEW,
     )
     return fault, (id(first.source), id(second.source))
 
@@ -172,10 +194,15 @@ def view_of_fields(ctx: Context) -> Iterator[Fault]:
             yield Fault(source, source.at("const"), f"{name} is a view, which is never set, so it has no `const`", help)
         free = _mask(field, node)
         for owner in message.owners:
-            free &= ~_mask(owner, node)
+            free &= ~0 if owner.when else ~_mask(owner, node)
         if free and _is_read(message):
             help = "describe what has them as a field, or correct `at` or `bits`"
-            yield Fault(source, source.at("at"), f"{name} is a view of {_bits_of(free)} that no field has", help)
+            yield Fault(
+                source,
+                source.at("at"),
+                f"{name} is a view of {_bits_of(free)} that no field {'always ' * message.has_conditions}has",
+                help,
+            )
 
 
 def _is_read(message: Message) -> bool:
