@@ -147,6 +147,8 @@ class Message(Spoken[N_contra], metaclass=MessageType):
         """The end of frames that differ in length."""
         ENDS_EARLY: ClassVar[bool]
         """Whether frames may lack the zeros that they end with."""
+        CONDITIONAL: ClassVar[bool]
+        """Whether a field is not always there: see `FieldInfo.when`."""
         IDS: ClassVar[tuple[int, ...]]
         """Its ids: one, or the id to set it and the id to get it."""
         TABLE: ClassVar[int | None]
@@ -164,18 +166,23 @@ class Message(Spoken[N_contra], metaclass=MessageType):
     else:
         IDS = FIELDS = VIEWS = PARTS = ()
         TABLE = TAIL = None
-        ENDS_EARLY, ACKNOWLEDGED = False, True
+        ENDS_EARLY, CONDITIONAL, ACKNOWLEDGED = False, False, True
         BYTE_ORDER, BIT_ORDER = "little", "lsb0"
         __dataclass_fields__ = _DataclassFields()
 
         def __init__(self, /, **values):
             """Of raw values, or physical ones, which go before. Raises `RangeError`."""
+            given = frozenset(values) if self.CONDITIONAL else ()
             for info in self.FIELDS:
                 setattr(self, info.attribute, values.pop(info.attribute, info.default))
                 if info.physical in values:
                     setattr(self, info.physical, values.pop(info.physical))
             for name in values:
                 raise TypeError(f"{type(self).__name__} has no field {name!r}")
+            if self.CONDITIONAL:
+                from ._conditions import settle
+
+                settle(self, given)
 
     if TYPE_CHECKING:
 
@@ -282,7 +289,8 @@ class Message(Spoken[N_contra], metaclass=MessageType):
         The names are those of `as_dict`. What stands on whole bytes is a view of the
         frames, or of a copy of them if they can change. Raises `LengthError` if they
         are not whole frames. Frames that differ in length, or end early, are given one by one, as a
-        list; what ends them is an array of arrays, or of bytes. Needs numpy.
+        list; what ends them is an array of arrays, or of bytes. What is not always there is
+        a masked array. Needs numpy.
         """
         from . import _columns
 

@@ -6,7 +6,7 @@ import struct
 
 from . import _lazy
 from ._errors import LengthError, RangeError
-from ._fields import elements_of, has_elements
+from ._fields import elements_of, has_elements, is_there
 
 REFUSED = (
     struct.error,
@@ -139,6 +139,8 @@ def range_error(message: _lazy.Message) -> RangeError:
     """What to raise for a message that has a value that does not fit."""
     for info in message.FIELDS:
         value: _lazy.Any = getattr(message, info.attribute, None)
+        if info.when and not is_there(info, message):
+            continue
         if info.elements and not has_elements(info, value):
             return RangeError(info.attribute, elements_of(info), value)
         for one, each in zip(info.parts, value if info.elements else (value,)):

@@ -41,6 +41,13 @@ def compiled(message: type[_lazy.Message], name: str) -> _lazy.Any:
     owner = next(one for one in message.__mro__ if "FIELDS" in vars(one))
     if (owner, name) not in _functions:
         function = longest(owner, name)
+        if message.CONDITIONAL:
+            from . import _conditions
+
+            function = {
+                "from_bytes": _conditions.decoder,
+                "to_bytes": _conditions.encoder,
+            }[name](owner, function)
         if message.TAIL is not None:
             from . import _tails
 
@@ -92,6 +99,7 @@ class Codec:
 
     def __init__(self, message: type[_lazy.Message]) -> None:
         self.message, self.order = message, message.BYTE_ORDER
+        self.fields = [one for one in message.FIELDS if not one.when]
         self.names: dict[str, _lazy.Any] = {
             "new": object.__new__,
             "error": struct.error,
@@ -168,7 +176,7 @@ class Codec:
 
     def _units(self) -> _lazy.Iterator[_lazy.FieldInfo]:
         """What is packed by itself: fields, arrays of words, and each element of other arrays."""
-        for info in self.message.FIELDS:
+        for info in self.fields:
             if not info.attribute.isidentifier():
                 raise ValueError(f"{info.attribute!r} is no name of an attribute")
             if info.elements and not _is_run(info):
@@ -205,7 +213,7 @@ class Codec:
         self._prepare.append(f"{local} = {pack}(*{given})")
 
     def _join_elements(self) -> None:
-        for info in self.message.FIELDS:
+        for info in self.fields:
             if info.elements and not _is_run(info):
                 values = "".join(f"{_target(part)}, " for part in info.parts)
                 self._assign.append(f"self.{info.attribute} = ({values})")
@@ -214,7 +222,7 @@ class Codec:
         """Bytes that more than one field touches."""
         once: set[int] = set()
         more: set[int] = set()
-        for info in (part for one in self.message.FIELDS for part in one.parts):
+        for info in (part for one in self.fields for part in one.parts):
             span = _bytes_of(info)
             more |= once.intersection(span)
             once.update(span)

@@ -18,6 +18,10 @@ def from_dict(message: type[M], values: Mapping[str, Any]) -> M:
     """See `Message.from_dict`."""
     made, left = message(), dict(values)
     for info in message.FIELDS:
+        setattr(
+            made, info.attribute, info.default
+        )  # what is not there is not looked at
+    for info in message.FIELDS:
         if info.attribute in left:
             setattr(made, info.attribute, _raw(info, left.pop(info.attribute)))
         if info.physical in left:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from icdgen.backends.c import bits, decoding
-from icdgen.backends.c.names import stem
+from icdgen.backends.c.names import enumerator, stem
 from icdgen.backends.c.statement import assigned_byte
 from icdgen.backends.c.types import mask
 from icdgen.describe import FieldDescription, MessageDescription
@@ -61,9 +61,17 @@ def _test(need: Need) -> str:
     if field.model.type == "bool":
         tests = [member if value else f"!{member}" for value in need.values]
     else:
-        wide = max(field.storage.bits, 16)
-        tests = [f"{member} == {value if field.storage.signed else mask(value, wide)}" for value in need.values]
+        tests = [f"{member} == {_literal(field, value)}" for value in need.values]
     return " || ".join(map(_grouped, tests)) if len(tests) > 1 else tests[0]
+
+
+def _literal(field: FieldDescription, value: int) -> str:
+    one = field.enum.member(value) if field.enum is not None else None
+    if field.enum is not None and one is not None:
+        return enumerator(field.enum, one)
+    if field.storage.signed:
+        return f"({value})" if value < 0 else str(value)
+    return f"{value}u" if value < 1 << 16 else mask(value, field.storage.bits)
 
 
 def _written(field: FieldDescription) -> list[str]:
