@@ -18,6 +18,12 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
         "length": message.length,
         "fields": [_field(field, node) for field in message.fields],
     }
+    if message.has_conditions:
+        places = {field.name: place for place, field in enumerate(message.fields)}
+        plan["conditional"] = True
+        for field, row in zip(message.fields, plan["fields"], strict=True):  # type: ignore[call-overload]
+            if field.when:
+                row["when"] = [[places[one.field], list(map(integer, one.values))] for one in field.when]
     if message.may_end_early:
         plan["endsEarly"] = True
     if message.tail is not None:

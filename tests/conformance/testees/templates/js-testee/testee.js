@@ -19,12 +19,13 @@ function messageOf(node, direction, id) {
 
 function fieldsOf(plan, raw) {
   return plan.fields.map((field, index) => {
-    const value = field.type === "bytes" ? hexOf(raw[index]) : String(raw[index]);
+    const value = raw[index] === null ? "-" : field.type === "bytes" ? hexOf(raw[index]) : String(raw[index]);
     return { field, raw: raw[index], row: `field field=${hexOfText(field.name)} raw=${value}` };
   });
 }
 
 function physicalOf(field, raw) {
+  if (raw === null) return "";
   if (field.scale || field.curve) return ` physical=${codec.doubleBits(codec.physical(field, raw))}`;
   const text = field.text ? codec.text(raw) : "\ufffd";
   return text.includes("\ufffd") ? "" : ` physical=${hexOfText(text)}`;
@@ -40,6 +41,7 @@ function described(plan, raw) {
 
 function rawOf(field, word) {
   if (field.view) return 0n;
+  if (word === "n") return null;
   const [way, value] = [word[0], word.slice(1)];
   if (way === "p" && field.text) return codec.rawFromText(field, Buffer.from(value, "hex").toString("utf8"));
   if (way === "p") return codec.rawFromPhysical(field, codec.doubleOf(BigInt(value)));
