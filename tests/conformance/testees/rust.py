@@ -111,6 +111,8 @@ def _field(field: FieldDescription) -> FieldEntry:
         index = field.model.index
         if index is not None:
             get, set = f"|m| {get}(m, {index}).unwrap_or_default()", f"|m, value| {set}(m, {index}, value)"
+        if field.model.when:
+            get = f"|m| {get}(m).unwrap_or_default()"
         set = set if field.is_set else "|_, _| Ok(())"
         scale = f"Some(Scale {{ get: {get}, set: {set} }})"
     names = [(one.key, f"Self::{one.name.upper()}") for one in field.constants if one.key != "const"]

@@ -10,6 +10,7 @@ from icdgen.describe.storage import holding
 from icdgen.layout import Piece, is_whole_bytes
 
 _ARRAY_WIDTH = 60  # of an array that rustfmt leaves on one line
+RAW = "raw"  # the variable that holds the value of what is not always there
 FLAGS_FROM = 4  # so many flags of one byte are taken from the table of the support module
 
 
@@ -151,7 +152,12 @@ def fitting(field: FieldDescription) -> list[str]:
             values = f"self.{field_name(field)}().iter().copied()"
         lines = f"for value in {values} {{", f"{STEP}{field.name.upper()}.fit(value{raw})?;", "}"
         return list(lines)
-    return [f"{field.name.upper()}.fit(self.{field_name(field)}{raw})?;"]
+    return [f"{field.name.upper()}.fit({_source(field)}{raw})?;"]
+
+
+def _source(field: FieldDescription) -> str:
+    """What is written: the member, or the variable that holds its value where it is not always there."""
+    return RAW if field.model.when else f"self.{field_name(field)}"
 
 
 def writing(field: FieldDescription) -> list[str]:
@@ -160,7 +166,7 @@ def writing(field: FieldDescription) -> list[str]:
         return []
     if field.count:
         return _put_run(field) if _is_run(field) else [line for one in field.elements for line in writing(one)]
-    one, row, source = field.model, field.pieces, f"self.{field_name(field)}"
+    one, row, source = field.model, field.pieces, _source(field)
     if one.is_bytes:
         return [f"put_array(&mut bytes, {one.at // 8}, &{source});"]
     if one.type == "bool":

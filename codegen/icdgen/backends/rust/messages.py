@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icdgen.backends.rust import bits, constants, parts
+from icdgen.backends.rust import bits, conditional, constants, parts
 from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
@@ -15,10 +15,16 @@ DERIVES_DEFAULT = 32  # elements of an array; longer ones do not
 def values(message: MessageDescription) -> dict[str, object]:
     """What is read, written, derived and imported."""
     fields, tables, tail = message.members, bits.flag_tables(message), message.tail
-    readings = [bits.reading(field, tables) for field in fields]
+    readings = ["None" if field.model.when else bits.reading(field, tables) for field in fields]
     views = [(field, bits.reading(field, set(), depth=2)) for field in message.views]
-    writings = [line for field in fields for line in bits.writing(field)]
-    has_default = all((field.fresh == 0 or field.is_open) and not _is_long(field) for field in fields)
+    conditions = conditional.conditional(message)
+    writings = [line for field in fields if not field.model.when for line in bits.writing(field)]
+    written = [*writings, *(line for one in conditions for line in one.encode)]
+    read = [*readings, *(one.decode for one in conditions)]
+    is_there = any(field.model.name in message.model.fresh for field in message.conditional)
+    has_default = not is_there and all(
+        (field.fresh == 0 or field.is_open or field.model.when) and not _is_long(field) for field in fields
+    )
     derived = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
     narrow = [field for field in fields if field.is_narrow]
     scales = [field for field in message.all_members if has_constant(field)]
@@ -31,12 +37,13 @@ def values(message: MessageDescription) -> dict[str, object]:
         "element_of": has_elements,
         "flags": bool(tables),
         "message": True,
-        "put": any("put!(" in line for line in writings),
+        "put": any("put!(" in line for line in written),
         "put_array": any("put_array(" in line for line in writings),
         "put_element": has_elements,
         "put_words": any("put_words(" in line for line in writings),
-        "take": any("take!(" in reading for reading in (*readings, *(reading for _, reading in views))),
+        "take": any("take!(" in reading for reading in (*read, *(reading for _, reading in views))),
         "text": has_text,
+        "there": bool(conditions),
         "text_array": has_text,
         "counted": tail is not None and not tail.counter.model.implied,
         "elements": tail is not None,
@@ -55,7 +62,8 @@ def values(message: MessageDescription) -> dict[str, object]:
     names = [name for name, is_used in imported.items() if is_used]
     bound = tail is not None and tail.is_bound
     return {
-        "refused": bound or bool(narrow),
+        "refused": bound or bool(narrow) or bool(conditions),
+        "conditional": conditions,
         "tail": tail,
         "length_of_frame": "" if tail is None else _length_of_frame(tail),
         "constants": constants.of_fields(message),
@@ -63,7 +71,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "literal": _literal(fields, readings),
         "views": views,
         "writings": writings,
-        "fits": [line for field in narrow for line in bits.fitting(field)],
+        "fits": [line for field in narrow if not field.model.when for line in bits.fitting(field)],
         "scales": scales,
         "curves": curves,
         "parts": parts.parts(message),
@@ -90,6 +98,9 @@ def _is_long(field: FieldDescription) -> bool:
 def _fresh(field: FieldDescription) -> str:
     if field.is_open and field.count:
         return f"[{_zero(field)}; {field.count}]"
+    if field.model.when:
+        is_there = field.model.name in field.message.model.fresh
+        return f"Some({_one_fresh(field)})" if is_there else "None"
     return f"[{_one_fresh(field)}; {field.count}]" if field.count else _one_fresh(field)
 
 
