@@ -143,7 +143,57 @@ node: {name: wide, title: Wide ids, byte_order: little, bit_order: lsb0, id_bits
 enums:
   - name: Turn
     members: [{value: -5, name: Left}, {value: 100, name: Right}]
+structs:
+  - name: Odd
+    length: 9
+    fields:
+      - {at: 0, bits: 12, name: Type, type: int, formula: raw*0.5}
+      - {at: 12, bits: 1, count: 4, name: Flags, type: bool}
+      - {at: 16, bits: 8, name: Turn, type: enum, enum: Turn, const: -5}
+      - {at: 24, bits: 16, count: 2, name: Words, type: uint, unit: V, formula: raw*0.1, max: 6000}
+      - {at: 56, bits: 8, name: Str, identifier: a str, type: text}
+      - {at: 64, bits: 8, name: Octet, type: bytes}
+  - name: Nested
+    length: 40
+    summary: A struct within a struct, and what crosses bytes.
+    fields:
+      - {at: 0, name: Match, struct: Odd, count: 2}
+      - {at: 147, bits: 32, name: Across, type: float, special: [{value: nan, meaning: none}, {value: -1.5, meaning: left}]}
+      - {at: 184, bits: 32, name: Whole Float, type: float, byte_order: big, formula: raw*57.29578}
+      - {at: 216, bits: 64, name: Longest, type: int, special: [{value: -1, meaning: none}]}
+      - {at: 282, bits: 3, count: 3, name: Crossing, type: uint, byte_order: big, formula: raw^3 - 9*raw}
+      - {at: 296, bits: 8, count: 2, name: Turns, type: enum, enum: Turn}
+  - name: Row
+    length: 40
+    fields:
+      - {at: 0, bits: 32, count: 9, name: Floats, type: float}
+      - {at: 288, bits: 8, name: One, type: uint, formula: raw^2 + raw*0.5}
 messages:
+  - name: Structs
+    id: 0x01020308
+    kind: telemetry
+    length: 180
+    fields:
+      - {at: 0, name: First, struct: Odd}
+      - {at: 72, bits: 3, name: Between, type: int}
+      - {at: 80, name: Nests, struct: Nested, count: 2}
+      - {at: 720, name: Fn, struct: Row, count: 1}
+      - {at: 1040, bits: 32, name: Aligned, type: float}
+      - {at: 1040, bits: 8, name: View, type: uint, view: true}
+      - {at: 1072, name: Odds, struct: Odd, count: 4}
+      - {at: 1360, name: Last, struct: Odd}
+      - {at: 1432, bits: 8, name: End, type: uint}
+  - name: Turned Structs
+    set_id: 0x01020309
+    get_id: 0x0102030A
+    kind: configuration
+    length: 50
+    byte_order: big
+    bit_order: msb0
+    fields:
+      - {at: 0, name: Nest, struct: Nested}
+      - {at: 320, name: Odd, identifier: other odd, struct: Odd, count: 1}
+      - {at: 392, bits: 8, name: End, type: uint}
   - name: Wide
     id: [0x12, 0x34, 0x56, 0x78]
     kind: telemetry
@@ -234,6 +284,28 @@ messages:
   - {name: Lowest half of it, id: 0x5678, kind: telemetry, length: 0}
   - {name: Without its highest bit, id: 0x7FFFFFFF, kind: telecommand, length: 0}
   - {name: All ones, set_id: 0xFFFFFFFF, get_id: 0xFFFFFFFF, kind: configuration, length: 0}
+"""
+
+NESTED = """\
+icdgen: 1
+node: {name: nested, title: Structs of another node, byte_order: big, bit_order: msb0, id_bits: 32}
+include: [wide.yaml]
+structs:
+  - name: Around
+    length: 52
+    fields:
+      - {at: 0, name: Nest, struct: Nested}
+      - {at: 328, name: Odd, struct: Odd}
+      - {at: 400, bits: 12, name: Twelve, type: uint, bitfields: [{at: 0, bits: 4, name: Low}, {at: 4, bits: 8, name: High}]}
+messages:
+  - name: Around
+    id: 0x02000000
+    identifier: all around
+    kind: telecommand
+    length: 105
+    fields:
+      - {at: 0, name: Around, struct: Around, count: 2}
+      - {at: 832, bits: 8, name: End, type: int}
 """
 
 OPEN = """\
@@ -337,9 +409,19 @@ node: {name: empty, title: No messages, byte_order: little, bit_order: lsb0}
 """
 
 
+_TEXTS = {
+    "shared": SHARED,
+    "mixed": MIXED,
+    "other": OTHER,
+    "wide": WIDE,
+    "nested": NESTED,
+    "open": OPEN,
+    "empty": EMPTY,
+}
+
+
 def write(folder: Path) -> Path:
     """The folder, with the ICDs in it."""
-    icds = {"shared": SHARED, "mixed": MIXED, "other": OTHER, "wide": WIDE, "open": OPEN, "empty": EMPTY}
-    for name, text in icds.items():
+    for name, text in _TEXTS.items():
         (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
     return folder

@@ -21,7 +21,8 @@ from icdgen.describe.numbers import (
     value_text,
 )
 from icdgen.describe.steps import Steps, steps
-from icdgen.icd.model import CONFIGURATION, Condition, Enum, Erratum, Field, Member, Message, Tail
+from icdgen.icd.erratum import Erratum
+from icdgen.icd.model import CONFIGURATION, Condition, Enum, Field, Member, Message, Struct, Tail
 
 
 class Comment(NamedTuple):
@@ -116,6 +117,12 @@ def _table(number: int | None) -> str:
     return "" if number is None else f" Table {number}."
 
 
+def struct_comment(struct: Struct) -> Comment:
+    """Name, length and table; summary."""
+    head = f"{words(struct.name)}: a struct of {byte_count(struct.length)}.{_table(struct.table)}"
+    return _comment(head, (sentence(struct.summary),), struct.errata, {})
+
+
 def enum_comment(enum: Enum) -> Comment:
     """Name and table; summary."""
     return _comment(
@@ -167,6 +174,9 @@ def _place(field: Field) -> str:
     if field.is_bytes:
         where = byte_range(field.at // 8, field.bits // 8)
         return f"{where}, text filled with NUL" if field.type == "text" else where
+    if field.struct is not None:
+        where = byte_range(field.at // 8, field.width // 8)
+        return f"{where}, {f'{field.count} ' if field.count else ''}{words(field.struct.name)}"
     where = bit_range(field.at, field.width)
     elements = array_text(field.count, field.bits) if field.count else ""
     return ", ".join(filter(None, (where, elements, orders_text(field))))

@@ -136,7 +136,7 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     reasons = [*odd, *_together((p.any.name, why) for p, why in wrong)]
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
-    verdict = NO if len(absent) + len(wrong) == len(reader.members) - len(reader.views) else PARTLY
+    verdict = NO if len(absent) + len(wrong) == len(reader.lines) - len(reader.views) else PARTLY
     return verdict, tuple(reasons)
 
 

@@ -10,8 +10,9 @@ from functools import partial
 from itertools import chain
 from typing import TypeVar
 
-from icdgen.icd import conditions, curve, division, floats, formula, model, tails, wire_ids
+from icdgen.icd import annex, conditions, curve, division, floats, formula, model, tails, wire_ids
 from icdgen.icd.errata import Applied
+from icdgen.icd.implied import implied_count
 from icdgen.icd.located import Map, plain
 from icdgen.icd.units import STANDARD, Unit
 
@@ -23,14 +24,16 @@ _LIMITS = frozenset({"min", "max", "above", "below"})
 
 
 class Scope:
-    """What a node may refer to: enumerations, units and vocabulary of its own and of what it includes."""
+    """What a node may refer to: enumerations, structs, units and vocabulary of its own and of what it includes."""
 
     def __init__(self, included: Iterable[model.Node]) -> None:
         self.enums: dict[str, model.Enum] = {}
+        self.structs: dict[str, model.Struct] = {}
         self.units: dict[str, Unit] = dict(STANDARD)
         self.vocabulary: list[str] = []
         for node in included:
             self.enums.update((e.name, e) for e in node.enums)
+            self.structs.update((one.name, one) for one in node.structs)
             self.units.update((u.symbol, u) for u in node.units)
             self.vocabulary += node.vocabulary
 
@@ -52,6 +55,7 @@ class Builder:
         self.scope.units.update((u.symbol, u) for u in units)
         enums = tuple(self.each("enums", self.enum))
         self.scope.enums.update((e.name, e) for e in enums)
+        structs = self.structs()
         listed, protocol = self.tree.get("vocabulary"), self.tree.get("protocol")
         words = tuple(w for w in (listed if isinstance(listed, list) else ()) if isinstance(w, str) and w.isalnum())
         return model.Node(
@@ -63,6 +67,7 @@ class Builder:
             id_bits=head.get("id_bits", wire_ids.DEFAULT_BITS),
             messages=tuple(self.each("messages", self.message)),
             enums=enums,
+            structs=structs,
             node_type=head.get("node_type"),
             interface_version=head.get("interface_version"),
             document=tuple((k, str(v)) for k, v in (head.get("source") or {}).items()),
@@ -109,6 +114,40 @@ class Builder:
             source=item,
         )
 
+    def structs(self) -> tuple[model.Struct, ...]:
+        """Those of the node, each after what it has in it. Of a circle, none has the next in it: it is a finding."""
+        listed = list(self.each("structs", lambda item: item))
+        items = {item["name"]: item for item in reversed(listed)}
+        made: list[model.Struct] = []
+        begun: set[str] = set()
+
+        def make(name: str) -> None:
+            begun.add(name)
+            for row in self.each("fields", lambda row: row, items[name]):
+                if row.get("struct") in items and row["struct"] not in begun:
+                    make(row["struct"])
+            made.append(self.struct(items[name]))
+            self.scope.structs[name] = made[-1]
+
+        for name in items:
+            if name not in begun:
+                make(name)
+        made += (self.struct(item) for item in listed if item is not items[item["name"]])  # names that are there twice
+        return tuple(made)
+
+    def struct(self, item: Map) -> model.Struct:
+        return model.Struct(
+            name=item["name"],
+            length=item["length"],
+            fields=tuple(chain.from_iterable(self.each("fields", partial(self.fields, item), item))),
+            identifier=item.get("identifier"),
+            summary=item.get("summary", ""),
+            table=(item.get("source") or {}).get("table"),
+            node=self.name,
+            errata=self.applied.about(item),
+            source=item,
+        )
+
     def message(self, item: Map) -> model.Message:
         where = item.get("source") or {}
         fields = tuple(chain.from_iterable(self.each("fields", partial(self.fields, item), item)))
@@ -151,16 +190,19 @@ class Builder:
         end = replace(end, bits=8 * most) if "size" in item else replace(end, count=most)
         if counter is not None:
             return tail, end.elements
-        implied = model.implied_count(end, message["length"] + most * tail.step)
+        implied = implied_count(end, message["length"] + most * tail.step)
         return replace(tail, counter=implied.name), (*end.elements, implied)
 
     def fields(self, message: Map, item: Map) -> tuple[model.Field, ...]:
-        """The field, the elements of an array, or the parts that it is divided into."""
+        """The field, the elements of an array, the fields of a struct, or the parts that it is divided into."""
         around = orders(message)
         if tails.is_open(item) or id(item.get("when")) in self.broken:
             return ()  # see `tail`
-        if "when" in item:
+        if "when" in item and "struct" not in item:
             return (replace(self.field(item, around), when=conditions.of(message, item, self.scope.enums)),)
+        if "struct" in item:
+            struct = self.scope.structs.get(item["struct"])
+            return () if struct is None else self.standing(item, struct, around).elements
         if "count" in item:
             return replace(self.field(item, around), count=item["count"]).elements
         if "bitfields" not in item:
@@ -179,6 +221,23 @@ class Builder:
                 errata=errata,
             )
             for part in parts
+        )
+
+    def standing(self, item: Map, struct: model.Struct, around: Orders) -> model.Field:
+        """A struct where it stands."""
+        return model.Field(
+            name=item["name"],
+            at=item["at"],
+            bits=struct.length * 8,
+            type="struct",
+            identifier=item.get("identifier"),
+            summary=item.get("summary", ""),
+            byte_order=around[0],
+            bit_order=around[1],
+            count=item.get("count", 0),
+            struct=struct,
+            errata=self.applied.about(item),
+            source=item,
         )
 
     def field(self, item: Map, around: Orders) -> model.Field:
@@ -214,12 +273,12 @@ class Builder:
         found = self.each("special", lambda one: special(kind, bits, one["value"], one["meaning"]), item)
         return tuple(one for one in found if one is not None)
 
-    def loggable(self, item: Map) -> model.Loggable:
+    def loggable(self, item: Map) -> annex.Loggable:
         errata = self.applied.about(item)
-        return model.Loggable(item["bit"], wire_ids.number(item["id"]), item.get("name", ""), errata, item)
+        return annex.Loggable(item["bit"], wire_ids.number(item["id"]), item.get("name", ""), errata, item)
 
-    def missing(self, item: Map) -> model.Missing:
-        return model.Missing(item["kind"], wire_ids.number(item["id"]), item["name"], item["why"])
+    def missing(self, item: Map) -> annex.Missing:
+        return annex.Missing(item["kind"], wire_ids.number(item["id"]), item["name"], item["why"])
 
 
 def _id(item: Map, key: str) -> int | None:

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 from icdgen.describe.errata import errata_of_enum, errata_of_message
 from icdgen.describe.numbers import length_text
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Erratum, Icd, Message, Node
+from icdgen.icd.erratum import Erratum
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node
 from icdgen.icd.wire_ids import DEFAULT_BITS, size
 from icdgen.show.fields import field_table
 from icdgen.tables import Column, clean, render

@@ -23,6 +23,7 @@ __all__ = [
     "NODES",
     "OpenEnum",
     "RangeError",
+    "Struct",
     "UnknownIdError",
     "bootloader",
     "common",
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from . import cubewheel as cubewheel
     from ._base import FieldInfo as FieldInfo
     from ._base import Message as Message
+    from ._base import Struct as Struct
     from ._enumeration import OpenEnum as OpenEnum
     from ._floats import is_special as is_special
 
@@ -56,6 +58,7 @@ _HOMES = {
     "FieldInfo": "._base",
     "Message": "._base",
     "OpenEnum": "._enumeration",
+    "Struct": "._base",
     "is_special": "._floats",
 }
 

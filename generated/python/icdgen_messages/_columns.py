@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from ._base import Message
 from ._codec import text
+from ._conditions import absent
 from ._dicts import OCTETS
 from ._errors import IcdError, LengthError
 from ._fields import FieldInfo
@@ -25,7 +26,7 @@ def decode_many(
     """See `Message.decode_many`."""
     numpy: Any = import_module("numpy")
     columns, counts = _columns(numpy, message, frames, physical)
-    for info, (name, column) in zip((*message.FIELDS, *message.VIEWS), columns.items()):
+    for info, (name, column) in zip(_lines(message), columns.items()):
         if info.is_open and column.ndim == 2:
             columns[name] = rows = numpy.empty(len(counts), object)
             for row, count in enumerate(counts):
@@ -40,8 +41,9 @@ def _columns(
     """Columns by name, and how many elements the end of each frame has; its others are 0."""
     joined, counts = _together(message, frames)
     decoder = _Decoder(numpy, message, joined)
-    columns = {}
-    for info in (*message.FIELDS, *message.VIEWS):
+    columns: dict[str, Any] = {}
+    known = {info.attribute: info for info in message.FIELDS}
+    for info in _lines(message):
         if info.elements:
             found = [decoder.column(one) for one in info.parts]
             column = numpy.stack(found, axis=1)
@@ -55,6 +57,12 @@ def _columns(
             columns[info.physical] = values.reshape(column.shape)
         else:
             columns[info.attribute] = column
+    for info in message.FIELDS if message.CONDITIONAL else ():
+        if info.when:
+            name = info.physical if physical and info.physical else info.attribute
+            raw = {key: decoder.column(known[key]) for key, _ in info.when}
+            mask = absent(numpy, info, raw)
+            columns[name] = numpy.ma.array(columns[name], mask=mask)
     return columns, numpy.array(counts, numpy.int32)
 
 
@@ -84,7 +92,14 @@ def decode_table(message: type[Message], frames: Frames, physical: bool) -> Any:
     pyarrow: Any = import_module("pyarrow")
     columns, counts = _columns(numpy, message, frames, physical)
     fields, arrays = [], []
-    for info, (name, column) in zip((*message.FIELDS, *message.VIEWS), columns.items()):
+    for info, (name, column) in zip(_lines(message), columns.items()):
+        if info.when:
+            array = pyarrow.array(
+                numpy.ascontiguousarray(column.data), mask=column.mask
+            )
+            fields.append(pyarrow.field(name, array.type, metadata=_metadata(info)))
+            arrays.append(array)
+            continue
         column = numpy.ascontiguousarray(column)
         if info.is_open and column.ndim == 2:
             array = _lists(numpy, pyarrow, column, counts, info.type in OCTETS)
@@ -106,6 +121,12 @@ def decode_table(message: type[Message], frames: Frames, physical: bool) -> Any:
     }
     schema = pyarrow.schema(fields, metadata=about)
     return pyarrow.Table.from_arrays(arrays, schema=schema)
+
+
+def _lines(message: type[Message]) -> list[FieldInfo]:
+    """What has a column: fields, views, arrays, and the fields of each struct."""
+    fields = [line for info in message.FIELDS for line in info.lines]
+    return [*fields, *message.VIEWS]
 
 
 def _lists(numpy: Any, pyarrow: Any, rows: Any, counts: Any, is_octets: bool) -> Any:
@@ -298,9 +319,7 @@ def _plan(message: type[Message]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in (
-        one for field in (*message.FIELDS, *message.VIEWS) for one in field.parts
-    ):
+    for info in (one for field in _lines(message) for one in field.parts):
         if _is_whole(info):
             continue
         for piece in pieces(info, message):

@@ -22,7 +22,7 @@ class FieldInfo:
     __slots__ = (
         "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
         "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
-        "elements", "is_open", "curve", "leads_back",
+        "elements", "is_open", "struct", "curve", "leads_back", "when",
     )  # fmt: skip
 
     def __init__(
@@ -48,8 +48,10 @@ class FieldInfo:
         default: _lazy.Any = None,
         elements: int = 0,
         is_open: bool = False,
+        struct: _lazy.Optional[type[_lazy.Struct]] = None,
         curve: tuple[float, ...] = (),
         leads_back: bool = True,
+        when: tuple[tuple[str, tuple[int, ...]], ...] = (),
     ) -> None:
         self.attribute = attribute
         """The attribute that holds the raw value."""
@@ -60,7 +62,7 @@ class FieldInfo:
         self.bits = bits
         """Width in bits."""
         self.type = type
-        """``uint``, ``int``, ``bool``, ``enum``, ``float``, ``bytes`` or ``text``."""
+        """``uint``, ``int``, ``bool``, ``enum``, ``float``, ``bytes``, ``text`` or ``struct``."""
         self.unit = unit
         """Unit of the physical value, or of the raw one if there is no scale."""
         self.physical = physical
@@ -95,6 +97,8 @@ class FieldInfo:
         """
         self.is_open = is_open
         """Whether frames hold up to so many elements, or bytes: see `Message.TAIL`."""
+        self.struct = struct
+        """The class of what stands here, where that is a struct; the offsets in it begin at 0."""
         self.curve = curve
         """Of a polynomial its coefficients, the constant first, and no scale.
 
@@ -102,6 +106,11 @@ class FieldInfo:
         """
         self.leads_back = leads_back
         """Whether the physical value can be set."""
+        self.when = when
+        """It is there only if each of these attributes has one of these values.
+
+        If not, its own is None, and is not looked at when the message is encoded.
+        """
 
     @property
     def signed(self) -> bool:
@@ -138,8 +147,50 @@ class FieldInfo:
         for key in ("attribute", "name"):
             told[key] += f"[{index}]"
         told["at"] += index * self.bits
-        told["default"] = None if self.is_open else self.default[index]
+        if self.is_open or self.default is None:
+            told["default"] = None
+        else:
+            told["default"] = self.default[index]
         return FieldInfo(**{**told, "elements": 0})
+
+    @property
+    def leaves(self) -> tuple[FieldInfo, ...]:
+        """The same, and of a struct the fields in it, called ``satellites[2].gnss``: no arrays, no structs."""
+        if self.struct is None:
+            return self.parts
+        return tuple(leaf for line in self.lines for leaf in line.parts)
+
+    @property
+    def lines(self) -> tuple[FieldInfo, ...]:
+        """The field; of a struct the fields in it, called ``satellites[2].gnss``, arrays as one."""
+        if self.struct is None:
+            return (self,)
+        return tuple(
+            line
+            for part in self.parts
+            for info in self.struct.FIELDS
+            for line in info.within(part).lines
+        )
+
+    def within(self, part: FieldInfo) -> FieldInfo:
+        """This field of a struct, where the struct stands as ``part`` of a message."""
+        told = {name: getattr(self, name) for name in self.__slots__}
+        for key in ("attribute", "name", "physical", "whole"):
+            if told[key]:
+                head = part.name if key == "name" else part.attribute
+                told[key] = f"{head}.{told[key]}"
+        told["at"] += part.at
+        told["byte_order"] = self.byte_order or part.byte_order
+        told["bit_order"] = self.bit_order or part.bit_order
+        return FieldInfo(**told)
+
+    @property
+    def fresh(self) -> _lazy.Any:
+        """The raw value in a new message: of a struct a new one."""
+        if self.struct is None:
+            return self.default
+        made = self.struct
+        return tuple(made() for _ in range(self.elements)) if self.elements else made()
 
     def _values(self) -> tuple[_lazy.Any, ...]:
         return tuple(getattr(self, name) for name in self.__slots__)
@@ -155,6 +206,11 @@ class FieldInfo:
     def __repr__(self) -> str:
         values = (f"{name}={getattr(self, name)!r}" for name in self.__slots__)
         return f"FieldInfo({', '.join(values)})"
+
+
+def is_there(info: FieldInfo, message: _lazy.Any) -> bool:
+    """Whether the message has the field, by the values of those on which it depends."""
+    return all(getattr(message, name) in values for name, values in info.when)
 
 
 def has_elements(info: FieldInfo, values: _lazy.Any) -> bool:
@@ -239,7 +295,23 @@ def _number_property(info: FieldInfo, form: Form) -> property:
     def set_nearest(self: Any, value: float) -> None:
         setattr(self, attribute, nearest_raw(value, attribute, terms, info.raw_range))
 
+    if info.when:
+        return _optional(
+            attribute, get_whole if is_whole else get_physical, set_nearest
+        )
     return property(get_whole if is_whole else get_physical, set_nearest)
+
+
+def _optional(attribute: str, get: Any, set: Any) -> property:
+    """The property of a field that is not always there: None then, in both directions."""
+
+    def get_there(self: Any) -> Any:
+        return None if getattr(self, attribute) is None else get(self)
+
+    def set_there(self: Any, value: Any) -> None:
+        setattr(self, attribute, None) if value is None else set(self, value)
+
+    return property(get_there, set_there)
 
 
 def _curve_property(info: FieldInfo) -> property:
@@ -262,6 +334,8 @@ def _curve_property(info: FieldInfo) -> property:
         found = (from_curve(one, info, f"{attribute}[{place}]") for place, one in each)
         setattr(self, attribute, tuple(found))
 
+    if info.when:
+        return _optional(attribute, get, set)
     return property(get_all, set_all) if info.elements else property(get, set)
 
 
@@ -322,6 +396,18 @@ def field(
         one = default[0] if told.get("elements") else default
         told["enum"] = one.__class__
     return FieldInfo("", name, at, bits, type, default=default, **told)
+
+
+def part(
+    name: str,
+    at: int,
+    bits: int,
+    *,
+    factory: _lazy.Any,
+    **told: _lazy.Any,
+) -> _lazy.Any:
+    """A struct, or as many of them as there are elements: the class of one is ``factory``."""
+    return FieldInfo("", name, at, bits, "struct", struct=factory, **told)
 
 
 def scaled(p: int, c: int, q: int, *, default: _lazy.Any) -> _lazy.Any:

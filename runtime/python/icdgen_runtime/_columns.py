@@ -25,7 +25,7 @@ def decode_many(
     """See `Message.decode_many`."""
     numpy: Any = import_module("numpy")
     columns, counts = _columns(numpy, message, frames, physical)
-    for info, (name, column) in zip((*message.FIELDS, *message.VIEWS), columns.items()):
+    for info, (name, column) in zip(_lines(message), columns.items()):
         if info.is_open and column.ndim == 2:
             columns[name] = rows = numpy.empty(len(counts), object)
             for row, count in enumerate(counts):
@@ -42,7 +42,7 @@ def _columns(
     decoder = _Decoder(numpy, message, joined)
     columns: dict[str, Any] = {}
     known = {info.attribute: info for info in message.FIELDS}
-    for info in (*message.FIELDS, *message.VIEWS):
+    for info in _lines(message):
         if info.elements:
             found = [decoder.column(one) for one in info.parts]
             column = numpy.stack(found, axis=1)
@@ -91,7 +91,7 @@ def decode_table(message: type[Message], frames: Frames, physical: bool) -> Any:
     pyarrow: Any = import_module("pyarrow")
     columns, counts = _columns(numpy, message, frames, physical)
     fields, arrays = [], []
-    for info, (name, column) in zip((*message.FIELDS, *message.VIEWS), columns.items()):
+    for info, (name, column) in zip(_lines(message), columns.items()):
         if info.when:
             array = pyarrow.array(
                 numpy.ascontiguousarray(column.data), mask=column.mask
@@ -120,6 +120,12 @@ def decode_table(message: type[Message], frames: Frames, physical: bool) -> Any:
     }
     schema = pyarrow.schema(fields, metadata=about)
     return pyarrow.Table.from_arrays(arrays, schema=schema)
+
+
+def _lines(message: type[Message]) -> list[FieldInfo]:
+    """What has a column: fields, views, arrays, and the fields of each struct."""
+    fields = [line for info in message.FIELDS for line in info.lines]
+    return [*fields, *message.VIEWS]
 
 
 def _lists(numpy: Any, pyarrow: Any, rows: Any, counts: Any, is_octets: bool) -> Any:
@@ -312,9 +318,7 @@ def _plan(message: type[Message]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in (
-        one for field in (*message.FIELDS, *message.VIEWS) for one in field.parts
-    ):
+    for info in (one for field in _lines(message) for one in field.parts):
         if _is_whole(info):
             continue
         for piece in pieces(info, message):

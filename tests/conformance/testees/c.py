@@ -33,6 +33,7 @@ class FieldRow(NamedTuple):
     type: str
     name: str  # in the names of functions
     member: str
+    holder: str  # where its message, or the struct in which it stands, is in the message
     element: str  # the index of an element of an array, and a comma
     size: int
     name_of: str
@@ -152,13 +153,15 @@ class _Rows:
         )
 
     def field(self, one: FieldDescription) -> FieldRow:
-        field, stem = one.model, names.stem(one.message)
-        macros = [(constant.key, names.constant(one.message, constant.name)) for constant in one.constants]
+        owner = one.declaration.message
+        field, stem = one.model, names.stem(owner)
+        macros = [(constant.key, names.constant(owner, constant.name)) for constant in one.constants]
         return FieldRow(
             type="TESTEE_SIGNED" if field.signed else TYPES.get(field.type, "TESTEE_UNSIGNED"),
             name=one.name,
             member=one.member,
-            element=f"{field.index}u, " if field.path else "",
+            holder=one.holder,
+            element=f"{field.index}u, " if field.index is not None else "",
             size=field.bits // 8 if field.is_bytes else one.storage.bits // 8,
             name_of=f"{self.node.name}_{names.stem(one.enum)}_testee_name" if one.enum is not None else "",
             get=f"{stem}_{one.physical_name}" if one.is_scaled else "",

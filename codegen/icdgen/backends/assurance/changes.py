@@ -7,13 +7,15 @@ from collections.abc import Iterator
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
+from operator import is_
 from typing import Any, NamedTuple, TypeVar
 
 from icdgen import layout
 from icdgen.icd import floats
 from icdgen.icd.build import calibration, special
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Field, Limits, Message, Node
+from icdgen.icd.model import Enum, Field, Limits, Message, Node, Struct
+from icdgen.icd.paths import members_of
 
 OTHER_TYPES = {
     "uint": ("int", "float", "bytes", "bool"),
@@ -44,7 +46,7 @@ class Change(NamedTuple):
     now: object
 
 
-def of_field(field: Field, message: Message, node: Node) -> Iterator[tuple[Change, Field]]:
+def of_field(field: Field, message: Message | Struct, node: Node) -> Iterator[tuple[Change, Field]]:
     """The changes of a member, and what it would be; none that no field of such a type or no frame of such a length can have."""
     size, count = 8 * message.length, field.count or 1
     source = field.source
@@ -55,7 +57,7 @@ def of_field(field: Field, message: Message, node: Node) -> Iterator[tuple[Chang
         size = 8 * message.least
         if message.tail.counter == field.name:
             return  # it counts the elements: as another field it may count none
-    for step in (-8, 8) if field.is_bytes else (-8, -1, 1, 8):
+    for step in (-8, 8) if field.is_bytes or field.struct is not None else (-8, -1, 1, 8):
         if 0 <= field.at + step <= size - field.width:
             yield _step("offset", source, "at", field.at, step), replace(field, at=field.at + step)
     for step in _WIDER.get(field.type, ()):
@@ -100,6 +102,19 @@ def _formulas(field: Field) -> Iterator[tuple[Change, Field]]:
         if scale is not None or curve is not None:  # else its factor would be 0
             change = Change("formula", field.source, "formula", field.formula, text)
             yield change, replace(field, scale=scale, curve=curve)
+
+
+def with_struct(fields: tuple[Field, ...], old: Struct, new: Struct) -> tuple[Field, ...]:
+    """The fields of a message, or of a struct, in which a struct is another; the same if it does not stand there."""
+    members, found = members_of(fields), []
+    for one in members:
+        if one.struct is not None:
+            inner = new.fields if one.struct is old else with_struct(one.struct.fields, old, new)
+            one = one if inner is one.struct.fields else replace(one, struct=replace(one.struct, fields=inner))
+        found.append(one)
+    if all(map(is_, members, found)):
+        return fields
+    return tuple(element for one in found for element in one.elements)
 
 
 def _values(field: Field) -> Iterator[tuple[Change, Field]]:

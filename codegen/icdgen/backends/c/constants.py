@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 from icdgen.backends.c import names
 from icdgen.backends.c.types import mask
-from icdgen.describe import EnumDescription, FieldDescription, MessageDescription
+from icdgen.describe import EnumDescription, FieldDescription
 from icdgen.describe.constants import Constant
+from icdgen.describe.description import Composite
 from icdgen.describe.numbers import exact_text
 from icdgen.icd import floats
 
@@ -16,7 +18,7 @@ _MAX_ENUMERATOR = 32767
 """What every `int` can hold."""
 
 
-def of_fields(message: MessageDescription) -> list[tuple[Constant, str]]:
+def of_fields(message: Composite[Any]) -> list[tuple[Constant, str]]:
     """The constants of a message's fields, and their values."""
     return [(one, _value(one, field)) for field in message.all_members for one in field.constants]
 
@@ -41,15 +43,14 @@ def _float(one: Constant, bits: int) -> str:
     return f"({text})" if text.startswith("-") else text
 
 
-def initial(message: MessageDescription) -> list[str]:
+def initial(message: Composite[Any]) -> list[str]:
     """Statements that give fields with only one valid value that value."""
     return [
-        f"message->{element.member} = {names.constant(message, one.name)};"
-        for field in message.members
+        f"message->{field.member} = {names.constant(field.declaration.message, one.name)};"
+        for field in message.fields
         if not field.is_open
         for one in field.constants
         if one.key == "const"
-        for element in field.elements or (field,)
     ]
 
 

@@ -83,7 +83,7 @@ def number(field: FieldDescription) -> str:
 def _one(field: FieldDescription) -> str:
     one = field.model
     if one.is_bytes:
-        return f"(void)memcpy(message->{field.name}, &buffer[{one.at // 8}], {one.bits // 8}u);"
+        return f"(void)memcpy(message->{field.member}, &buffer[{one.at // 8}], {one.bits // 8}u);"
     return _number(field, f"message->{field.member}")
 
 

@@ -49,7 +49,7 @@ class _Frame:
         one = field.model
         first, size = one.at // 8, one.bits // 8
         if one.is_bytes:
-            self.whole[first] = size, f"(void)memcpy(&buffer[{first}], message->{field.name}, {size}u);"
+            self.whole[first] = size, f"(void)memcpy(&buffer[{first}], message->{field.member}, {size}u);"
         elif bits.is_word(field):
             self.whole[first] = size, bits.store(field)
         else:

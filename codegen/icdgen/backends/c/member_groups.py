@@ -87,8 +87,9 @@ def _row(fields: Members) -> Row | None:
     bits = first.model.bits
     for field in fields:
         is_next = field.model.bits == bits and field.model.at == first.model.at + count * bits
+        is_next = is_next and field.holder == first.holder  # a struct may end with padding
         if not (is_next and is_word(field) and field.storage.bits == bits and field.byte_order == first.byte_order):
             break
         count += 1
-    elements = sum(bool(field.model.path) for field in fields[:count])
+    elements = sum(field.model.index is not None for field in fields[:count])
     return Row(fields[:count]) if count >= LONG_ENOUGH or elements == count > 1 else None

@@ -14,7 +14,7 @@ from icdgen.backends.c.types import type_of
 from icdgen.backends.lines import in_rows
 from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
-from icdgen.describe.description import Direction
+from icdgen.describe.nodes import Direction
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from icdgen.vectors.ids import worth_asking
@@ -42,6 +42,7 @@ class FieldRow(NamedTuple):
     stem: str
     tables: str  # of the names of its tables: elements of an array have the same
     has_tables: bool
+    holder: str  # where the struct in which it stands is in the message
     element: str  # the index of an element of an array, and a comma
     size: int  # bytes of the member
     packed: int  # bytes in a vector
@@ -133,7 +134,8 @@ class _Rows:
         vectors = _plain(message, vectors)
         for row in vectors.rows:  # reserved bits are those that no vector keeps
             kept = bytes(a | b for a, b in zip(kept, row.encoded.ljust(len(kept), b"\0"), strict=True))
-        fields = [self.field(field, vectors) for field in message.all_fields]
+        tables: dict[str, str] = {}
+        fields = [self.field(field, vectors, tables) for field in message.all_fields]
         size = message.model.length + sum(field.packed for field in fields)
         doubles = (f"UINT64_C(0x{double})" for row in vectors.rows for double in row.doubles.values())
         return MessageRow(
@@ -164,16 +166,19 @@ class _Rows:
                 data += (value & ((1 << 8 * field.packed) - 1)).to_bytes(field.packed, "little")
         return _bytes(data)
 
-    def field(self, one: FieldDescription, vectors: MessageVectors) -> FieldRow:
+    def field(self, one: FieldDescription, vectors: MessageVectors, known: dict[str, str]) -> FieldRow:
+        """``known``: of each line of the ICD the field that has its tables."""
         field, storage = one.model, one.storage
         is_bytes, index = field.is_bytes, field.index
-        stem = f"{names.stem(one.message)}_selftest"
+        stem = f"{names.stem(one.message)}_selftest_{one.name}"
+        tables = known.setdefault(".".join(step.name for step in field.path) if field.path else stem, stem)
         unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
         return FieldRow(
             field=one,
-            stem=f"{stem}_{one.name}",
-            tables=f"{stem}_{one.name if index is None else f'{one.declared}_0'}",
-            has_tables=not index,
+            stem=stem,
+            tables=tables,
+            has_tables=tables == stem,
+            holder=one.holder,
             element="" if index is None else f"{index}u, ",
             size=field.bits // 8 if is_bytes else storage.bits // 8,
             packed=(field.bits + 7) // 8,
@@ -217,7 +222,7 @@ def _tail(message: MessageDescription, vectors: MessageVectors) -> TailRow:
 
 
 def _accessors(field: FieldDescription, end: str, type: str, rows: list[str]) -> Accessors:
-    stem = names.stem(field.message)
+    stem = names.stem(field.declaration.message)
     return Accessors(f"{stem}_{end}", f"{stem}_set_{end}", type, rows)
 
 

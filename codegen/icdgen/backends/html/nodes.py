@@ -5,7 +5,9 @@ from __future__ import annotations
 from icdgen.backends.html import examples, protocol, texts, wire
 from icdgen.backends.html.relations import Place, Relations, document, manual
 from icdgen.describe.errata import errata_of_message
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Erratum, Loggable, Message, Node
+from icdgen.icd.annex import Loggable
+from icdgen.icd.erratum import Erratum
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.wire_ids import DEFAULT_BITS
 
 _KINDS = {TELECOMMAND: "Telecommands", TELEMETRY: "Telemetry", CONFIGURATION: "Configuration"}

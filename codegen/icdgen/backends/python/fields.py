@@ -28,6 +28,8 @@ def _perhaps(field: FieldDescription, note: str) -> str:
 
 
 def _annotation(field: FieldDescription) -> str:
+    if field.struct is not None:
+        return class_name(field.struct)
     if field.is_text:
         return "bytes"
     return class_name(field.enum) if field.enum else "int" if field.model.type == "uint" else field.model.type
@@ -89,6 +91,9 @@ def special_value(one: Special | Constant, bits: int) -> str:
 def declaration(field: FieldDescription) -> str:
     """``control_mode: ConModeSelect = _base.field(...)``: its place, its first value, and what is told of it."""
     one = field.model
+    if field.struct is not None:
+        items = [literal(one.name), str(one.at), str(one.bits), f"factory={class_name(field.struct)}", *_told(field)]
+        return _statement(field.name, annotation(field), "part", items)
     items = [literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', f"default={default(field)}", *_told(field)]
     return _statement(field.name, annotation(field), "field", items)
 

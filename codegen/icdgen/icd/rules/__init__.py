@@ -31,6 +31,7 @@ from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its r
     protocol_sizes,
     reading,
     references,
+    structs,
     tails,
     values,
 )

@@ -6,12 +6,13 @@ from collections.abc import Iterator
 
 from icdgen.icd import conditions, tails
 from icdgen.icd.located import Map
+from icdgen.icd.model import Struct
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import quote
 
-_NEVER = (("count", "an array"), ("size", "open"), ("bitfields", "divided"), ("view", "a view"))
+_NEVER = (("count", "an array"), ("size", "open"), ("bitfields", "divided"), ("view", "a view"), ("struct", "a struct"))
 
 
 @rule("ICD160")
@@ -29,10 +30,18 @@ def may_hold(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD162")
 def can_be_absent(ctx: Context) -> Iterator[Fault]:
-    for field, message, _ in ctx.having["when"]:
+    within = (
+        [row for row in ctx.members if row[0].struct is not None and "when" in row[0].source] if ctx.structs else []
+    )
+    for field, message, _ in (*ctx.having["when"], *within):
         source = field.source
         odd = next((words for key, words in _NEVER if source.get(key)), f"`{field.type}`" if field.is_bytes else "")
-        if odd:
+        if isinstance(message, Struct):
+            text = f"{quote(field.name)} is a field of a struct, which is always there as a whole"
+            yield Fault(
+                source, source.at("when"), text, "write the fields of the struct into the message, or remove `when`"
+            )
+        elif odd:
             text = f"{quote(field.name)} is {odd}, and only a number, a flag or a value of an enumeration may be there or not"
             yield Fault(source, source.at("when"), text, "remove `when`")
         elif tails.open_parts(message.source):

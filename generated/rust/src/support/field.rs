@@ -31,6 +31,8 @@ pub struct Field {
     pub unit: &'static str,
     /// Limits of the physical value (of the raw value where there is no scale): `min`, `above`, `max`, `below`.
     pub limits: &'static [(&'static str, f64)],
+    /// What a struct is made of, with places in it; empty of what is none.
+    pub fields: &'static [Field],
     scale: Option<Formula>,
 }
 
@@ -58,12 +60,18 @@ impl Field {
             count: 1,
             unit: "",
             limits: &[],
+            fields: &[],
             scale: None,
         }
     }
 
     pub(crate) const fn array(mut self, count: usize) -> Self {
         self.count = count;
+        self
+    }
+
+    pub(crate) const fn fields(mut self, fields: &'static [Self]) -> Self {
+        self.fields = fields;
         self
     }
 
@@ -140,7 +148,7 @@ impl Field {
     }
 }
 
-/// The fields of a message that are yet to be shown.
+/// The fields of a message, or of a struct, that are yet to be shown.
 pub(crate) struct Row {
     rest: core::slice::Iter<'static, Field>,
     mark: &'static str,
@@ -151,6 +159,11 @@ impl Row {
         out.write_str(M::NAME)?;
         let (rest, mark) = (M::FIELDS.iter(), ": ");
         Ok(Self { rest, mark })
+    }
+
+    pub(crate) fn of(fields: &'static [Field], mark: &'static str) -> Self {
+        let rest = fields.iter();
+        Self { rest, mark }
     }
 
     pub(crate) fn show(&mut self, out: &mut Formatter<'_>, value: &(impl Value + ?Sized)) -> Shown {
@@ -169,7 +182,7 @@ impl Row {
     }
 }
 
-/// What a member of a message may be.
+/// What a member of a message, or of a struct, may be.
 pub(crate) trait Value {
     fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown;
 }
@@ -216,6 +229,15 @@ floats!(f32 f64);
 impl<E: super::Enumeration> Value for super::Coded<E> {
     fn show(&self, out: &mut Formatter<'_>, _: &Field) -> Shown {
         write!(out, "{self}")
+    }
+}
+
+impl<T: Value> Value for Option<T> {
+    fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
+        match self {
+            Some(value) => value.show(out, field),
+            None => out.write_str("-"),
+        }
     }
 }
 

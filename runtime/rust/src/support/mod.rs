@@ -21,8 +21,8 @@ pub(crate) use self::bytes::{
 };
 pub(crate) use self::curve::Curve;
 pub use self::field::{is_special, Field};
-pub(crate) use self::field::Row;
-pub(crate) use self::message::{enumeration, message, shown};
+pub(crate) use self::field::{Row, Value};
+pub(crate) use self::message::{enumeration, message, shown, structure};
 pub use self::message::{Message, Telecommand, Telemetry};
 pub(crate) use self::scale::{there, Scale};
 pub use self::tail::Frame;
