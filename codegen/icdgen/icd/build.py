@@ -198,7 +198,7 @@ class Builder:
         around = orders(message)
         if tails.is_open(item) or id(item.get("when")) in self.broken:
             return ()  # see `tail`
-        if "when" in item and "struct" not in item:
+        if "when" in item and item.keys().isdisjoint(("struct", "count")):
             return (replace(self.field(item, around), when=conditions.of(message, item, self.scope.enums)),)
         if "struct" in item:
             struct = self.scope.structs.get(item["struct"])

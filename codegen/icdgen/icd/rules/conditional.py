@@ -12,7 +12,7 @@ from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import quote
 
-_NEVER = (("count", "an array"), ("size", "open"), ("bitfields", "divided"), ("view", "a view"), ("struct", "a struct"))
+_NEVER = (("count", "an array"), ("size", "open"), ("bitfields", "divided"), ("view", "a view"))
 
 
 @rule("ICD160")
@@ -30,10 +30,7 @@ def may_hold(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD162")
 def can_be_absent(ctx: Context) -> Iterator[Fault]:
-    within = (
-        [row for row in ctx.members if row[0].struct is not None and "when" in row[0].source] if ctx.structs else []
-    )
-    for field, message, _ in (*ctx.having["when"], *within):
+    for field, message, _ in ctx.having["when"]:
         source = field.source
         odd = next((words for key, words in _NEVER if source.get(key)), f"`{field.type}`" if field.is_bytes else "")
         if isinstance(message, Struct):
