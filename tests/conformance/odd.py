@@ -142,7 +142,8 @@ icdgen: 1
 node: {name: wide, title: Wide ids, byte_order: little, bit_order: lsb0, id_bits: 32}
 enums:
   - name: Turn
-    members: [{value: -5, name: Left}, {value: 100, name: Right}]
+    members: [{value: -5, name: Left}, {value: 100, name: Right}, {value: -100, to: -50, name: Away},
+              {value: 10, to: 12, name: Near}]
 structs:
   - name: Odd
     length: 9
@@ -313,7 +314,8 @@ icdgen: 1
 node: {name: open, title: Messages of variable length, byte_order: big, bit_order: msb0}
 enums:
   - name: Gauge
-    members: [{value: 1, name: First}, {value: 300, name: Last}]
+    members: [{value: 1, name: First}, {value: 300, name: Last},
+              {value: 2, to: 255, name: "Between \\" */"}, {value: 400, to: 401, name: Two}]
   - name: Narrow Gauge
     members: [{value: -1, name: Before}, {value: 1, name: After}]
 messages:
@@ -425,7 +427,7 @@ messages:
       - {at: 41, bits: 1, name: Is Fast, type: bool, when: {Flag: true, Mode: [1, 3]}}
       - {at: 41, bits: 6, name: Slow, type: uint, when: {Flag: false}}
       - {at: 48, bits: 3, name: State, type: enum, enum: State}
-      - {at: 51, bits: 21, name: Idle Time, type: uint, unit: s, formula: "3 + 0.02*raw + 3e-6*raw^2", when: {State: [Idle, Stopped]}}
+      - {at: 51, bits: 21, name: Idle Time, type: uint, unit: s, formula: "3 + raw/50 + 3e-6*raw^2", when: {State: [Idle, Stopped]}}
       - {at: 51, bits: 9, name: On Count, type: int, min: -3, special: [{value: -256, meaning: none}], when: {State: Turning}}
       - {at: 0, bits: 7, name: Head, type: uint, view: true}
   - name: Choice
@@ -454,7 +456,8 @@ _TEXTS = {
     "other": OTHER,
     "wide": WIDE,
     "nested": NESTED,
-    "open": OPEN, "mux": MUX,
+    "open": OPEN,
+    "mux": MUX,
     "empty": EMPTY,
 }
 

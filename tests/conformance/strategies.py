@@ -151,7 +151,7 @@ def _uses_all(names: dict, enums: list[dict], structs: list[dict], id: int | lis
 
 def _needed(enum: dict) -> int:
     """Bits of the narrowest field that holds every member; a negative one makes all of them signed."""
-    values = [member["value"] for member in enum["members"]]
+    values = [value for member in enum["members"] for value in (member["value"], member.get("to", 0))]
     signed = min(values) < 0
     return max((~value if value < 0 else value).bit_length() + signed for value in values) or 1
 
@@ -164,7 +164,15 @@ def _enum(draw, names: Names, name: str) -> dict:
     )
     near = st.integers(max(low, -5), min(5, high))
     values = draw(st.lists(st.integers(low, high) | near, min_size=1, max_size=6, unique=True))
-    return {"name": name, "members": [{"value": value, **names.one("member")} for value in values]}
+    members: list[dict] = []
+    after = dict(zip(ordered := sorted(values), ordered[1:], strict=False))
+    for value in values:
+        room = after.get(value, high + 1) - value - 1
+        reach = (
+            {"to": value + draw(st.integers(1, min(room, 300)))} if room > 0 and draw(st.integers(0, 4)) == 0 else {}
+        )
+        members.append({"value": value, **reach, **names.one("member")})
+    return {"name": name, "members": members}
 
 
 @st.composite
@@ -341,7 +349,7 @@ def _field(draw, enums: list[dict]) -> dict:
         return {"bits": 1, "type": kind, **array}
     if kind == "float":
         formula = {"formula": draw(_curve())} if draw(st.booleans()) else {}
-        values = draw(st.lists(st.sampled_from(("nan", "inf", "-inf", -99.9, 0, 1e30)), max_size=2, unique=True))
+        values = draw(st.lists(st.sampled_from(("nan", "inf", "-inf", -99.9, 0, 1e15)), max_size=2, unique=True))
         named = {"special": [_meaning(one, index) for index, one in enumerate(values)]} if values else {}
         return {"bits": draw(st.sampled_from((32, 64))), "type": kind, **array, **formula, **named}
     if kind == "enum":

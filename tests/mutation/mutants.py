@@ -8,6 +8,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import product
 
 from icdgen.backends.assurance.changes import OTHER_TYPES, formulas
 from icdgen.icd.build import plain
@@ -222,9 +223,11 @@ def _node(home: _Home) -> Iterator[Mutant]:
 def _enum(home: _Home, enum: Enum) -> Iterator[Mutant]:
     user = next((m for m in home.node.messages if any(f.enum is enum for f in m.fields)), None)
     for index, member in enumerate(enum.members):
-        for step in (-1, 1):
+        for key, step in product(("value", "to"), (-1, 1)):
+            if (value := getattr(member, key)) is None:
+                continue
             tree = copy.deepcopy(home.tree(user, [enum.name]))
             changed = next(e for e in tree["enums"] if e["name"] == enum.name)
-            changed["members"][index]["value"] = member.value + step
-            about = f"{enum.name!r}: {member.name!r} {member.value} -> {member.value + step}"
+            changed["members"][index][key] = value + step
+            about = f"{enum.name!r}: {member.name!r} {value} -> {value + step}"
             yield Mutant("enum value", about, home.node.name, None, enum.name, tree)

@@ -38,10 +38,15 @@ class Comment(NamedTuple):
         return self.head, *self.rest, *self.errata
 
 
+def one_line(text: str) -> str:
+    """The words of a text, one blank apart."""
+    return text.strip() if text.isprintable() and "  " not in text else " ".join(text.split())
+
+
 @lru_cache(maxsize=8192)
 def words(text: str) -> str:
     """Text of the ICD, for a paragraph: on one line, without backticks."""
-    return " ".join(text.replace("`", "'").split())
+    return one_line(text.replace("`", "'"))
 
 
 def sentence(text: str) -> str:
@@ -94,7 +99,7 @@ def _said_of(field: Field | None, value: int) -> str:
     if field is not None and field.type == "bool":
         return "true" if value else "false"
     members = field.enum.members if field is not None and field.enum is not None else ()
-    return next((words(one.name) for one in members if one.value == value), str(value))
+    return next((words(one.name) for one in members if one.value == value and one.to is None), str(value))
 
 
 def presence_comment(field: Field, message: Message | None = None) -> str:

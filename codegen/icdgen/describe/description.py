@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from functools import cached_property
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from icdgen import layout, naming
@@ -19,6 +18,7 @@ from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.curve import Curve
 from icdgen.icd.model import Enum, Field, Icd, Message, Node, Struct
 from icdgen.icd.paths import Step, placed
+from icdgen.once import cached_property
 
 
 class Whole(Protocol):

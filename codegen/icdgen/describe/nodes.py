@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import Any, NamedTuple
 
 from icdgen.describe.description import Composite, MessageDescription, StructDescription, Whole
 from icdgen.describe.enums import EnumDescription
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Node
+from icdgen.once import cached_property
 
 
 class Direction(NamedTuple):

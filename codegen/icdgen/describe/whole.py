@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 from icdgen.describe.description import MessageDescription, StructDescription
 from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.nodes import NodeDescription
 from icdgen.describe.storage import holding
 from icdgen.icd.model import Enum, Icd, Message, Node, Struct
+from icdgen.once import cached_property
 
 
 class Description:

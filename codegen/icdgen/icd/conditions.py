@@ -64,7 +64,10 @@ def faults_of_values(message: Map, item: Map, enums: Mapping[str, Enum]) -> Iter
             continue
         values = [_value(one, said, enums) for said in _listed(when[name])]
         for said, value in zip(_listed(when[name]), values, strict=True):
-            if value is None:
+            if value is None and _is_range(one, said, enums):
+                text = f"{_shown(said)} is a range of values of `{one['enum']}`"
+                yield Obstacle(when, name, text, "write the values as numbers, each that is meant")
+            elif value is None:
                 yield Obstacle(when, name, f"`{name}` is never {_shown(said)}", f"`{name}` {_allowed(one, enums)}")
             elif "const" in one and value != one["const"]:
                 text = f"`{name}` is always {one['const']}, so that `{item['name']}` is never there"
@@ -88,7 +91,9 @@ def _value(field: Map, said: object, enums: Mapping[str, Enum]) -> int | None:
     if kind == "enum":
         enum = enums.get(field.get("enum", ""))
         if isinstance(said, str):
-            return next((one.value for one in enum.members if one.name == said), None) if enum else None
+            return (
+                next((one.value for one in enum.members if one.name == said and one.to is None), None) if enum else None
+            )
         if type(said) is not int:
             return None
         low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if enum and enum.signed else (0, (1 << bits) - 1)
@@ -96,6 +101,11 @@ def _value(field: Map, said: object, enums: Mapping[str, Enum]) -> int | None:
     if kind == "bool":
         return int(said) if said in (0, 1) and isinstance(said, int) else None
     return said if type(said) is int and 0 <= said < 1 << bits else None
+
+
+def _is_range(field: Map, said: object, enums: Mapping[str, Enum]) -> bool:
+    enum = enums.get(field.get("enum", ""))
+    return enum is not None and any(one.name == said and one.to is not None for one in enum.members)
 
 
 def _allowed(field: Map, enums: Mapping[str, Enum]) -> str:

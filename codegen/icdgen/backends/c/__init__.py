@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from icdgen.backends import Identifier
 from icdgen.backends.c import accessors, bits, conditional, constants, decoding, encoding, fields, names, parts, types
 from icdgen.backends.c.declared_names import declared_names
+from icdgen.backends.c.member_groups import in_groups
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
 from icdgen.backends.c.statement import call, head
@@ -57,7 +58,8 @@ class CBackend:
             shared = {"origin": origin(node.model), "title": prose(words(node.model.title)), **_FUNCTIONS}
             if node.enums:
                 enums = [(enum, *constants.of_enum(enum)) for enum in node.enums]
-                yield folder / "enums.h", render("enums.h.j2", node=node.name, enums=enums, **shared)
+                values = {"node": node.name, "enums": enums, "within": constants.within}
+                yield folder / "enums.h", render("enums.h.j2", **values, **shared)
             for struct in node.structs:
                 yield folder / f"{struct.name}.h", render("struct.h.j2", m=struct, **_composite(struct), **shared)
             for message in node.messages:
@@ -67,8 +69,8 @@ class CBackend:
                 yield folder / "link.h", render("link.h.j2", **link)
                 yield folder / "link.c", render("link.c.j2", **link)
                 yield folder / "client.h", render("client.h.j2", **_client(node, links[node.name]), **shared)
-            values = {**_node(node), "id_type": f"uint{description.id_bits}_t"}
-            yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", node=node, **values, **shared)
+            of_node = {**_node(node), "id_type": f"uint{description.id_bits}_t"}
+            yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", node=node, **of_node, **shared)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that the headers declare."""
@@ -93,13 +95,15 @@ def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, objec
 
 
 def _message(message: MessageDescription) -> dict[str, object]:
+    groups = in_groups(message.steady)
     return {
         **_composite(message, parts.headers(message)),
         "empty": decoding.EMPTY,
-        "decode": decoding.statements(message),
+        "decode": decoding.statements(message, groups),
         "excess": bits.excess,
+        "narrow": [(field, bits.excess(field)) for field in message.fields if field.is_narrow and not field.is_open],
         "excess_type": bits.excess_type(message),
-        "encode": encoding.statements(message),
+        "encode": encoding.statements(message, groups),
         "conditional": conditional.conditional(message),
         **(_tail(message, message.tail) if message.tail else {}),
         "views": [accessors.view(field) for field in message.views],

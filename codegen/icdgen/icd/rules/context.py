@@ -48,6 +48,7 @@ class Context:
         self.icd = icd
         self.languages = languages  # that names must do for
         self.applied = tuple(applied)
+        self._accepted = {(code, id(owner)) for one in self.applied for code, _, owner, _, _ in one.accepts}
         self.complete = complete
         self.raised: list[tuple[str, Fault]] = []  # code and fault, of the rules that ran already
         self.messages: list[tuple[Message, Node]] = [(m, n) for n in icd.nodes for m in n.messages]
@@ -74,6 +75,10 @@ class Context:
             found = (*(n for n in self.icd.nodes if by_name.get(n.name) is n), node)
             self._scopes[id(node)] = found
         return found
+
+    def accepts(self, code: str, fault: Fault) -> bool:
+        """Whether an erratum says that the fault is to be."""
+        return (code, id(fault.owner)) in self._accepted
 
     def sections(self, *path: str) -> Iterator[Map]:
         """The sections of that path, of each node that has one of its own."""

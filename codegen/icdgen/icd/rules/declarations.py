@@ -48,7 +48,8 @@ def declared(ctx: Context) -> list[Declared]:
 
 def _sound(ctx: Context) -> Icd:
     """The model without fields that have errors, and without the second of two equal names."""
-    bad = {id(f.owner) for code, f in ctx.raised if REGISTERED[code].severity == "error"}
+    errors = ((code, f) for code, f in ctx.raised if REGISTERED[code].severity == "error")
+    bad = {id(f.owner) for code, f in errors if not ctx.accepts(code, f)}
     twins = {id(f.owner) for code, f in ctx.raised if code in TWINS}
 
     def has_faults(fields: Iterable[Field]) -> bool:
