@@ -303,7 +303,7 @@ def _open_end(draw, fields: list[dict], length: int, enums: list[dict]) -> dict:
 def _counts(field: dict) -> bool:
     """Whether a field can say how many elements there are."""
     others = ("formula", "const", "count", "view", "bitfields")
-    return field["type"] == "uint" and not any(key in field for key in others)
+    return field.get("type") == "uint" and not any(key in field for key in others)
 
 
 @st.composite

@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names
-from icdgen.backends.c.conditional import has
 from icdgen.backends.c.types import type_of
 from icdgen.backends.origin import origin
 from icdgen.describe import EnumDescription, FieldDescription, MessageDescription, NodeDescription, describe
@@ -168,7 +167,7 @@ class _Rows:
             set=f"{stem}_set_{one.physical_name}" if one.is_scaled and one.is_set else "",
             get_text=f"{stem}_{one.physical_name}" if one.is_text else "",
             set_text=f"{stem}_set_{one.physical_name}" if one.is_text else "",
-            has=has(one) if field.when else "",
+            has=names.has(one) if field.when else "",
             view=f"{stem}_{one.name}" if field.view else "",
             c_type=type_of(one) if field.view else "",
             special=[name for key, name in macros if key == "special"],

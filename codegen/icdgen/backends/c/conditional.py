@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from icdgen.backends.c import bits, decoding
-from icdgen.backends.c.names import enumerator, stem
+from icdgen.backends.c.names import enumerator, has
 from icdgen.backends.c.statement import assigned_byte
 from icdgen.backends.c.types import mask
 from icdgen.describe import FieldDescription, MessageDescription
@@ -44,11 +44,6 @@ def conditional(message: MessageDescription) -> list[Conditional]:
 
 
 _ZERO = {"bool": "false", "float": "0"}
-
-
-def has(field: FieldDescription) -> str:
-    """``demo_wheel_has_rate``"""
-    return f"{stem(field.message)}_has_{field.name}"
 
 
 def _grouped(test: str) -> str:

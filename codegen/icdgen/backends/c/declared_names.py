@@ -7,7 +7,6 @@ from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names, physical
-from icdgen.backends.c.conditional import has
 from icdgen.backends.c.parts import part_name
 from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription, StructDescription
 from icdgen.describe.description import Composite
@@ -103,7 +102,7 @@ def _fields(message: Composite[Any]) -> Iterator[Identifier]:
         is_view = field.model.view
         yield field.identifier(FILE, f"{stem}_{field.name}") if is_view else field.identifier(members, field.name)
         if field.model.when:
-            yield field.identifier(FILE, has(field))
+            yield field.identifier(FILE, names.has(field))
         for one in field.constants:
             yield field.identifier(FILE, names.constant(message, one.name))
         for end in _physical_names(field) if field.has_physical else ():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from icdgen.describe import EnumDescription
+from icdgen.describe import EnumDescription, FieldDescription
 from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 
@@ -17,6 +17,11 @@ def stem(one: Composite[Any] | EnumDescription) -> str:
 def enumerator(enum: EnumDescription, member: MemberDescription) -> str:
     """``DEMO_MODE_IDLE``"""
     return f"{stem(enum)}_{member.name}".upper()
+
+
+def has(field: FieldDescription) -> str:
+    """``demo_wheel_has_rate``: the function that tells whether a field is there."""
+    return f"{stem(field.message)}_has_{field.name}"
 
 
 def constant(message: Composite[Any], name: str) -> str:
