@@ -101,6 +101,8 @@ messages:
     id: 7
     kind: telecommand
     length: 18
+    byte_order: big
+    bit_order: msb0
     fields:
       - {at: 5, bits: 11, name: Eleven, type: uint, formula: raw/4}
       - {at: 16, bits: 64, name: Eight Bytes, type: float}

@@ -316,7 +316,8 @@ def _views(draw, fields: list[dict], used: int, names: Names, enums: list[dict],
         field = {**draw(_field(enums)), **draw(_own_orders())}
         if field["type"] in ("bytes", "text"):
             continue
-        if field["type"] in ("uint", "int") and "special" not in field and draw(st.booleans()):
+        bounded = field.keys() & {"special", "min", "max", "above", "below"}
+        if field["type"] in ("uint", "int") and not bounded and draw(st.booleans()):
             field["bits"] = min(field["bits"], place["bits"])
         for key in ("const", "count", *(("byte_order", "bit_order") if field["type"] == "bool" else ())):
             field.pop(key, None)
@@ -368,6 +369,10 @@ def _field(draw, enums: list[dict]) -> dict:
     elif draw(st.integers(0, 5)) == 0:
         values = draw(st.lists(raw, min_size=1, max_size=2, unique=True))
         field["special"] = [_meaning(value, index) for index, value in enumerate(values)]
+    elif draw(st.integers(0, 5)) == 0 and "formula" not in field:
+        values = draw(st.lists(raw, min_size=2, max_size=2, unique=True))
+        low_key, high_key = draw(st.sampled_from((("min", "max"), ("above", "max"), ("min", "below"))))
+        field |= {low_key: min(values), high_key: max(values)}
     return field
 
 

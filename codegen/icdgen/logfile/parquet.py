@@ -152,7 +152,7 @@ class _Reader:
             bits = raw.astype(np.uint32 if is_single else np.uint64)
             raw = bits.view(np.float32 if is_single else np.float64)
         if column.curve:
-            return pa.array(_on_curve(column.curve.coefficients, raw.astype(np.float64)))
+            return pa.array(_on_curve(column.curve.coefficients, raw))
         if column.kind == "float":
             return pa.array(raw)
         return pa.array(raw.astype(type_.to_pandas_dtype()))
@@ -210,7 +210,8 @@ def _on_curve(coefficients: tuple[float, ...], raw: np.ndarray) -> np.ndarray:
     import numpy as np
 
     value = np.full(len(raw), coefficients[-1])
-    with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"):  # that a float is a signalling NaN, too
+        raw = raw.astype(np.float64)
         for coefficient in coefficients[-2::-1]:
             value = value * raw + coefficient
     value[np.isnan(value)] = np.nan
