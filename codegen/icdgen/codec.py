@@ -27,11 +27,13 @@ class LengthError(CodecError):
 
 
 def decode(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]:
-    """Raw value of every field by name; elements that are not in the frame are 0. Raises `LengthError`."""
+    """Raw value of every field that is there, by name; elements that are not in the frame are 0. Raises `LengthError`."""
     bits, actual = int.from_bytes(frame, "little"), len(frame)  # what a frame leaves out reads as 0
     if actual not in message.lengths:
         raise LengthError(message, _next_length(message, actual), actual)
-    raw = {field.name: _read(node, field, bits) for field in message.fields}
+    raw = {field.name: _read(node, field, bits) for field in message.fields if not field.when}
+    if message.has_conditions:
+        raw |= {one.name: _read(node, one, bits) for one in message.fields if one.when and is_present(one, raw)}
     tail, counter = message.tail, message.counter
     if tail is not None and counter is not None:
         count = (actual - message.least) // tail.step
@@ -68,8 +70,21 @@ def counted(node: Node, message: Message, frame: bytes, count: int) -> bytes:
     counter = message.counter
     if counter is None or counter.implied:
         return frame
-    bits, mine = int.from_bytes(frame, "little"), _written(node, counter, (1 << counter.bits) - 1)
-    return (bits & ~mine | _written(node, counter, count)).to_bytes(len(frame), "little")
+    return frame_of(node, frame, {counter: count})
+
+
+def frame_of(node: Node, frame: bytes, values: Mapping[Field, int]) -> bytes:
+    """The frame with other values in some of its fields, which are numbers."""
+    bits = int.from_bytes(frame, "little")
+    for field, value in values.items():
+        mine = _written(node, field, -1 if field.signed else (1 << field.bits) - 1)
+        bits = bits & ~mine | _written(node, field, value)
+    return bits.to_bytes(len(frame), "little")
+
+
+def is_present(field: Field, raw: Mapping[str, int | bytes]) -> bool:
+    """Whether a field is there in a message of these raw values: what it depends on has one of the values for it."""
+    return all(raw.get(one.field, 0) in one.values for one in field.when)
 
 
 def is_there(message: Message, field: Field, count: int) -> bool:
@@ -100,8 +115,8 @@ def which(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | None:
 
 
 def _in_every_frame(message: Message) -> list[Field]:
-    """The constants of a message, without those of elements that not every frame has."""
-    return [one for one in message.owners if one.const is not None and is_there(message, one, 0)]
+    """The constants of a message, without those of elements and fields that not every frame has."""
+    return [one for one in message.owners if one.const is not None and not one.when and is_there(message, one, 0)]
 
 
 def _has_alike(icd: Icd, message: Message, constant: Field, node: Node) -> bool:
@@ -113,7 +128,7 @@ def _has_alike(icd: Icd, message: Message, constant: Field, node: Node) -> bool:
 
 
 def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
-    """The frame, reserved bits 0. Values of views, and of elements that are not in the frame, are not looked at.
+    """The frame, reserved bits 0. Values of views, and of what is not in the frame, are not looked at.
 
     Raises `CodecError` for a missing, unknown or unfit value.
     """
@@ -122,7 +137,7 @@ def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> byte
         if name not in known:
             raise CodecError(f"{message.name} has no field {name!r}")
     for field in message.owners:
-        if field.name not in raw:
+        if field.name not in raw and is_present(field, raw):
             raise CodecError(f"no value for {field.name!r}")
     return frame_with(node, message, raw)
 
@@ -131,7 +146,7 @@ def frame_with(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> 
     """The frame in which these fields have these values and all other bits are 0. Raises `CodecError` for an unfit value."""
     bits, count = 0, count_of(message, raw)
     for field in message.owners:
-        if field.name in raw and is_there(message, field, count):
+        if field.name in raw and is_there(message, field, count) and is_present(field, raw):
             bits |= _written(node, field, raw[field.name])
     frame = bits.to_bytes(message.length, "little")
     return frame if message.tail is None else frame[: message.least + count * message.tail.step]

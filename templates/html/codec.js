@@ -15,7 +15,7 @@ const icdgenCodec = (() => {
     }
   }
 
-  /** Raw value of each field, in their order; elements that are not in the frame are 0. Throws a CodecError unless the frame has a length of the message. */
+  /** Raw value of each field, in their order, null of what is not there; elements that are not in the frame are 0. Throws a CodecError unless the frame has a length of the message. */
   function decode(message, frame) {
     const { tail } = message;
     const count = tail ? elementsIn(message, frame.length) : 0;
@@ -24,6 +24,7 @@ const icdgenCodec = (() => {
     const longest = tail || endsEarly ? new Uint8Array(message.length) : frame;
     if (longest !== frame) longest.set(frame);
     const raw = message.fields.map((field) => read(field, longest));
+    if (message.conditional) message.fields.forEach((field, index) => (raw[index] = isThere(message, field, raw) ? raw[index] : null));
     if (!tail) return raw;
     const counter = counterOf(message);
     if (message.fields[counter].implied) raw[counter] = BigInt(count);
@@ -49,6 +50,11 @@ const icdgenCodec = (() => {
     return message.tail ? message.fields.findIndex((field) => field.name === message.tail.counter) : -1;
   }
 
+  /** Whether a field is there, by the raw values of those on which it depends; null is the value of what is not. */
+  function isThere(message, field, raw) {
+    return (field.when ?? []).every(([index, values]) => values.some((value) => BigInt(value) === raw[index]));
+  }
+
   /** Bytes of the frame of raw values. Throws a CodecError for more elements than there can be. */
   function sizeOf(message, raw) {
     if (!message.tail) return message.length;
@@ -70,7 +76,7 @@ const icdgenCodec = (() => {
     const frame = new Uint8Array(message.length);
     const size = sizeOf(message, raw);
     message.fields.forEach((field, index) => {
-      if (field.view || !isIn(field, size)) return;
+      if (field.view || !isIn(field, size) || !isThere(message, field, raw)) return;
       check(field, raw[index]);
       write(field, frame, raw[index]);
     });
@@ -105,7 +111,7 @@ const icdgenCodec = (() => {
 
   /** Throws a CodecError unless the field can hold the raw value. */
   function check(field, raw) {
-    if (raw === undefined) throw new CodecError("missing-field", `no value for ${field.name}`, { field: field.name });
+    if (raw === undefined || raw === null) throw new CodecError("missing-field", `no value for ${field.name}`, { field: field.name });
     if (field.type === "bytes") {
       if (raw.length !== field.bits / 8) throw unfit(field, `takes ${field.bits / 8} bytes, not ${raw.length}`);
       return;
@@ -276,7 +282,7 @@ const icdgenCodec = (() => {
   }
 
   return {
-    CodecError, decode, encode, isIn, sizeOf, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf, text,
+    CodecError, decode, encode, isIn, isThere, sizeOf, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf, text,
     rawFromText, floatValue, floatBits, memberName,
   };
 })();

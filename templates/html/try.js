@@ -103,6 +103,7 @@
     try {
       changed[index] = parse();
       if (plan.tail) makeRoom(index, changed);
+      if (plan.conditional) settle(index, changed);
       codec.check(fields[index], changed[index]);
       frame = codec.encode(plan, changed);
     } catch (error) {
@@ -113,6 +114,14 @@
     raw = codec.decode(plan, frame); // views follow
     bytes.value = frames.hex(frame);
     show(frame, []);
+  }
+
+  /** Where fields are not always there: what was typed is there, and what is there now has a value. */
+  function settle(index, changed) {
+    if (!codec.isThere(plan, fields[index], changed)) throw new Error(`${fields[index].name} is not there beside these values`);
+    fields.forEach((field, at) => {
+      if (changed[at] === null && codec.isThere(plan, field, changed)) changed[at] = BigInt(field.const ?? 0);
+    });
   }
 
   /** Where frames differ in length: what was typed is in the frame, and open bytes or text are as long as typed. */
@@ -166,7 +175,7 @@
 
   /** The value of a field as the frame holds it: bytes that are cut off are as many as there are; null for what is not there. */
   function shownOf(field, one, frame) {
-    if (!plan.tail || field.implied) return one;
+    if (!plan.tail || field.implied || one === null) return one;
     if (field.isOpen) return one.subarray(0, frame.length - field.first);
     return codec.isIn(field, frame.length) ? one : null;
   }
@@ -183,7 +192,9 @@
   fields.forEach((field, index) => {
     if (field.view) return;
     if (field.type === "bytes") owners.fill(index + 1, field.first * 8, field.first * 8 + field.bits);
-    else for (const [byte, shift, bits] of field.pieces) owners.fill(index + 1, byte * 8 + 8 - shift - bits, byte * 8 + 8 - shift);
+    else for (const [byte, shift, bits] of field.pieces) {
+      for (let at = byte * 8 + 8 - shift - bits; at < byte * 8 + 8 - shift; at += 1) owners[at] ||= index + 1; // of alternatives the first
+    }
   });
 
   function light(frame) {

@@ -32,6 +32,8 @@ def member_names(files: dict[str, dict]) -> dict[str, list[list]]:
 
 def name_of(members: list[list], value: int) -> str | None:
     """The name of a value: each member has a value and a name, and a range its last value."""
+    if value is None:
+        return None  # of what is not there
     return next((name for first, name, *last in members if first <= value <= (last or [first])[0]), None)
 
 
@@ -58,6 +60,7 @@ class MessageCases:
         self.fresh = {field["name"]: shown(field, field["default"]) for field in self.fields}
         self.tail: dict | None = message.get("tail")
         self.full = self.fresh | ({self.tail["counter"]: self.tail["most"]} if self.tail else {})
+        self.conditional = {field["name"]: field["when"] for field in self.fields if "when" in field}
         self.given = self.owned(self.full)  # what makes such a message, with all elements
 
     def all(self) -> Iterator[Case]:
@@ -118,6 +121,17 @@ class MessageCases:
         """Name of each enum field's member."""
         return {f["name"]: name_of(self.enums.get(f["enum"], []), raw[f["name"]]) for f in self.fields if "enum" in f}
 
+    def there(self, field: dict) -> dict:
+        """Values, but for views, of a message with all elements that has the field."""
+        if "when" not in field:
+            return self.given
+        known = {one["name"]: one for one in self.fields}
+        found = self.given | {on: shown(known[on], values[0]) for on, values in field["when"].items()}
+        for name, when in self.conditional.items():
+            is_there = all(found[on] in values for on, values in when.items())
+            found[name] = zero(known[name]) if is_there else None
+        return found
+
     def from_physical(self, raw: dict, physical: dict, answer: dict) -> dict:
         """The answer, unless some raw value is too wide to come back from a double."""
         for field in self.texts:
@@ -127,7 +141,7 @@ class MessageCases:
                     raws = {**self.seen(answer["raw"]), field["name"]: filled}
                     answer = {**answer, "raw": raws, "bytes": ...} | ({"physical": ...} if self.views else {})
         for field in self.scaled:
-            if field["name"] in self.one_way:
+            if field["name"] not in physical:
                 continue
             back = nearest(field, physical[field["name"]])
             if back is None:
@@ -191,13 +205,14 @@ class MessageCases:
         """Raw values that encoding refuses."""
         name = field["name"]
         for value in field.get("unfit", ()):
-            request = self.request("encode", raw={**self.given, name: value})
+            request = self.request("encode", raw={**self.there(field), name: value})
             yield Case(f"{name} = {value}", request, {"ok": False, "error": "range", "field": name})
 
     def settings(self, field: dict) -> Iterator[Case]:
         """Physical values set, exact ties and unfit ones among them."""
         name = field["name"]
-        rest = {key: value for key, value in self.given.items() if key != name}
+        given_all = self.there(field)
+        rest = {key: value for key, value in given_all.items() if key != name}
         refusal = {"ok": False, "error": "range", "field": name}
         if field["type"] == "text":
             given = [(text.encode().hex(), raw) for text, raw in field["set"]]
@@ -207,7 +222,7 @@ class MessageCases:
         for bits, raw in given:
             request = self.request("encode", raw=rest, physical={name: bits})
             full = {
-                key: raw if key == name else value for key, value in self.seen(self.full).items()
+                key: raw if key == name else value for key, value in self.seen(self.full | given_all).items()
             }  # in the order of the fields
             answer = refusal if raw is None else {"ok": True, "raw": full, "physical": ..., "bytes": ...}
             yield Case(f"{name} set to {bits}", request, answer)
@@ -277,7 +292,12 @@ def enum_cases(data: dict) -> Iterator[Case]:
 
 def shown(field: dict, value: object) -> object:
     """A raw value of the vectors as it stands in the testee protocol."""
-    return bool(value) if field["type"] == "bool" else value
+    return bool(value) if field["type"] == "bool" and value is not None else value
+
+
+def zero(field: dict) -> object:
+    """A raw value of 0 as it stands in the testee protocol."""
+    return "0" * (field["bits"] // 4) if field["type"] == "float" else shown(field, 0)
 
 
 def nearest_double(exact: str) -> str:

@@ -614,6 +614,45 @@ messages:
     fields: [{at: 3, bits: 9, name: Whole, type: uint}]
 """
 
+MUX = """\
+icdgen: 1
+node: {name: mux, title: Fields that are not always there, byte_order: big, bit_order: msb0}
+enums:
+  - name: State
+    members: [{value: -2, name: Stopped}, {value: 0, name: Idle}, {value: 3, name: Turning}]
+messages:
+  - name: Multiplexed
+    id: 10
+    kind: telemetry
+    length: 9
+    fields:
+      - {at: 0, bits: 8, name: Mode, type: uint}
+      - {at: 8, bits: 12, name: Rate, type: int, unit: deg/s, formula: raw*0.25, when: {Mode: 0}}
+      - {at: 8, bits: 16, name: Angle, type: uint, unit: deg, formula: raw*0.01, when: {Mode: [1, 2]}}
+      - {at: 8, bits: 32, name: Speed, type: float, when: {Mode: 7}}
+      - {at: 20, bits: 4, name: Rest, type: uint, when: {Mode: 0}, const: 5}
+      - {at: 24, bits: 8, name: Turned, type: enum, enum: State, when: {Mode: [0, 2]}, byte_order: little}
+      - {at: 40, bits: 1, name: Flag, type: bool}
+      - {at: 41, bits: 1, name: Is Fast, type: bool, when: {Flag: true, Mode: [1, 3]}}
+      - {at: 41, bits: 6, name: Slow, type: uint, when: {Flag: false}}
+      - {at: 48, bits: 3, name: State, type: enum, enum: State}
+      - {at: 51, bits: 21, name: Idle Time, type: uint, unit: s, formula: "3 + raw/50 + 3e-6*raw^2", when: {State: [Idle, Stopped]}}
+      - {at: 51, bits: 9, name: On Count, type: int, min: -3, special: [{value: -256, meaning: none}], when: {State: Turning}}
+      - {at: 0, bits: 7, name: Head, type: uint, view: true}
+  - name: Choice
+    set_id: 11
+    get_id: 12
+    kind: configuration
+    length: 8
+    may_end_early: zeros
+    byte_order: little
+    bit_order: lsb0
+    fields:
+      - {at: 0, bits: 62, name: Value, type: uint, when: {Type: 1}}
+      - {at: 0, bits: 60, name: Longer, type: int, when: {Type: 2}, formula: raw*0.1}
+      - {at: 62, bits: 2, name: Type, type: uint}
+"""
+
 EMPTY = """\
 icdgen: 1
 node: {name: empty, title: No messages, byte_order: little, bit_order: lsb0}
@@ -629,6 +668,7 @@ _TEXTS = {
     "common": COMMON,
     "apart": APART,
     "open": OPEN,
+    "mux": MUX,
     "empty": EMPTY,
 }
 

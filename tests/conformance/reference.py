@@ -126,6 +126,8 @@ class Reference:
             elif field.name in physical:
                 value = struct.unpack(">d", hex_bytes(physical[field.name], 8))[0]
                 raw[field.name] = fitting(field, codec.raw_from_physical, value)
+            elif field.when and given.get(field.name) is None:
+                continue
             elif field.name in given:
                 raw[field.name] = raw_value(field, given[field.name])
             else:
@@ -145,7 +147,7 @@ class Reference:
             "name": message.name,
             "ids": list(message.ids),
             "length": message.length,
-            "default": {f.name: shown(f, default[f.name]) for f in message.fields},
+            "default": {f.name: shown(f, default.get(f.name)) for f in message.fields},
             "special": {
                 f.name: [shown(f, special.value) for special in f.special] for f in message.fields if f.special
             },
@@ -239,8 +241,10 @@ def limits(field: Field) -> dict[str, str]:
     return {key: bits_of(value.numerator / value.denominator) for key, value in found.items() if value is not None}
 
 
-def shown(field: Field, value: int | bytes) -> object:
-    """A raw value as it stands in an answer."""
+def shown(field: Field, value: int | bytes | None) -> object:
+    """A raw value as it stands in an answer; null where the field is not there."""
+    if value is None:
+        return None
     if isinstance(value, bytes):
         return value.hex()
     if field.type == "float":
@@ -248,16 +252,20 @@ def shown(field: Field, value: int | bytes) -> object:
     return bool(value) if field.type == "bool" else value
 
 
-def physical_value(field: Field, raw: int | bytes) -> str | None:
-    """A physical value as it stands in an answer: a text in hex, null where the bytes are none."""
+def physical_value(field: Field, raw: int | bytes | None) -> str | None:
+    """A physical value as it stands in an answer: a text in hex, null where the bytes are none or the field is not there."""
+    if raw is None:
+        return None
     if not isinstance(raw, bytes):
         return bits_of(codec.physical_double(field, raw))
     text = known_text(raw)
     return None if text is None else text.encode().hex()
 
 
-def named(enum: Enum, value: int) -> str | None:
+def named(enum: Enum, value: int | None) -> str | None:
     """The name of a value."""
+    if value is None:
+        return None
     member = enum.member_of(value)
     return member.name if member else None
 
@@ -265,14 +273,14 @@ def named(enum: Enum, value: int) -> str | None:
 def described(node: Node, message: Message, raw: dict, names: bool = False) -> dict:
     """The answer to decode and encode."""
     answer: dict = {
-        "raw": {field.name: shown(field, raw[field.name]) for field in message.fields},
+        "raw": {field.name: shown(field, raw.get(field.name)) for field in message.fields},
         "physical": {
-            f.name: physical_value(f, raw[f.name]) for f in message.fields if f.has_formula or f.type == "text"
+            f.name: physical_value(f, raw.get(f.name)) for f in message.fields if f.has_formula or f.type == "text"
         },
         "bytes": codec.encode(node, message, raw).hex(),
     }
     if names:
-        answer["names"] = {f.name: named(f.enum, raw[f.name]) for f in message.fields if f.enum}
+        answer["names"] = {f.name: named(f.enum, raw.get(f.name)) for f in message.fields if f.enum}
     return answer
 
 

@@ -60,8 +60,10 @@ def bad_requests(cases: MessageCases) -> Iterator[tuple[dict, dict]]:
 def bad_field(cases: MessageCases, encode: dict, field: dict) -> Iterator[tuple[dict, dict]]:
     """Encoding with something wrong about one field."""
     name, refusal = field["name"], {"ok": False, "error": "request"}
-    without = {key: value for key, value in cases.given.items() if key != name}
-    yield {**encode, "raw": without}, {"ok": False, "error": "missing-field", "field": name}
+    without = {key: value for key, value in cases.there(field).items() if key != name}
+    is_conditional = name in cases.conditional  # what is not there need not be given
+    if not is_conditional:
+        yield {**encode, "raw": without}, {"ok": False, "error": "missing-field", "field": name}
     if "set" not in field:
         request = {**encode, "raw": without, "physical": {name: "0" * 16}}
         yield request, {"ok": False, "error": "unknown-field", "field": name}
@@ -72,7 +74,7 @@ def bad_field(cases: MessageCases, encode: dict, field: dict) -> Iterator[tuple[
         for value in (None, 0, "0" * 15, "0" * 18, "0" * 15 + "x", True):
             yield {**encode, "raw": without, "physical": {name: value}}, refusal
         yield from bad_sweep(cases, name)
-    wrong: tuple[object, ...] = (None, [], {}, 1.5, 1e3)
+    wrong: tuple[object, ...] = ([], {}, 1.5, 1e3) if is_conditional else (None, [], {}, 1.5, 1e3)
     if field["type"] in ("float", "bytes", "text"):
         wrong += (0, True, "0", "zz" * (field["bits"] // 8), " ")
     else:

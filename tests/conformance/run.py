@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from icdgen import codec
 from icdgen.icd.model import Icd
 from icdgen.vectors import patterns
 from icdgen.vectors.make import frame_row
@@ -97,6 +98,7 @@ def _batch(label: str, cases: Iterator[Case]) -> Iterator[Batch]:
 def _random(icd: Icd, message, cases: MessageCases, frames: int, seed: int) -> Iterator[Batch]:
     source = random.Random(f"{seed}/{message.node}/{message.name}")
     node, left = icd.node(message.node), frames
+    known = {field.name: field for field in message.fields}
     while left:
         count = min(left, 500)
         left -= count
@@ -105,10 +107,15 @@ def _random(icd: Icd, message, cases: MessageCases, frames: int, seed: int) -> I
             frame = source.randbytes(message.length)
             if message.tail is not None:
                 frame = patterns.cut(message, node, frame, source.randint(0, message.tail.most))
+            elif message.has_conditions and source.random() < 0.7:
+                field = source.choice([one for one in message.fields if one.when])
+                values = {known[one.field]: source.choice(one.values) for one in field.when}
+                frame = codec.frame_of(node, frame, values)
             row = frame_row(node, message, "random frame", frame)
             vector = {
                 "why": "random frame", "bytes": row.frame.hex(), "encoded": row.encoded.hex(),
-                "raw": [raw_json(f, row.raw[f.name]) for f in message.fields], "doubles": list(row.doubles.values()),
+                "raw": [raw_json(f, row.raw.get(f.name)) for f in message.fields],
+                "doubles": [row.doubles.get(f.name) for f in message.fields if f.has_formula],
                 "texts": list(row.texts.values()),
             }  # fmt: skip
             found += cases.frame(vector)

@@ -106,12 +106,17 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         else:
             message["id"] = ids(first_id + number + (0 if message["kind"] == "telecommand" else 40))
         message["length"] = length
-        if draw(st.integers(0, 3)) == 0:
-            fields = [*fields, draw(_open_end(fields, length, enums, structs))]
+        if draw(st.integers(0, 2)) == 0 and length:
+            room = length + draw(st.integers(0, 9))
+            alternatives = draw(_alternatives(fields, length, room, enums, orders | own))
+            if alternatives:
+                fields, message["length"] = [*fields, *alternatives], room
+        if not any("when" in field for field in fields) and draw(st.integers(0, 3)) == 0:
+            fields = [*fields, draw(_open_end(fields, message["length"], enums, structs))]
         elif draw(st.integers(0, 4)) == 0:
             message["reserved"] = draw(st.integers(1, 9))
             message["length"] += message["reserved"]
-        elif length > 1 and draw(st.integers(0, 4)) == 0:
+        elif message["length"] > 1 and draw(st.integers(0, 4)) == 0:
             message["may_end_early"] = "zeros"
         if fields:
             message["fields"] = fields
@@ -237,6 +242,49 @@ def _fields(
             end = at + 8 * struct["length"] * (count or 1)
     order = draw(st.permutations(fields)) if draw(st.booleans()) else fields
     return order, (end + 7) // 8
+
+
+@st.composite
+def _alternatives(draw, fields: list[dict], length: int, room: int, enums: list[dict], orders: dict) -> list[dict]:
+    """Fields of ``room`` bytes that are there or not by the value of another, some of them in the same bits."""
+    selectors = [field for field in fields if _decides(field)]
+    if not selectors:
+        return []
+    used = (1 << 8 * length) - 1 if any("struct" in field for field in fields) else 0
+    for field in fields:
+        used |= 0 if field.get("view") or "struct" in field else _bits_of(field, {**orders, **field})
+    names = Names(draw, {part["name"] for field in fields for part in (field, *field.get("bitfields", ()))})
+    selector = draw(st.sampled_from(selectors))
+    values = draw(st.lists(st.integers(0, min(7, (1 << selector["bits"]) - 1)), min_size=1, max_size=4, unique=True))
+    found: list[dict] = []
+    for at in draw(st.lists(st.integers(0, 8 * room - 1), min_size=1, max_size=4)):
+        for value in values:
+            field = {**draw(_field(enums)), **draw(_own_orders())}
+            if field["type"] in ("bytes", "text"):
+                continue
+            dropped = ("count", "byte_order", "bit_order") if field["type"] == "bool" else ("count",)
+            field = {key: given for key, given in field.items() if key not in dropped}
+            if at + field["bits"] > 8 * room:
+                continue
+            when = {selector["name"]: draw(st.sampled_from((value, [value])))}
+            place = {"at": at, "bits": field.pop("bits"), **names.one("alternative"), **field, "when": when}
+            taken = used
+            for other in found:
+                same = _listed(other["when"]) == _listed(when)
+                taken |= _bits_of(other, {**orders, **other}) if same else 0
+            if not _bits_of(place, {**orders, **place}) & taken:
+                found.append(place)
+    return found
+
+
+def _listed(when: dict) -> list[list[int]]:
+    return [said if isinstance(said, list) else [said] for said in when.values()]
+
+
+def _decides(field: dict) -> bool:
+    """Whether other fields may depend on its value."""
+    others = ("formula", "const", "count", "view", "bitfields", "struct", "special")
+    return field.get("type") == "uint" and not any(key in field for key in others)
 
 
 @st.composite

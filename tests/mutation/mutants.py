@@ -195,6 +195,13 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
             yield _number("width", field, "bits", step)
     for step in (-1, 1) if type(field.get("count")) is int else ():
         yield _number("count", field, "count", step)
+    for name, said in (field.get("when") or {}).items():
+        for index, value in enumerate(said if isinstance(said, list) else [said]):
+            for step in (-1, 1) if type(value) is int else ():
+                values = [*said[:index], value + step, *said[index + 1 :]] if isinstance(said, list) else value + step
+                yield "condition", f"{name} {said} -> {values}", lambda f, n=name, v=values: f["when"].update({n: v})
+    if field.get("when"):
+        yield "condition", "always there", lambda f: f.pop("when")
     if field.get("view"):
         yield "view", "no view", lambda f: f.pop("view")
     for other in OTHER_TYPES[field["type"]]:

@@ -6,12 +6,9 @@ values with names, and the paragraphs of comments. A backend only spells it.
 
 from __future__ import annotations
 
-from icdgen.describe.description import (
-    FieldDescription,
-    MessageDescription,
-    StructDescription,
-)
+from icdgen.describe.description import FieldDescription, StructDescription
 from icdgen.describe.enums import EnumDescription
+from icdgen.describe.messages import MessageDescription
 from icdgen.describe.nodes import NodeDescription
 from icdgen.describe.whole import Description, describe
 

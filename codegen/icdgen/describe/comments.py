@@ -22,7 +22,7 @@ from icdgen.describe.numbers import (
 )
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.model import CONFIGURATION, Enum, Field, Member, Message, Struct, Tail
+from icdgen.icd.model import CONFIGURATION, Condition, Enum, Field, Member, Message, Struct, Tail
 
 
 class Comment(NamedTuple):
@@ -91,6 +91,28 @@ def message_comment(message: Message, log_bit: int | None = None, sharing: str =
     return _comment(head, (sentence(message.summary), " ".join(facts)), message.errata, {})
 
 
+def condition_text(condition: Condition, message: Message | None = None) -> str:
+    """``Mode is 1 or 2``; of an enumeration the names of its members, where ``message`` is that of the field."""
+    known = {field.name: field for field in message.fields} if message else {}
+    on = known.get(condition.field)
+    values = [_said_of(on, value) for value in condition.values]
+    return f"{words(condition.field)} is {' or '.join(values)}"
+
+
+def _said_of(field: Field | None, value: int) -> str:
+    if field is not None and field.type == "bool":
+        return "true" if value else "false"
+    members = field.enum.members if field is not None and field.enum is not None else ()
+    return next((words(one.name) for one in members if one.value == value and one.to is None), str(value))
+
+
+def presence_comment(field: Field, message: Message | None = None) -> str:
+    """What tells whether a field is there."""
+    return (
+        f"Whether {words(field.name)} is there: if {' and '.join(condition_text(one, message) for one in field.when)}."
+    )
+
+
 def part_comment(part: Message, begins: Sequence[int]) -> str:
     """What is given of a message that another one repeats."""
     return f"{words(part.name)}, as it is repeated from {' and from '.join(map(_from, begins))}."
@@ -122,15 +144,19 @@ def member_comment(member: Member, told: Mapping[str, str]) -> Comment:
     return _comment(f"{words(member.name)} ({member.value}).", (sentence(member.summary),), member.errata, told)
 
 
-def field_comment(field: Field, told: Mapping[str, str], tail: Tail | None = None) -> Comment:
+def field_comment(
+    field: Field, told: Mapping[str, str], tail: Tail | None = None, message: Message | None = None
+) -> Comment:
     """Name, place, range and unit; summary; values that are allowed or mean something.
 
-    ``told``: as for a member. ``tail``: the open end of its message.
+    ``told``: as for a member. ``tail``: the open end of its message, ``message`` itself.
     """
     if tail is not None and field.implied:
         what = f"how much of {words(tail.name)} the frame has, up to {tail.most}; told by its length"
         return Comment(f"{words(field.name)}: {what}.")
     facts = ["A view: it reads bits of other fields, and is not set."] if field.view else []
+    if field.when:
+        facts.append(f"Only there if {' and '.join(condition_text(one, message) for one in field.when)}.")
     if field.const is not None:
         facts.append(f"Always {value_text(field.const)}.")
     if field.limits is not None:

@@ -1,48 +1,39 @@
-"""Messages and their fields, which know each other."""
+"""Fields and what has them, which know each other."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from icdgen import layout, naming
 from icdgen.describe import steps
 from icdgen.describe.bounds import Bound, bounds
-from icdgen.describe.comments import Comment, field_comment, message_comment, struct_comment, words
+from icdgen.describe.comments import Comment, field_comment, struct_comment, words
 from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription
 from icdgen.describe.errata import Thing, tellers, told_elsewhere
-from icdgen.describe.named import Id, Named
-from icdgen.describe.shared_ids import sharing
+from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.curve import Curve
-from icdgen.icd.model import Enum, Field, Icd, Message, Node, Struct
+from icdgen.icd.model import Enum, Field, Message, Node, Struct
 from icdgen.icd.paths import Step, placed
-from icdgen.icd.variants import Ids
 from icdgen.once import cached_property
 
 
-class Whole(Protocol):
-    """The set of ICDs that all of this describes: `icdgen.describe.whole.Description`."""
-
-    icd: Icd
-
-    @property
-    def id_bits(self) -> int: ...
-
-    def log_bits(self, node: Node) -> dict[int, int]: ...
-
-    def spoken(self, node: Node) -> tuple[MessageDescription, ...]: ...
-
-    def known_ids(self, node: Node) -> Ids: ...
-
-    def message(self, message: Message) -> MessageDescription: ...
+class Known(Protocol):
+    """What describes the structs and enumerations that fields are of: `icdgen.describe.whole.Description`."""
 
     def struct(self, struct: Struct) -> StructDescription: ...
 
     def enum(self, enum: Enum) -> EnumDescription: ...
+
+
+class Need(NamedTuple):
+    """What a field that is not always there needs: another one with one of these raw values, in their order."""
+
+    field: FieldDescription
+    values: tuple[int, ...]
 
 
 class FieldDescription(Named[Field]):
@@ -108,6 +99,12 @@ class FieldDescription(Named[Field]):
         """Whether it is the open end of its message, or an element of that."""
         tail, path = self.message.model.tail, self.model.path
         return tail is not None and tail.name == (path[0].name if path else self.model.name)
+
+    @cached_property
+    def needs(self) -> tuple[Need, ...]:
+        """Of a field that is not always there, all that it needs."""
+        known = {one.model.name: one for one in self.message.fields} if self.model.when else {}
+        return tuple(Need(known[one.field], tuple(sorted(one.values))) for one in self.model.when if one.field in known)
 
     @cached_property
     def elements(self) -> tuple[FieldDescription, ...]:
@@ -212,7 +209,7 @@ class FieldDescription(Named[Field]):
     @cached_property
     def comment(self) -> Comment:
         told = told_elsewhere(self.model, self.message.tellers) if self.model.errata else {}
-        return field_comment(self.model, told, self.message.model.tail)
+        return field_comment(self.model, told, self.message.model.tail, self.message.model)
 
 
 class TailDescription(NamedTuple):
@@ -239,7 +236,7 @@ Fielded = TypeVar("Fielded", bound=Message | Struct)
 class Composite(Named[Fielded]):
     """What has fields: a message, or a struct, that ``node`` declares."""
 
-    def __init__(self, description: Whole, model: Fielded, node: Node, what: str) -> None:
+    def __init__(self, description: Known, model: Fielded, node: Node, what: str) -> None:
         super().__init__(model, node.vocabulary, f"{what} `{model.name}`")
         self._description, self.node = description, node
         self.seen_from = node
@@ -352,7 +349,7 @@ def _wholes(fields: Iterable[FieldDescription]) -> Iterator[FieldDescription]:
 class StructDescription(Composite[Struct]):
     """A struct."""
 
-    def __init__(self, description: Whole, struct: Struct, node: Node) -> None:
+    def __init__(self, description: Known, struct: Struct, node: Node) -> None:
         super().__init__(description, struct, node, "struct")
 
     @cached_property
@@ -363,82 +360,3 @@ class StructDescription(Composite[Struct]):
     @cached_property
     def comment(self) -> Comment:
         return struct_comment(self.model)
-
-
-class MessageDescription(Composite[Message]):
-    """A message."""
-
-    def __init__(self, description: Whole, message: Message, node: Node) -> None:
-        super().__init__(description, message, node, "message")
-
-    @cached_property
-    def tail(self) -> TailDescription | None:
-        """Its open end, where frames differ in length."""
-        tail = self.model.tail
-        if tail is None:
-            return None
-        part, counter = (
-            next(one for one in self.members if one.model.name == name) for name in (tail.name, tail.counter)
-        )
-        return TailDescription(part, counter, self.model.least, tail.step, tail.most, self._element(part))
-
-    def _element(self, part: FieldDescription) -> StructDescription | None:
-        if part.struct is None:
-            return None
-        byte_order, bit_order = part.model.orders(self.node)
-        fields = (
-            replace(one, byte_order=one.byte_order or byte_order, bit_order=one.bit_order or bit_order)
-            for one in part.struct.model.fields
-        )
-        found = StructDescription(self._description, replace(part.struct.model, fields=tuple(fields)), part.struct.node)
-        found.seen_from = self.node
-        return found
-
-    @property
-    def sent_fields(self) -> tuple[FieldDescription, ...]:
-        """Fields that have bits in the frame, each element of an array, but those of open structs."""
-        if self.tail is None:
-            return self.fields
-        return tuple(
-            one for one in self.fields if not one.model.implied and not (self.tail.element is not None and one.is_open)
-        )
-
-    @cached_property
-    def contained(self) -> tuple[tuple[MessageDescription, int], ...]:
-        """The messages that it repeats, each with the bit at which it begins, in the order of the ICD."""
-        if not self.model.contains:
-            return ()
-        known = {one.model.name: one for one in self._description.spoken(self.node)}
-        return tuple((known[one.message], one.at) for one in self.model.contains if one.message in known)
-
-    @cached_property
-    def ids(self) -> tuple[Id, ...]:
-        """The id, or the set id and the get id."""
-        message = self.model
-        found = (
-            ("id", message.id, f"Id of the {message.kind}."),
-            ("set_id", message.set_id, "Id of the telecommand that sets it."),
-            ("get_id", message.get_id, "Id of the telemetry that gets it."),
-        )
-        return tuple(Id(name, value, comment) for name, value, comment in found if value is not None)
-
-    @property
-    def telecommand_id_name(self) -> str:
-        """Name of the id under which it is sent: ``id`` or ``set_id``."""
-        return "id" if self.model.id is not None else "set_id"
-
-    @property
-    def telemetry_id_name(self) -> str:
-        """Name of the id under which it is requested: ``id`` or ``get_id``."""
-        return "id" if self.model.id is not None else "get_id"
-
-    @property
-    def is_narrow(self) -> bool:
-        """Whether a field of it may be given a raw value that does not fit, or a count."""
-        return super().is_narrow or (self.tail is not None and self.tail.is_bound)
-
-    @cached_property
-    def comment(self) -> Comment:
-        whole, telemetry_id = self._description, self.model.telemetry_id
-        bit = None if telemetry_id is None else whole.log_bits(self.node).get(telemetry_id)
-        return message_comment(self.model, bit, sharing(whole.known_ids(self.node), self.model))

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from icdgen import codec
-from icdgen.describe.description import FieldDescription, MessageDescription
+from icdgen.describe.description import FieldDescription
+from icdgen.describe.messages import MessageDescription
 
 _NUMBERS = (1234, 123, 12, 1, 0)  # the first that the field takes and may hold
 _FLOAT = 1.5  # the same in any width
@@ -40,10 +41,16 @@ class Example(NamedTuple):
 def worth_showing(message: MessageDescription) -> FieldDescription | None:
     """The first field with a formula that leads back, else the first that is neither constant nor an array."""
     counter = message.tail.counter if message.tail else None  # which is 0 in an example, as the frame has no element
+    decides = {need.field.model.name for one in message.conditional for need in one.needs}  # what else is there
     usual = [
         one
         for one in message.members
-        if one.model.const is None and not one.model.is_bytes and not one.count and one is not counter
+        if not one.model.when
+        and one.model.name not in decides
+        and one.model.const is None
+        and not one.model.is_bytes
+        and not one.count
+        and one is not counter
     ]
     return next((one for one in usual if one.is_scaled and one.is_set), usual[0] if usual else None)
 

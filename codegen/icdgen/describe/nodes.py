@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from icdgen.describe.description import Composite, MessageDescription, StructDescription, Whole
+from icdgen.describe.description import Composite, StructDescription
 from icdgen.describe.enums import EnumDescription
+from icdgen.describe.messages import MessageDescription, Whole
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Node
 from icdgen.icd.variants import Ids, Variant, common_length, ids_of

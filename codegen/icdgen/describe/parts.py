@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from icdgen.describe.description import FieldDescription, MessageDescription
+from icdgen.describe.description import FieldDescription
+from icdgen.describe.messages import MessageDescription
 
 
 class Copied(NamedTuple):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from icdgen.describe.description import MessageDescription, StructDescription
+from icdgen.describe.description import StructDescription
 from icdgen.describe.enums import EnumDescription, enum_widths
+from icdgen.describe.messages import MessageDescription
 from icdgen.describe.nodes import NodeDescription
 from icdgen.describe.storage import holding
 from icdgen.icd.model import Enum, Icd, Message, Node, Struct

@@ -162,6 +162,8 @@ def _misread(pair: FieldPair) -> str:
     old, new = pair.old, pair.new
     if not pair.same_bits:
         return "other bits"
+    if set(old.when) != set(new.when):
+        return "there in other messages"
     if kind(old) != kind(new):
         return f"read as {read_as(new)}, or as {read_as(old)}"
     if (old.curve or old.scale or RAW) != (new.curve or new.scale or RAW):

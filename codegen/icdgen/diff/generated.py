@@ -187,7 +187,18 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
 def _decisive(field: Field) -> object:
     enum = field.enum.name if field.enum is not None else None
     formula = field.scale, field.curve
-    return field.type, field.bits, field.count, enum, field.unit, formula, field.special, field.limits, field.const
+    return (
+        field.type,
+        field.bits,
+        field.count,
+        enum,
+        field.unit,
+        formula,
+        field.special,
+        field.limits,
+        field.const,
+        bool(field.when),
+    )
 
 
 def _is_sound(field: Field) -> bool:
@@ -271,9 +282,7 @@ class _Cut:
             own += field.elements
         kept = message.with_fields(tuple(own))
         fields_of_it = tuple(one for one in own if kept.tail or not one.implied)
-        made = self.marked(
-            kept, pair, fields=fields_of_it, node=names.get(message.node, message.node)
-        )
+        made = self.marked(kept, pair, fields=fields_of_it, node=names.get(message.node, message.node))
         self.messages[id(pair)] = made
         return made
 
@@ -322,7 +331,7 @@ class _Cut:
             return f"uint8_t[{field.bits // 8}]" if field.is_bytes else f"{c.type_of(one)}{array}"
         if one.count:
             return f"tuple[{_python_type(one)}, ...]"
-        return _python_type(one)
+        return f"Optional[{_python_type(one)}]" if field.when else _python_type(one)
 
 
 def _python_type(one: FieldDescription) -> str:

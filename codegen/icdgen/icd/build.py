@@ -10,7 +10,7 @@ from functools import partial
 from itertools import chain
 from typing import TypeVar
 
-from icdgen.icd import annex, curve, division, floats, formula, model, tails, wire_ids
+from icdgen.icd import annex, conditions, curve, division, floats, formula, model, tails, wire_ids
 from icdgen.icd.errata import Applied
 from icdgen.icd.implied import implied_count
 from icdgen.icd.located import Map, plain
@@ -140,7 +140,7 @@ class Builder:
         return model.Struct(
             name=item["name"],
             length=item["length"],
-            fields=tuple(chain.from_iterable(self.each("fields", partial(self.fields, ("", "")), item))),
+            fields=tuple(chain.from_iterable(self.each("fields", partial(self.fields, item), item))),
             identifier=item.get("identifier"),
             summary=item.get("summary", ""),
             table=(item.get("source") or {}).get("table"),
@@ -151,7 +151,7 @@ class Builder:
 
     def message(self, item: Map) -> model.Message:
         where = item.get("source") or {}
-        fields = tuple(chain.from_iterable(self.each("fields", partial(self.fields, orders(item)), item)))
+        fields = tuple(chain.from_iterable(self.each("fields", partial(self.fields, item), item)))
         tail, ends = self.tail(item)
         return model.Message(
             name=item["name"],
@@ -198,13 +198,13 @@ class Builder:
         implied = implied_count(end, message["length"] + most * tail.step)
         return replace(tail, counter=implied.name), (*end.elements, implied)
 
-    def fields(self, around: Orders, item: Map) -> tuple[model.Field, ...]:
-        """The field, the elements of an array, the fields of a struct, or the parts that it is divided into.
-
-        ``around``: the orders of its message.
-        """
-        if tails.is_open(item):
+    def fields(self, message: Map, item: Map) -> tuple[model.Field, ...]:
+        """The field, the elements of an array, the fields of a struct, or the parts that it is divided into."""
+        around = orders(message)
+        if tails.is_open(item) or id(item.get("when")) in self.broken:
             return ()  # see `tail`
+        if "when" in item and item.keys().isdisjoint(("struct", "count")):
+            return (replace(self.field(item, around), when=conditions.of(message, item, self.scope.enums)),)
         if "struct" in item:
             struct = self.scope.structs.get(item["struct"])
             return () if struct is None else self.standing(item, struct, around).elements

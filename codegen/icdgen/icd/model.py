@@ -49,6 +49,14 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True)
+class Condition:
+    """What a field that is not always there needs: another one has one of these raw values."""
+
+    field: str
+    values: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Field:
     """A field of a message, or of a struct: ``bits`` bits at bit ``at`` of it.
 
@@ -72,6 +80,7 @@ class Field:
     byte_order: str = ""  # its own or its message's; empty: the node's
     bit_order: str = ""  # likewise; `at` is counted by it
     view: bool = False  # it reads bits that other fields have, and has none: see `Message.owners`
+    when: tuple[Condition, ...] = ()  # it is there only if all of them hold
     path: tuple[Step, ...] = ()  # of an element, or a field of a struct: the steps to it, itself the last; else empty
     count: int = 0  # of an array that stands as one: its elements, of which this is the first but for its name
     struct: Struct | None = None  # what a member of type "struct" is made of
@@ -291,8 +300,14 @@ class Message:
 
     @property
     def fresh(self) -> dict[str, int | bytes]:
-        """The raw values of a new message by the names of its fields, but for views."""
-        return {field.name: field.fresh for field in self.owners}
+        """The raw values of a new message by the names of its fields, but for views and what is not there."""
+        found = {field.name: field.fresh for field in self.owners}
+        return {one.name: one.fresh for one in self.owners if all(found.get(c.field) in c.values for c in one.when)}
+
+    @property
+    def has_conditions(self) -> bool:
+        """Whether a field of it is not always there."""
+        return any(field.when for field in self.fields)
 
     @property
     def telecommand_id(self) -> int | None:

@@ -76,9 +76,11 @@ def is_narrower(one: Spoken, other: Spoken) -> bool:
 
 
 def constants(message: Message) -> tuple[Field, ...]:
-    """The fields that have one value only in every frame: none of an open end; zeros that are cut off are there, too."""
+    """The fields that have one value only in every frame: none of an open end or that is not always there; zeros that are
+    cut off are there, too."""
     end = 8 * message.least
-    return tuple(one for one in message.owners if one.const is not None and (message.tail is None or one.at < end))
+    steady = (one for one in message.owners if one.const is not None and not one.when)
+    return tuple(one for one in steady if message.tail is None or one.at < end)
 
 
 def common_length(group: Sequence[Variant]) -> int | None:

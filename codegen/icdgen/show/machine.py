@@ -116,6 +116,7 @@ def _field(field: Field) -> _Object:
         special=[_attributes(one) for one in field.special],
         limits=_limits(field.limits),
         view=True if field.view else None,
+        when={one.field: list(one.values) for one in field.when},
         **_ids(field.errata),
     )
 

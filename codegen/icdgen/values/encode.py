@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from fractions import Fraction
 
 from icdgen import codec
+from icdgen.describe.comments import condition_text
 from icdgen.describe.numbers import exact_text
 from icdgen.describe.steps import steps
 from icdgen.errors import UserError
@@ -42,7 +43,11 @@ def encode(
                 given[field.name] = text
     misnamed = bool(wrong.messages)
     values, notes = _values(message, given, raw, wrong)
-    missing = [f.name for f in message.owners if f.name not in given and f.const is None]
+    missing = [
+        f.name for f in message.owners if f.name not in given and f.const is None and _is_needed(f, given, values)
+    ]
+    with wrong.collect():
+        _are_there(message, given, values)
     if message.tail is not None:
         missing = _without_end(message, message.tail, missing, given, is_empty)
         with wrong.collect():
@@ -54,6 +59,19 @@ def encode(
             )
     wrong.report(f"`icdgen show {node.name} {shlex.quote(message.name)}` says what each field takes")
     return frame(icd, node, message, codec.encode(icd.node(message.node), message, values), notes)
+
+
+def _is_needed(field: Field, given: dict[str, str], values: dict[str, int | bytes]) -> bool:
+    """Whether a field must be given: one that is not always there, if what it depends on is given and says so."""
+    return all(one.field in given for one in field.when) and codec.is_present(field, values)
+
+
+def _are_there(message: Message, given: dict[str, str], values: dict[str, int | bytes]) -> None:
+    """Raises `BadValue` for what is given and not there."""
+    for field in message.fields:
+        if field.name in given and not codec.is_present(field, values):
+            needs = " and ".join(condition_text(one, message) for one in field.when)
+            raise BadValue(f"`{field.name}` is not there: it is only if {needs}", f"leave `{field.name}` out")
 
 
 class _Wrong:

@@ -127,7 +127,7 @@ def frame(icd: Icd, node: Node, message: Message, data: bytes, notes: dict[str, 
     values = codec.decode(owner, message, data)
     rows, count = [], codec.count_of(message, values)
     for field in message.fields:
-        if field.implied or not codec.is_there(message, field, count):
+        if field.implied or field.name not in values or not codec.is_there(message, field, count):
             continue
         raw = values[field.name]
         if message.tail is not None and field.name == message.tail.name and isinstance(raw, bytes):

@@ -35,7 +35,9 @@ class MessageVectors:
     """All that is demanded of the code of one message."""
 
     message: Message
-    default: Raw  # a fresh message: 0, empty, or what ``const`` says; of views, what they read then
+    default: (
+        Raw  # a fresh message: 0, empty, or what ``const`` says; of views, what they read; without what is not there
+    )
     rows: tuple[Row, ...]
     lengths: tuple[int, ...]  # frames of these lengths are refused
     miscounted: tuple[bytes, ...]  # and these, which do not have as many elements as they say
@@ -109,13 +111,14 @@ def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
     """What the reference codec makes of a frame."""
     raw: dict[str, Any] = codec.decode(node, message, frame)
     physical = {}
-    for field in message.fields:
+    present = [field for field in message.fields if field.name in raw]
+    for field in present:
         exact = codec.physical(field, raw[field.name])
         if exact is not None:
             physical[field.name] = exact
-    scaled = (field for field in message.fields if field.has_formula)
+    scaled = (field for field in present if field.has_formula)
     doubles = {field.name: bits_of(codec.physical_double(field, raw[field.name]) or 0.0) for field in scaled}
-    texts = {field.name: known_text(raw[field.name]) for field in message.fields if field.type == "text"}
+    texts = {field.name: known_text(raw[field.name]) for field in present if field.type == "text"}
     return Row(why, frame, raw, codec.encode(node, message, raw), physical, texts, doubles)
 
 

@@ -32,6 +32,7 @@ def frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
 
     Where frames differ in length, the longest is cut to different numbers of elements, and says so.
     """
+    yield from _alternatives(message, node)
     if message.may_end_early:
         yield from _ended_early(message)
     if message.tail is None:
@@ -43,6 +44,23 @@ def frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
         yield why, cut(message, node, frame, message.tail.most)
         count = counts[number % len(counts)]
         yield f"{why}, elements: {count}", cut(message, node, frame, count)
+
+
+def _alternatives(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
+    """Frames for every value on which it depends whether a field is there, and for those beside it."""
+    known, told = {field.name: field for field in message.fields}, set()
+    for field in message.fields:
+        chosen = {known[one.field]: one.values[0] for one in field.when}
+        for one in field.when:
+            selector = known[one.field]
+            near = sorted({value + step for value in one.values for step in (-1, 0, 1)})
+            for value in (number for number in near if selector.raw_min <= number <= selector.raw_max):
+                values = {**chosen, selector: value}
+                why = ", ".join(f"{on.name} {number}" for on, number in values.items())
+                if why not in told:
+                    told.add(why)
+                    yield why, codec.frame_of(node, random_frame(message, f"alternative {why}"), values)
+                    yield f"{why}, all others ones", codec.frame_of(node, b"\xff" * message.length, values)
 
 
 def _ended_early(message: Message) -> Iterator[tuple[str, bytes]]:
@@ -131,11 +149,15 @@ def _numbers(field: Field) -> Iterator[int]:
 def raw_columns(message: Message) -> Iterator[dict[str, int | bytes]]:
     """Raw values of all fields but views, so that each takes each of its values; neighbours are out of step."""
     columns = [_counted(message) if field == message.counter else values(field) for field in message.owners]
+    alternatives = dict.fromkeys(tuple((one.field, one.values[0]) for one in field.when) for field in message.owners)
     for row in range(max(map(len, columns), default=0)):
-        yield {
+        raw = {
             field.name: column[(row + index) % len(column)]
             for index, (field, column) in enumerate(zip(message.owners, columns, strict=True))
         }
+        yield raw
+        for chosen in filter(None, alternatives):
+            yield {**raw, **dict(chosen)}
 
 
 def _counted(message: Message) -> list[int | bytes]:

@@ -67,7 +67,7 @@ def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
                 yield from (around[:1], around[: (message.length + 1) // 2])
             for frame in _cut(message, node, around):
                 whole = codec.decode(node, message, frame) | {field.name: field.const or 0 for field in known}
-                made = codec.encode(node, message, whole)
+                made = codec.frame_with(node, message, whole)
                 yield made
                 if message.may_end_early:
                     yield made.rstrip(b"\0") or made[:1]
@@ -75,7 +75,7 @@ def _frames(icd: Icd, messages: list[Message]) -> Iterator[bytes]:
             for bit in range(field.bits):
                 mine = int(whole[field.name]) & (1 << field.bits) - 1 ^ 1 << bit
                 signed = mine - (mine >> field.bits - 1 << field.bits if field.signed else 0)
-                yield codec.encode(node, message, whole | {field.name: signed})
+                yield codec.frame_with(node, message, whole | {field.name: signed})
 
 
 def _cut(message: Message, node: Node, frame: bytes) -> list[bytes]:

@@ -121,7 +121,9 @@ def _field(vectors: MessageVectors, field: Field) -> str:
         row["coefficients"] = list(field.curve.coefficients)
     if field.view:
         row["view"] = True
-    row["default"] = raw_json(field, vectors.default[field.name])
+    if field.when:
+        row["when"] = {one.field: list(one.values) for one in field.when}
+    row["default"] = raw_json(field, vectors.default.get(field.name))
     if field.special:
         row["special"] = [raw_json(field, special.value) for special in field.special]
     if field.limits:
@@ -138,11 +140,12 @@ def _row(fields: tuple[Field, ...], row: Row) -> str:
     line: dict[str, object] = {"why": row.why, "bytes": row.frame.hex()}
     if row.encoded != row.frame:
         line["encoded"] = row.encoded.hex()
-    line["raw"] = [raw_json(field, row.raw[field.name]) for field in fields]
-    if row.physical:
-        line["physical"] = [decimal(value) for value in row.physical.values()]
-    if row.doubles:
-        line["doubles"] = list(row.doubles.values())
+    line["raw"] = [raw_json(field, row.raw.get(field.name)) for field in fields]
+    if any(field.scale is not None for field in fields):
+        scaled = (field.name for field in fields if field.scale is not None)
+        line["physical"] = [decimal(row.physical[name]) if name in row.physical else None for name in scaled]
+    if any(field.has_formula for field in fields):
+        line["doubles"] = [row.doubles.get(field.name) for field in fields if field.has_formula]
     if row.texts:
         line["texts"] = list(row.texts.values())
     return _json(line)

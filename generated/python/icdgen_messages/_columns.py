@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from ._base import Message
 from ._codec import text
+from ._conditions import absent
 from ._dicts import OCTETS
 from ._errors import IcdError, LengthError
 from ._fields import FieldInfo
@@ -41,7 +42,8 @@ def _columns(
     """Columns by name, and how many elements the end of each frame has; its others are 0."""
     joined, counts = _together(message, frames)
     decoder = _Decoder(numpy, message, joined)
-    columns = {}
+    columns: dict[str, Any] = {}
+    known = {info.attribute: info for info in message.FIELDS}
     for info, parts in _lines(message):
         if info.elements:
             found = [decoder.column(one) for one in parts]
@@ -57,6 +59,12 @@ def _columns(
             columns[info.physical] = values.reshape(column.shape)
         else:
             columns[info.attribute] = column
+    for info in message.FIELDS if message.CONDITIONAL else ():
+        if info.when:
+            name = info.physical if physical and info.physical else info.attribute
+            raw = {key: decoder.column(known[key]) for key, _ in info.when}
+            mask = absent(numpy, info, raw)
+            columns[name] = numpy.ma.array(columns[name], mask=mask)
     return columns, numpy.array(counts, numpy.int32)
 
 
@@ -87,6 +95,13 @@ def decode_table(message: type[Message], frames: Frames, physical: bool) -> Any:
     columns, counts = _columns(numpy, message, frames, physical)
     fields, arrays = [], []
     for (info, parts), (name, column) in zip(_lines(message), columns.items()):
+        if info.when:
+            array = pyarrow.array(
+                numpy.ascontiguousarray(column.data), mask=column.mask
+            )
+            fields.append(pyarrow.field(name, array.type, metadata=_metadata(info)))
+            arrays.append(array)
+            continue
         column = numpy.ascontiguousarray(column)
         if info.is_open and column.ndim > 1:
             is_octets = info.type in OCTETS and len(parts) == 1

@@ -43,6 +43,13 @@ def compiled(message: type[_lazy.Message], name: str) -> _lazy.Any:
     owner = next(one for one in message.__mro__ if "FIELDS" in vars(one))
     if (owner, name) not in _functions:
         function = longest(owner, name)
+        if message.CONDITIONAL:
+            from . import _conditions
+
+            function = {
+                "from_bytes": _conditions.decoder,
+                "to_bytes": _conditions.encoder,
+            }[name](owner, function)
         if message.TAIL is not None:
             from . import _tails
 
@@ -94,6 +101,7 @@ class Codec:
 
     def __init__(self, message: type[_lazy.Message]) -> None:
         self.message, self.order = message, message.BYTE_ORDER
+        self.fields = [one for one in message.FIELDS if not one.when]
         self.names: dict[str, _lazy.Any] = {
             "new": object.__new__,
             "error": struct.error,
@@ -176,7 +184,7 @@ class Codec:
 
     def _units(self) -> _lazy.Iterator[_lazy.FieldInfo]:
         """What is packed by itself: fields, arrays of words, and each element of other arrays."""
-        for info in self.message.FIELDS:
+        for info in self.fields:
             yield from self._units_of(info)
 
     def _units_of(self, info: _lazy.FieldInfo) -> _lazy.Iterator[_lazy.FieldInfo]:
@@ -255,7 +263,7 @@ class Codec:
         """Bytes that more than one field touches."""
         once: set[int] = set()
         more: set[int] = set()
-        for info in (leaf for one in self.message.FIELDS for leaf in one.leaves):
+        for info in (leaf for one in self.fields for leaf in one.leaves):
             span = _bytes_of(info)
             more |= once.intersection(span)
             once.update(span)

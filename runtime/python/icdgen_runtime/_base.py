@@ -149,12 +149,16 @@ class Struct(metaclass=MessageType):
         """The fields in the order of the manual."""
         VIEWS: ClassVar[tuple[FieldInfo, ...]]
         """What reads bits of the fields in another way, and is not set."""
+        CONDITIONAL: ClassVar[bool]
+        """Whether a field is not always there: see `FieldInfo.when`."""
     else:
         FIELDS = VIEWS = ()
+        CONDITIONAL = False
         __dataclass_fields__ = _DataclassFields()
 
         def __init__(self, /, **values):
             """Of raw values, or physical ones, which go before. Raises `RangeError`."""
+            given = frozenset(values) if self.CONDITIONAL else ()
             for info in self.FIELDS:
                 fresh = info.default if info.struct is None else info.fresh
                 setattr(self, info.attribute, values.pop(info.attribute, fresh))
@@ -162,6 +166,10 @@ class Struct(metaclass=MessageType):
                     setattr(self, info.physical, values.pop(info.physical))
             for name in values:
                 raise TypeError(f"{type(self).__name__} has no field {name!r}")
+            if self.CONDITIONAL:
+                from ._conditions import settle
+
+                settle(self, given)
 
     if TYPE_CHECKING:
 
@@ -321,7 +329,8 @@ class Message(Spoken[N_contra], Struct):
         The names are those of `as_dict`. What stands on whole bytes is a view of the
         frames, or of a copy of them if they can change. Raises `LengthError` if they
         are not whole frames. Frames that differ in length, or end early, are given one by one, as a
-        list; what ends them is an array of arrays, or of bytes. Needs numpy.
+        list; what ends them is an array of arrays, or of bytes. What is not always there is
+        a masked array. Needs numpy.
         """
         from . import _columns
 

@@ -6,7 +6,7 @@ import struct
 
 from . import _lazy
 from ._errors import LengthError, RangeError
-from ._fields import elements_of, has_elements
+from ._fields import elements_of, has_elements, is_there
 
 REFUSED = (
     struct.error,
@@ -138,6 +138,8 @@ def length_error(message: type[_lazy.Message], data: _lazy.Buffer) -> LengthErro
 def range_error(message: _lazy.Message) -> RangeError:
     """What to raise for a message that has a value that does not fit."""
     for info in message.FIELDS:
+        if info.when and not is_there(info, message):
+            continue
         error = _misfit(info, getattr(message, info.attribute, None))
         if error is not None:
             return error

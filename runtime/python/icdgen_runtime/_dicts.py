@@ -25,6 +25,9 @@ def from_dict(struct: type[S], values: Mapping[str, Any]) -> S:
 def _filled(message: type[S], values: Mapping[str, Any]) -> S:
     made, left = message(), dict(values)
     for info in message.FIELDS:
+        if info.when:  # what is not there is not looked at
+            setattr(made, info.attribute, info.default)
+    for info in message.FIELDS:
         if info.attribute in left:
             setattr(made, info.attribute, _raw(info, left.pop(info.attribute)))
         if info.physical in left:

@@ -21,7 +21,7 @@ class FieldInfo:
     __slots__ = (
         "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
         "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
-        "elements", "is_open", "struct", "curve", "leads_back",
+        "elements", "is_open", "struct", "curve", "leads_back", "when",
     )  # fmt: skip
 
     def __init__(
@@ -50,6 +50,7 @@ class FieldInfo:
         struct: _lazy.Optional[type[_lazy.Struct]] = None,
         curve: tuple[float, ...] = (),
         leads_back: bool = True,
+        when: tuple[tuple[str, tuple[int, ...]], ...] = (),
     ) -> None:
         self.attribute = attribute
         """The attribute that holds the raw value."""
@@ -104,6 +105,11 @@ class FieldInfo:
         """
         self.leads_back = leads_back
         """Whether the physical value can be set."""
+        self.when = when
+        """It is there only if each of these attributes has one of these values.
+
+        If not, its own is None, and is not looked at when the message is encoded.
+        """
 
     @property
     def signed(self) -> bool:
@@ -203,6 +209,11 @@ class FieldInfo:
         return f"FieldInfo({', '.join(values)})"
 
 
+def is_there(info: FieldInfo, message: _lazy.Any) -> bool:
+    """Whether the message has the field, by the values of those on which it depends."""
+    return all(getattr(message, name) in values for name, values in info.when)
+
+
 def has_elements(info: FieldInfo, values: _lazy.Any) -> bool:
     """Whether there are as many values as an array takes."""
     if not hasattr(values, "__getitem__") or not hasattr(values, "__len__"):
@@ -285,7 +296,23 @@ def _number_property(info: FieldInfo, form: Form) -> property:
     def set_nearest(self: Any, value: float) -> None:
         setattr(self, attribute, nearest_raw(value, attribute, terms, info.raw_range))
 
+    if info.when:
+        return _optional(
+            attribute, get_whole if is_whole else get_physical, set_nearest
+        )
     return property(get_whole if is_whole else get_physical, set_nearest)
+
+
+def _optional(attribute: str, get: Any, set: Any) -> property:
+    """The property of a field that is not always there: None then, in both directions."""
+
+    def get_there(self: Any) -> Any:
+        return None if getattr(self, attribute) is None else get(self)
+
+    def set_there(self: Any, value: Any) -> None:
+        setattr(self, attribute, None) if value is None else set(self, value)
+
+    return property(get_there, set_there)
 
 
 def _curve_property(info: FieldInfo) -> property:
@@ -308,6 +335,8 @@ def _curve_property(info: FieldInfo) -> property:
         found = (from_curve(one, info, f"{attribute}[{place}]") for place, one in each)
         setattr(self, attribute, tuple(found))
 
+    if info.when:
+        return _optional(attribute, get, set)
     return property(get_all, set_all) if info.elements else property(get, set)
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 MOST_VALUES = 65536
 KINDS = ("telecommand", "telemetry", "configuration")
 OCTETS = ("bytes", "text")
+ABSENT = "-"
 LIMITS = ("min", "max", "above", "below")
 
 
@@ -51,6 +52,8 @@ def encode(front: Front, request: Request) -> dict[str, Any]:
             break  # they come last
         if name in physical:
             values.append(f"p{_physical(field, physical[name])}")
+        elif field["conditional"] and raw.get(name) is None:
+            values.append("n")
         elif name in raw:
             values.append(f"r{_raw(field, raw[name])}")
         else:
@@ -161,7 +164,9 @@ def _raw(field: Field, given: object) -> int | str:
 
 
 def _shown(field: Field, value: str) -> object:
-    """A raw value as it stands in an answer."""
+    """A raw value as it stands in an answer; null where the field is not there."""
+    if value == ABSENT and field["conditional"]:
+        return None
     if field["type"] in OCTETS:
         return value
     if field["type"] == "float":
@@ -176,7 +181,9 @@ def _physical(field: Field, given: object) -> int | str:
 
 def _physical_shown(field: Field, row: Facts) -> str | None:
     """A physical value as it stands in an answer: null where the bytes are no text."""
-    return row.get("physical") if field["type"] == "text" else _double(row["physical"])
+    if field["type"] == "text" or row["raw"] == ABSENT:
+        return row.get("physical")
+    return _double(row["physical"])
 
 
 def _double(bits: str) -> str:

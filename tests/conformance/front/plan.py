@@ -43,6 +43,7 @@ def _message(message: Message) -> dict[str, Any]:
                 "scaled": field.has_formula or field.type == "text",
                 "settable": ((field.has_formula and field.leads_back) or field.type == "text") and not field.view,
                 "view": field.view,
+                "conditional": bool(field.when),
             }
             for field in (*message.owners, *message.views)
         ],

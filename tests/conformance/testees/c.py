@@ -40,6 +40,7 @@ class FieldRow(NamedTuple):
     set: str
     get_text: str
     set_text: str
+    has: str  # the function that tells whether it is there
     view: str  # the function; its type is ``c_type``
     c_type: str
     special: list[str]
@@ -171,6 +172,7 @@ class _Rows:
             set=f"{stem}_set_{one.physical_name}" if one.is_scaled and one.is_set else "",
             get_text=f"{stem}_{one.physical_name}" if one.is_text else "",
             set_text=f"{stem}_set_{one.physical_name}" if one.is_text else "",
+            has=names.has(one) if field.when else "",
             view=f"{stem}_{one.name}" if field.view else "",
             c_type=type_of(one) if field.view else "",
             special=[name for key, name in macros if key == "special"],

@@ -57,7 +57,10 @@ def _plans(icd: Icd) -> dict[str, object]:
         plan: dict = message_plan(message, declaring[message.node])
         for field, row in zip(message.fields, plan["fields"], strict=True):
             row |= {"enum": enum_plan(field.enum)} if field.enum else {}
-        plan["fields"].sort(key=lambda row: "view" in row)  # views come last
+        order = sorted(range(len(plan["fields"])), key=lambda place: "view" in plan["fields"][place])  # views come last
+        for row in plan["fields"]:
+            row |= {"when": [[order.index(place), values] for place, values in row["when"]]} if "when" in row else {}
+        plan["fields"] = [plan["fields"][place] for place in order]
         plans.append(plan | {"ids": list(message.ids)})
     return {"messages": plans, "nodes": nodes}
 

@@ -111,7 +111,9 @@ def _field(field: FieldDescription) -> FieldEntry:
     if field.is_scaled:
         get, set = f"{within}.{field.physical_name}", f"{within}.set_{field.physical_name}"
         index = field.model.index
-        if index is None:
+        if field.model.when:
+            get, set = f"|m| {get}().unwrap_or_default()", f"|m, value| {set}(value)"
+        elif index is None:
             get, set = f"|m| {get}()", f"|m, value| {set}(value)"
         else:
             get, set = f"|m| {get}({index}).unwrap_or_default()", f"|m, value| {set}({index}, value)"

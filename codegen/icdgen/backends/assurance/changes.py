@@ -58,6 +58,9 @@ def of_field(field: Field, message: Message | Struct, node: Node) -> Iterator[tu
         size = 8 * message.least
         if message.tail.counter == field.name:
             return  # it counts the elements: as another field it may count none
+    if isinstance(message, Message) and any(one.field == field.name for other in message.fields for one in other.when):
+        return  # others depend on it: as another field it may decide nothing
+    yield from _of_conditions(field)
     for step in (-8, 8) if field.is_bytes or field.struct is not None else (-8, -1, 1, 8):
         if 0 <= field.at + step <= size - field.width:
             yield _step("offset", source, "at", field.at, step), replace(field, at=field.at + step)
@@ -68,6 +71,16 @@ def of_field(field: Field, message: Message | Struct, node: Node) -> Iterator[tu
         if 0 < field.count + step <= (size - field.at) // field.bits:
             yield _step("count", source, "count", field.count, step), replace(field, count=field.count + step)
     yield from _readings(field, node)
+
+
+def _of_conditions(field: Field) -> Iterator[tuple[Change, Field]]:
+    """The changes of a value that another field must have, where one is said, by its number."""
+    for place, one in enumerate(field.when):
+        said = field.source["when"].get(one.field)
+        for step in (-1, 1) if type(said) is int else ():
+            now = replace(one, values=(said + step,))
+            changed = (*field.when[:place], now, *field.when[place + 1 :])
+            yield _step("condition", field.source["when"], one.field, said, step), replace(field, when=changed)
 
 
 def _of_open(field: Field) -> Iterator[tuple[Change, Field]]:

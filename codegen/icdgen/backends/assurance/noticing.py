@@ -33,7 +33,9 @@ class MessageWatch:
         """Lines that notice that a field is another, or ``node`` is that of the message."""
         old, node = self.message.fields[index], node or self.node
         found = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
-        alone = replace(self.message, fields=(now,), tail=None)
+        needed = {one.field for one in (*old.when, *now.when)}
+        others = tuple(one for one in self.message.fields if one.name in needed)
+        alone = replace(self.message, fields=(now, *others), tail=None)
         rows = zip(self.lines.rows, self.vectors.rows, self._of_others[index], strict=True)
         return found + [number for number, row, others in rows if _notices(row, old, now, node, alone, others)]
 
@@ -88,6 +90,8 @@ class MessageWatch:
 
     def _is_fresh(self, field: Field) -> bool:
         """Whether a new message has it: of an open end it has no element."""
+        if field.when and field.name not in self.message.fresh:
+            return False
         return field.implied or field.at < 8 * self._fresh_length
 
     @cached_property
@@ -99,8 +103,12 @@ class MessageWatch:
         """Of each field, the bits that all other fields set in each row's frame."""
         columns = []
         for field in self.message.fields:
-            alone = replace(self.message, fields=(field,), tail=None)
-            frames = (codec.encode(self.node, alone, {field.name: row.raw[field.name]}) for row in self.vectors.rows)
+            alone = replace(self.message, fields=(replace(field, when=()),), tail=None)
+            values = ({field.name: row.raw.get(field.name, field.fresh)} for row in self.vectors.rows)
+            frames = (
+                codec.encode(self.node, alone, value) if field.name in row.raw else bytes(alone.length)
+                for row, value in zip(self.vectors.rows, values, strict=True)
+            )
             columns.append([_number(frame) for frame in frames])
         by_row = []
         for row in zip(*columns, strict=True):
@@ -115,7 +123,9 @@ def _notices(row: Row, old: Field, now: Field, node: Node, alone: Message, other
     answer = _answer(node, alone, row.frame.ljust(alone.length, b"\0"))  # the rest of the longest frame
     if answer is None:
         return True
-    raw, read, frame = row.raw[old.name], answer[0][now.name], answer[1]
+    raw, read, frame = row.raw.get(old.name), answer[0].get(now.name), answer[1]
+    if raw is None or read is None:
+        return raw is not read
     if (
         now.view and codec.decode(node, alone, row.encoded.ljust(alone.length, b"\0"))[now.name] != raw
     ):  # it is read from what the others are encoded to, too

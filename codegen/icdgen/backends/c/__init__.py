@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from icdgen.backends import Identifier
-from icdgen.backends.c import accessors, bits, constants, decoding, encoding, fields, names, parts, types
+from icdgen.backends.c import accessors, bits, conditional, constants, decoding, encoding, fields, names, parts, types
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.member_groups import in_groups
 from icdgen.backends.c.reserved_words import RESERVED
@@ -95,7 +95,7 @@ def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, objec
 
 
 def _message(message: MessageDescription) -> dict[str, object]:
-    groups = in_groups(message.sent_fields)
+    groups = in_groups(message.steady)
     return {
         **_composite(message, parts.headers(message)),
         "empty": decoding.EMPTY,
@@ -105,6 +105,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "narrow": [(field, bits.excess(field)) for field in message.fields if field.is_narrow and not field.is_open],
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message, groups),
+        "conditional": conditional.conditional(message),
         **(_tail(message, message.tail) if message.tail else {}),
         "views": [accessors.view(field) for field in message.views],
         "parts": parts.parts(message),

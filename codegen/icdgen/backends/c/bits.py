@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from icdgen.backends.c.names import has
 from icdgen.backends.c.statement import grouped, joined
 from icdgen.backends.c.types import cast, mask
 from icdgen.describe import FieldDescription, MessageDescription
@@ -115,6 +116,8 @@ def _raw(field: FieldDescription) -> str:
 
 def excess(field: FieldDescription, member: str = "") -> str:
     """An expression that is 0 if and only if the raw value of a narrow field fits; ``member`` if it is not the field's."""
+    if field.model.when and not member:
+        return f"{has(field)}(message) ? ({excess(field, field.member)}) : 0u"
     storage, one, member = field.storage, field.model, member or field.member
     wide = 64 if storage.bits == 64 else 32
     if not storage.signed:

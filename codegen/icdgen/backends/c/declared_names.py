@@ -110,6 +110,8 @@ def _fields(message: Composite[Any]) -> Iterator[Identifier]:
     for field in message.all_members:
         is_view = field.model.view
         yield field.identifier(FILE, f"{stem}_{field.name}") if is_view else field.identifier(members, field.name)
+        if field.model.when:
+            yield field.identifier(FILE, names.has(field))
         for one in field.constants:
             yield field.identifier(FILE, names.constant(message, one.name))
         for end in _physical_names(field) if field.has_physical else ():

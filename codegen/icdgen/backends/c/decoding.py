@@ -93,6 +93,11 @@ def view(field: FieldDescription) -> str:
     return _number(field, "value")
 
 
+def number(field: FieldDescription) -> str:
+    """The statement that reads a number into its member."""
+    return _number(field, f"message->{field.member}")
+
+
 def _one(field: FieldDescription) -> str:
     one = field.model
     if one.is_bytes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from icdgen.describe import EnumDescription, MessageDescription
+from icdgen.describe import EnumDescription, FieldDescription, MessageDescription
 from icdgen.describe.description import Composite, TailDescription
 from icdgen.describe.enums import MemberDescription
 
@@ -27,6 +27,11 @@ def reading(message: MessageDescription, tail: TailDescription) -> str:
 def writing(message: MessageDescription, tail: TailDescription) -> str:
     """The function that writes one."""
     return f"{stem(message)}_write_{tail.part.name}"
+
+
+def has(field: FieldDescription) -> str:
+    """``demo_wheel_has_rate``: the function that tells whether a field is there."""
+    return f"{stem(field.message)}_has_{field.name}"
 
 
 def constant(message: Composite[Any], name: str) -> str:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
+from icdgen import codec
 from icdgen.backends.c import names, physical
 from icdgen.backends.c.text import literal, plain
 from icdgen.backends.c.types import type_of
@@ -16,9 +18,9 @@ from icdgen.describe.nodes import Direction
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from icdgen.vectors.ids import worth_asking
-from icdgen.vectors.make import MessageVectors, Row, make
+from icdgen.vectors.make import MessageVectors, Raw, Row, make
 from icdgen.vectors.patterns import values
-from icdgen.vectors.settings import NEVER, Settings
+from icdgen.vectors.settings import NEVER, Settings, bits_of
 from icdgen.vectors.shared import SharedRow
 
 BYTES_IN_ROW, NUMBERS_IN_ROW = 16, 4
@@ -135,6 +137,7 @@ class _Rows:
 
     def message(self, message: MessageDescription, vectors: MessageVectors) -> MessageRow:
         kept = bytes(message.model.length)
+        vectors = _plain(message, vectors)
         for row in vectors.rows:  # reserved bits are those that no vector keeps
             kept = bytes(a | b for a, b in zip(kept, row.encoded.ljust(len(kept), b"\0"), strict=True))
         tables: dict[str, str] = {}
@@ -201,6 +204,22 @@ def _frame(row: SharedRow) -> str:
     refused = "ICD_ERROR_UNKNOWN_ID" if row.expected is None else "ICD_ERROR_LENGTH"
     status, name = ("ICD_OK", literal(row.message)) if row.message is not None else (refused, "NULL")
     return f"{{{row.id}u, {len(row.frame)}u, {octets}, {status}, {name}}}"
+
+
+def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVectors:
+    """As C sees a message of which a field is not always there: its members are 0 then, and so are bits that are no field's."""
+    if not message.conditional:
+        return vectors
+    absent: Raw = {field.model.name: 0 for field in message.conditional}
+    scaled = [one.model for one in message.all_fields if one.model.has_formula]
+    rows = []
+    for row in vectors.rows:
+        raw = {field.name: (absent | row.raw)[field.name] for field in message.model.fields}
+        doubles = {one.name: bits_of(codec.physical_double(one, _number(raw[one.name])) or 0.0) for one in scaled}
+        rows.append(replace(row, frame=row.encoded, raw=raw, doubles=doubles))
+    always = {name: given for name, given in vectors.unfit.items() if name not in absent}
+    fresh = {field.name: field.fresh for field in message.model.owners}
+    return replace(vectors, rows=tuple(rows), default=vectors.default | fresh, unfit=always)
 
 
 def _tail(message: MessageDescription, vectors: MessageVectors) -> TailRow:

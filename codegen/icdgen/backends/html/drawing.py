@@ -79,13 +79,21 @@ class _Canvas:
         self.across = bytes_a_row(self.length, inside)
         self.cell = (WIDTH - LEFT) / (8 * self.across)
         self.shapes = [
-            Shape(key, one.type, f"{clip(one.name, 200)}: {bit_range(one.at, one.bits)}", anchors[key - 1])
+            Shape(key, one.type, f"{clip(self._told(one), 200)}: {bit_range(one.at, one.bits)}", anchors[key - 1])
             for key, one in enumerate(message.fields, 1)
         ]
         self.owner = self._owners()[8 * first : 8 * end]
         self.grid, self.rows = self._grid()
         narrow = any(len(set(row)) > 2 * self.across for _, row in self.grid)
         self.row = (46 if narrow else 34) if self.across < 4 else 30
+
+    def _told(self, field: Field) -> str:
+        """Its name; of what is not always there also those of what may be in its place."""
+        if not field.when:
+            return field.name
+        mine = layout.mask(field, self.node)
+        others = [one.name for one in self.message.fields if one.when and layout.mask(one, self.node) & mine]
+        return " / ".join([field.name, *(name for name in others if name != field.name)][:4])
 
     def _owners(self) -> list[int]:
         """Key of the field that each bit of the frame belongs to, in bytes of bits from the left; 0: reserved."""
@@ -98,7 +106,8 @@ class _Canvas:
                 continue
             for piece in layout.pieces(one, self.node):
                 right = 8 * piece.byte + 8 - piece.shift
-                owner[right - piece.bits : right] = [shape.key] * piece.bits
+                for bit in range(right - piece.bits, right):
+                    owner[bit] = owner[bit] or shape.key  # of alternatives the first
         return owner
 
     def _grid(self) -> tuple[list[tuple[int, list[int]]], list[int]]:
@@ -115,7 +124,7 @@ class _Canvas:
         self._fill()
         height = TOP + self.row * len(self.grid)
         for shape in self.shapes:
-            shape.labels = fit(shape.rects, self.message.fields[shape.key - 1].name, shape.key)
+            shape.labels = fit(shape.rects, self._told(self.message.fields[shape.key - 1]), shape.key)
         msb0 = self.node.bit_order == "msb0"
         columns = [
             (LEFT + (column + 0.5) * self.cell, str(column if msb0 else column // 8 * 8 + 7 - column % 8))

@@ -46,6 +46,8 @@ def _encoded(message: Message, node: Node, raw: dict[str, int | bytes]) -> bytes
     """What the codec makes of raw values that fit, sooner."""
     frame = bytearray(message.length)
     for field in message.owners:
+        if not codec.is_present(field, raw):
+            continue
         value = raw[field.name]
         if isinstance(value, bytes):
             frame[field.at // 8 : field.at // 8 + len(value)] = value
@@ -65,12 +67,14 @@ def examples(message: Message, node: Node) -> list[Example]:
         if message.tail is not None:
             frame = patterns.cut(message, node, frame, message.tail.most)
         raw = codec.decode(node, message, frame) if len(message.fields) <= _MOST else {}
-        cells = [_cell(field, raw[field.name]) for field in message.fields] if raw else []
+        cells = [_cell(field, raw.get(field.name)) for field in message.fields] if raw else []
         found.append(Example(why, frame.hex(" ").upper(), frame, cells))
     return found
 
 
-def _cell(field: Field, raw: int | bytes) -> Cell:
+def _cell(field: Field, raw: int | bytes | None) -> Cell:
+    if raw is None:
+        return Cell("", "not there")
     if isinstance(raw, bytes):
         shown = raw.hex(" ").upper()
         said = codec.text(raw) if field.type == "text" else ""

@@ -68,7 +68,9 @@ def columns_of(rows: list[FieldRow]) -> list[tuple[str, str]]:
 def rows(message: Message, node: Node, links: Links, anchors: list[str]) -> list[FieldRow]:
     """Fields and reserved bits in the order of the frame."""
     found = [
-        _row(key, field, links, anchors[key - 1]) for key, field in enumerate(message.fields, 1) if not field.implied
+        _row(key, field, message, links, anchors[key - 1])
+        for key, field in enumerate(message.fields, 1)
+        if not field.implied
     ]
     found += [FieldRow(0, gap.at, gap.bits) for gap in layout.gaps(message, node)]
     return sorted(found, key=lambda row: row.at)
@@ -88,7 +90,7 @@ def between(found: list[FieldRow], section: Section) -> list[FieldRow | FlagRow]
     return made
 
 
-def _row(key: int, field: Field, links: Links, anchor: str) -> FieldRow:
+def _row(key: int, field: Field, message: Message, links: Links, anchor: str) -> FieldRow:
     return FieldRow(
         key=key,
         at=field.at,
@@ -108,10 +110,11 @@ def _row(key: int, field: Field, links: Links, anchor: str) -> FieldRow:
         unit_title=field.unit.quantity if field.unit else "",
         formula=field.formula if field.has_formula else "",
         summary=field.summary,
-        notes=tuple(_notes(field)),
+        notes=tuple(_notes(field, message)),
         errata=field.errata,
     )
 
 
-def _notes(field: Field) -> list[str]:
-    return [note[:1].upper() + note[1:] for note in remarks(field, texts.number)]
+def _notes(field: Field, message: Message) -> list[str]:
+    told = remarks(field, texts.number, message if message.has_conditions else None)
+    return [note[:1].upper() + note[1:] for note in told]

@@ -19,7 +19,12 @@ _KEYWORDS = {"min": "minimum", "max": "maximum"}
 
 def annotation(field: FieldDescription) -> str:
     """The type of the attribute."""
-    return f"tuple[{_annotation(field)}, ...]" if field.count else _annotation(field)
+    return f"tuple[{_annotation(field)}, ...]" if field.count else _perhaps(field, _annotation(field))
+
+
+def _perhaps(field: FieldDescription, note: str) -> str:
+    """The type of what is None where the field is not there."""
+    return f"_lazy.Optional[{note}]" if field.model.when else note
 
 
 def _annotation(field: FieldDescription) -> str:
@@ -56,6 +61,9 @@ def _told(field: FieldDescription) -> list[str]:
         items.append("is_open=True")
     if field.is_open and field.enum is not None:
         items.append(f"enum={class_name(field.enum)}")
+    if field.needs:
+        needs = (f'("{need.field.name}", ({", ".join(map(str, need.values))},))' for need in field.needs)
+        items.append(f"when=({', '.join(needs)},)")
     if one.unit:
         items.append(f"unit={literal(one.unit.symbol)}")
     if one.const is not None:
@@ -129,7 +137,7 @@ def scaled(field: FieldDescription) -> str:
     elif field.count:
         first, note = f"({first},) * {field.count}", "tuple[float, ...]"
     else:
-        note = "float"
+        note = _perhaps(field, "float")
     if curve is not None:
         items = [str(curve.coefficients), f"default={first}"]
         return _statement(field.physical_name, note, "curve" if field.is_set else "curve_only", items)
@@ -144,7 +152,7 @@ def whole(field: FieldDescription) -> Whole | None:
 
 def exact(field: FieldDescription, found: Whole) -> str:
     """``estimated_roll_angle_mdeg: int = _base.whole(...)``"""
-    note = "tuple[int, ...]" if field.count else "int"
+    note = "tuple[int, ...]" if field.count else _perhaps(field, "int")
     return _statement(field.whole_name(found.per), note, "whole", [str(found.factor), str(found.offset)])
 
 

@@ -13,6 +13,7 @@ from icdgen.describe.storage import holding
 from icdgen.layout import Piece, is_whole_bytes
 
 _ARRAY_WIDTH = 60  # of an array that rustfmt leaves on one line
+RAW = "raw"  # the variable that holds the value of what is not always there
 FLAGS_FROM = 4  # so many flags of one byte are taken from the table of the support module
 
 
@@ -181,7 +182,12 @@ def fitting(field: FieldDescription) -> list[str]:
             values = f"self.{field_name(field)}().iter().copied()"
         lines = f"for value in {values} {{", f"{STEP}{field.name.upper()}.fit(value{raw})?;", "}"
         return list(lines)
-    return [f"{field.name.upper()}.fit(self.{field_name(field)}{raw})?;"]
+    return [f"{field.name.upper()}.fit({_source(field)}{raw})?;"]
+
+
+def _source(field: FieldDescription, owner: str = "self") -> str:
+    """What is written: the member, or the variable that holds its value where it is not always there."""
+    return RAW if field.model.when else f"{owner}.{field_name(field)}"
 
 
 def writing(field: FieldDescription, owner: str = "self") -> list[str]:
@@ -192,7 +198,7 @@ def writing(field: FieldDescription, owner: str = "self") -> list[str]:
         if _is_run(field):
             return _put_run(field, f"{owner}.{field_name(field)}")
         return [line for one in field.elements for line in writing(one, owner)]
-    one, row, source = field.model, field.pieces, f"{owner}.{field_name(field)}"
+    one, row, source = field.model, field.pieces, _source(field, owner)
     if one.is_bytes:
         return [f"put_array(&mut bytes, {one.at // 8}, &{source});"]
     if one.type == "bool":
@@ -279,5 +285,7 @@ def _put(piece: Piece, part: str) -> str:
 
 def flag_tables(message: Composite[Any]) -> set[int]:
     """The bytes that hold so many flags that a table is worth its load."""
-    flags = [field.pieces[0].byte for field in message.sent_fields if field.model.type == "bool"]
+    flags = [
+        field.pieces[0].byte for field in message.sent_fields if field.model.type == "bool" and not field.model.when
+    ]
     return {byte for byte in flags if flags.count(byte) >= FLAGS_FROM}

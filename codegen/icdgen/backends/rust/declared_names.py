@@ -79,6 +79,8 @@ def _members(
         if message.tail is not None and field.is_open:
             yield field.identifier(methods, names.field_name(field))
         yield field.identifier(methods if is_view else fields, names.field_name(field))
+        if field.model.when:
+            yield field.identifier(methods, names.has(field))
         if field.has_physical:
             yield field.identifier(methods, field.physical_name)
             if field.is_set:

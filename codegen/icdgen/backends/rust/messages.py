@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from icdgen.backends.rust import bits, constants, parts
+from icdgen.backends.rust import bits, conditional, constants, parts
 from icdgen.backends.rust.names import own_name, struct_path
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
@@ -17,29 +17,30 @@ DERIVES_DEFAULT = 32  # elements of an array; longer ones do not
 def values(message: MessageDescription) -> dict[str, object]:
     """What is read, written, derived and imported."""
     fields, tables, tail = message.members, bits.flag_tables(message), message.tail
-    readings = [bits.reading(field, tables) for field in fields]
+    readings = ["None" if field.model.when else bits.reading(field, tables) for field in fields]
     views = [(field, bits.reading(field, set(), depth=2)) for field in message.views]
     element = tail.element if tail is not None else None
+    conditions = conditional.conditional(message)
     sent = [leaf for field in message.members if not (element and field.is_open) for leaf in field.leaves]
-    writings = [line for field in sent for line in bits.writing(field)]
+    writings = [line for field in sent if not field.model.when for line in bits.writing(field)]
     of_element = None
     if tail is not None and element is not None:
         writings += bits.put_open(tail.part)
         of_element = _element(tail.part, element)
-        own_tables = of_element.tables
-        every = (*readings, *of_element.readings, *(reading for _, reading in views)), (*writings, *of_element.writings)
-    else:
-        own_tables = []
-        every = (*readings, *(reading for _, reading in views)), tuple(writings)
-    read, written = every
+    read = [*readings, *(one.decode for one in conditions), *(reading for _, reading in views)]
+    written = [*writings, *(line for one in conditions for line in one.encode)]
+    if of_element is not None:
+        read += of_element.readings
+        written += of_element.writings
     imported = {
         "array": any("array(" in reading for reading in read),
-        "flags": bool(tables or own_tables),
+        "flags": bool(tables or (of_element and of_element.tables)),
         "message": True,
         "put": any("put!(" in line for line in written),
         "put_array": any("put_array(" in line for line in written),
         "put_words": any("put_words(" in line for line in written),
         "take": any("take!(" in reading for reading in read),
+        "there": bool(conditions),
         "counted": tail is not None and not tail.counter.model.implied,
         "elements": tail is not None,
         "longest": tail is not None or bool(message.model.may_end_early),
@@ -51,7 +52,8 @@ def values(message: MessageDescription) -> dict[str, object]:
     }
     return {
         **_shared(message, imported),
-        "refused": message.is_narrow,
+        "refused": message.is_narrow or bool(conditions),
+        "conditional": conditions,
         "tail": tail,
         "length_of_frame": "" if tail is None else _length_of_frame(tail),
         "tables": sorted(tables),
@@ -94,7 +96,11 @@ def of_struct(struct: StructDescription) -> dict[str, object]:
 def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]:
     """What is said of a message and of a struct."""
     fields = one.members
-    has_default = all((field.fresh == 0 or field.is_open) and not _is_long(field) for field in fields) and not any(
+    is_there = any(field.model.name in field.message.model.fresh for field in fields if field.model.when)
+    has_default = not is_there and all(
+        (field.fresh == 0 or field.is_open or field.model.when) and not _is_long(field) for field in fields
+    )
+    has_default = has_default and not any(
         field.struct is not None and field.is_open and any(one.fresh for one in field.struct.fields) for field in fields
     )
     derived = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
@@ -116,7 +122,7 @@ def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]
     names = sorted((name for name, is_used in imported.items() if is_used), key=lambda name: (name[0].isupper(), name))
     return {
         "constants": constants.of_fields(one),
-        "fits": [line for field in narrow for line in bits.fitting(field)],
+        "fits": [line for field in narrow if not field.model.when for line in bits.fitting(field)],
         "scales": scales,
         "curves": curves,
         "default": None if has_default else _literal(fields, [_fresh(field) for field in fields]),
@@ -144,6 +150,9 @@ def _fresh(field: FieldDescription) -> str:
         return f"[Self::read_element(&[0; {field.struct.model.length}]); {field.count}]"
     if field.is_open and field.count:
         return f"[{_zero(field)}; {field.count}]"
+    if field.model.when:
+        is_there = field.model.name in field.message.model.fresh
+        return f"Some({_one_fresh(field)})" if is_there else "None"
     return f"[{_one_fresh(field)}; {field.count}]" if field.count else _one_fresh(field)
 
 

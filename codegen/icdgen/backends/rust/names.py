@@ -83,7 +83,14 @@ def integer_type(field: FieldDescription) -> str:
 
 def raw_type(field: FieldDescription) -> str:
     """Type of the raw value in the message's struct."""
+    if field.model.when:
+        return f"Option<{_one_type(field)}>"
     return f"[{_one_type(field)}; {field.count}]" if field.count else _one_type(field)
+
+
+def has(field: FieldDescription) -> str:
+    """``has_rate``: the method that tells whether a field is there."""
+    return f"has_{field.name}"
 
 
 def open_type(field: FieldDescription) -> str:

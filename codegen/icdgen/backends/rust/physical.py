@@ -33,7 +33,7 @@ def _in_singles(field: FieldDescription) -> bool:
 
 def raw_value(field: FieldDescription) -> str:
     """The raw value: the member, or what the method of a view gives; of an array, what stands in ``raw``."""
-    return "raw" if field.count else f"self.{field_name(field)}{'()' if field.model.view else ''}"
+    return "raw" if field.count or field.model.when else f"self.{field_name(field)}{'()' if field.model.view else ''}"
 
 
 def curve_name(field: FieldDescription) -> str:

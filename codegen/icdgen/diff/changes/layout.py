@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.describe.comments import condition_text
 from icdgen.diff.context import Context, free_before
 from icdgen.diff.moves import Move
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind, orders
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.where import Places
 from icdgen.diff.wording import bits, read_as, some, span, type_of
+from icdgen.icd.model import Field, Message
 from icdgen.icd.rules.wording import count, listing, quote
 from icdgen.icd.wire_ids import size
 
@@ -82,6 +84,24 @@ def count_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         was, now = (count(number, "element") if number else "one value" for number in (before, after))
         text = f"{quote(new.name)} is {_an_array(after)}, was {_an_array(before)}"
         yield Found(text, ("count", "bits"), was, now)
+
+
+@rule("DIF128", "field")
+def condition_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    was, now = (_needs(one, message) for one, message in ((pair.old, pair.owner.old), (pair.new, pair.owner.new)))
+    if _conditions(pair.old) != _conditions(pair.new):
+        text = f"{quote(pair.new.name)} is {now}, was {was}"
+        yield Found(text, ("when", "name"), was, now, ("Elsewhere its bits are those of other fields, or of none.",))
+
+
+def _conditions(field: Field) -> set[tuple[str, frozenset[int]]]:
+    return {(one.field, frozenset(one.values)) for one in field.when}
+
+
+def _needs(field: Field, message: Message) -> str:
+    if not field.when:
+        return "always there"
+    return f"there if {' and '.join(condition_text(one, message) for one in field.when)}"
 
 
 def _an_array(elements: int) -> str:

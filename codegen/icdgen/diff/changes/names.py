@@ -96,14 +96,15 @@ def names_gone(pair: Pair, ctx: Context) -> Iterator[Found]:
 @rule("DIF307", "field")
 def retyped(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    if (old.type, old.bits, old.count) == (new.type, new.bits, new.count) and ctx.match.same_enum(old.enum, new.enum):
+    same = (old.type, old.bits, old.count, not old.when) == (new.type, new.bits, new.count, not new.when)
+    if same and ctx.match.same_enum(old.enum, new.enum):
         return
     changed = ctx.generated.retyped(pair)
     if changed:
         said = tuple(f"{TITLES.get(language, language)}: `{a}` -> `{b}`" for language, a, b in changed)
         words = listing([TITLES.get(language, language) for language, _, _ in changed])
         text = f"{quote(new.name)} has another type in {words}"
-        yield Found(text, ("type", "bits", "enum", "count"), changed[0][1], changed[0][2], said)
+        yield Found(text, ("type", "bits", "enum", "count", "when"), changed[0][1], changed[0][2], said)
 
 
 @rule("DIF308", "field")

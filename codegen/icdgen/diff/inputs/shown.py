@@ -211,6 +211,7 @@ class _Reader:
             special=tuple(model.Special(**_as_it_is(model.Special, one)) for one in item.get("special", ())),
             limits=model.Limits(**limits) if "limits" in item else None,
             view=item.get("view", False),
+            when=tuple(model.Condition(name, tuple(values)) for name, values in item.get("when", {}).items()),
         )
 
 

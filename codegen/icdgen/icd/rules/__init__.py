@@ -15,6 +15,7 @@ from icdgen.icd.model import Icd
 from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its rules)
     checksums,
     composites,
+    conditional,
     duplicates,
     errata,
     formulas,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import chain
 
+from icdgen.icd.conditions import exclude
 from icdgen.icd.division import obstacles
 from icdgen.icd.model import Field, Message, Node
 from icdgen.icd.paths import placed
@@ -24,6 +25,7 @@ WIDTHS = {
 Overlap = tuple[Fault, tuple[int, int]]  # and the two fields as they were read
 _OVERLAPPING = "correct `at` or `bits`"
 _VIEW = f"{_OVERLAPPING}; if it reads the same bits in another way: `view: true`"
+_ALTERNATIVES = "let them depend on different values of the same field, or correct `at` or `bits`"
 _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 
@@ -58,6 +60,9 @@ def overlap(ctx: Context) -> Iterator[Fault]:
 def _overlaps(ctx: Context) -> Iterator[Overlap]:
     for message, node in ctx.owners:
         fields = _standing(message)
+        if any(field.when for field in fields):
+            yield from _overlaps_of_alternatives(message, node, fields)
+            continue
         if any(field.bit_order not in ("", node.bit_order) for field in fields):
             yield from _overlaps_among(message, node, fields)
             continue
@@ -102,6 +107,22 @@ def _overlaps_among(message: Owner, node: Node, fields: tuple[Field, ...]) -> It
         seen.append((field, mask))
 
 
+def _overlaps_of_alternatives(message: Owner, node: Node, fields: tuple[Field, ...]) -> Iterator[Overlap]:
+    """`_overlaps` where fields are not always there: those that are never there together may have the same bits."""
+    seen: list[tuple[Field, int]] = []
+    for field in fields:
+        if field.at + field.bits > message.length * 8:
+            continue  # a finding already
+        mask = _mask(field, node)
+        clashes = (
+            (one, shared) for one, other in seen if (shared := mask & other) and not exclude(one.when, field.when)
+        )
+        clash = next(clashes, None)
+        if clash is not None:
+            yield _overlap(clash[0], field, _bits_of(clash[1]))
+        seen.append((field, mask))
+
+
 def _bits_of(mask: int) -> str:
     """``2 bits of byte 1``"""
     low = (mask & -mask).bit_length() - 1
@@ -116,6 +137,14 @@ def _mask(field: Field, node: Node) -> int:
     return sum(1 << (at // 8 * 8 + 7 - at % 8) for at in range(field.at, field.at + field.bits))
 
 
+def _help(first: Field, second: Field) -> str:
+    if first.when and second.when:
+        return _ALTERNATIVES
+    if second.struct:
+        return "correct `at`, or the `length` of the struct"
+    return _OVERLAPPING if second.path else _VIEW
+
+
 def _overlap(first: Field, second: Field, bits: str = "") -> Overlap:
     place = second.source.at("at")
     start, end = max(first.at, second.at), min(first.at + first.bits, second.at + second.bits)
@@ -124,8 +153,9 @@ def _overlap(first: Field, second: Field, bits: str = "") -> Overlap:
     fault = Fault(
         second.source,
         place,
-        f"{quote(second.name)} overlaps {other} in {bits}",
-        "correct `at`, or the `length` of the struct" if second.struct else _OVERLAPPING if second.path else _VIEW,
+        f"{quote(second.name)} overlaps {other} in {bits}"
+        + (", and both can be there" if first.when or second.when else ""),
+        _help(first, second),
     )
     return fault, (id(first.source), id(second.source))
 
@@ -195,10 +225,15 @@ def view_of_fields(ctx: Context) -> Iterator[Fault]:
             yield Fault(source, source.at("const"), f"{name} is a view, which is never set, so it has no `const`", help)
         free = _mask(field, node)
         for owner in message.owners:
-            free &= ~_mask(owner, node)
+            free &= ~0 if owner.when else ~_mask(owner, node)
         if free and _is_read(message):
             help = "describe what has them as a field, or correct `at` or `bits`"
-            yield Fault(source, source.at("at"), f"{name} is a view of {_bits_of(free)} that no field has", help)
+            yield Fault(
+                source,
+                source.at("at"),
+                f"{name} is a view of {_bits_of(free)} that no field {'always ' * message.has_conditions}has",
+                help,
+            )
 
 
 def _is_read(message: Message) -> bool:

@@ -232,6 +232,15 @@ impl<E: super::Enumeration> Value for super::Coded<E> {
     }
 }
 
+impl<T: Value> Value for Option<T> {
+    fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
+        match self {
+            Some(value) => value.show(out, field),
+            None => out.write_str("-"),
+        }
+    }
+}
+
 impl<T: Value, const N: usize> Value for [T; N] {
     fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
         self.as_slice().show(out, field)

@@ -193,3 +193,8 @@ fn quotient(value: u128, divisor: u128, rounding: Rounding) -> f64 {
     // The mantissa's leading one adds 1 to the exponent; so does the carry of rounding up.
     f64::from_bits((u64::from(surplus + 1074 - shift) << 52) + mantissa)
 }
+
+/// The value of a field that must be there.
+pub(crate) fn there<T>(field: &'static str, value: Option<T>) -> Result<T, Error> {
+    value.ok_or(Error::Range { field })
+}

@@ -24,7 +24,7 @@ pub use self::field::{is_special, Field};
 pub(crate) use self::field::{Row, Value};
 pub(crate) use self::message::{enumeration, message, shown, structure};
 pub use self::message::{Message, Telecommand, Telemetry};
-pub(crate) use self::scale::Scale;
+pub(crate) use self::scale::{there, Scale};
 pub use self::tail::Frame;
 pub(crate) use self::tail::{counted, elements, longest, present, write_frame};
 pub(crate) use self::text::{text, text_array};

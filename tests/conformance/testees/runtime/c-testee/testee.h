@@ -16,6 +16,7 @@ typedef struct {
     testee_type_t type;
     size_t offset;                                    /* of the member in the struct; not of a view */
     void (*view)(const void *message, void *value);   /* reads a view, else NULL */
+    bool (*has)(const void *message);                 /* whether a field is there; NULL if it always is */
     size_t size;                                      /* of the member, in bytes */
     const char *(*name_of)(uint64_t value, bool is_negative); /* of an enum field, else NULL */
     double (*get)(const void *message);               /* of a scaled field, else NULL */

@@ -167,6 +167,12 @@ void put_number(const char *key, uint64_t number)
     put_decimal(number);
 }
 
+void put_absent(const char *key)
+{
+    put_key(key);
+    put("-");
+}
+
 static void put_signed_decimal(int64_t number)
 {
     put(number < 0 ? "-" : "");

@@ -35,6 +35,7 @@ void *memory(size_t size);
 void put_row(const char *word);
 void put_word(const char *key, const char *word);
 void put_number(const char *key, uint64_t number);
+void put_absent(const char *key); /* of what is not there */
 void put_signed(const char *key, int64_t number);
 void put_octets(const char *key, const void *data, size_t length);
 /* As hex; nothing, if there is none. */

@@ -117,9 +117,16 @@ static bool take_raw(const testee_field_t *field, void *value, const char *word)
     return octets.length == field->size;
 }
 
+static bool is_there(const testee_field_t *field, const void *value)
+{
+    return field->has == NULL || field->has(value);
+}
+
 static void put_raw(const testee_field_t *field, const void *value)
 {
-    if (field->type == TESTEE_BYTES) {
+    if (!is_there(field, value)) {
+        put_absent("raw");
+    } else if (field->type == TESTEE_BYTES) {
         put_octets("raw", (const char *)value + field->offset, field->size);
     } else if (field->type == TESTEE_SIGNED) {
         put_signed("raw", signed_of(member_bits(field, value), field->size));
@@ -250,6 +257,9 @@ static void put_message(const subject_t *subject)
         const testee_field_t *field = &message->fields[i];
         put_row("field");
         put_raw(field, subject->value);
+        if (!is_there(field, subject->value)) {
+            continue;
+        }
         if (field->get != NULL) {
             put_number("physical", double_bits(field->get(subject->value)));
         }
@@ -327,7 +337,7 @@ static void encode(void)
     for (i = 0; i < subject.message->field_count; i++) {
         const testee_field_t *field = &subject.message->fields[i];
         const char *word = field->view == NULL ? next_word() : "";
-        const bool fits = field->view != NULL ? true
+        const bool fits = field->view != NULL || *word == 'n' ? true
             : *word == 'p'
             ? take_physical(field, subject.value, word + 1)
             : take_raw(field, subject.value, word + 1);

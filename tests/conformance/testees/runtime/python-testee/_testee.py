@@ -97,7 +97,9 @@ def _set(held: Held, words: Words) -> None:
         return
     word = next(words)
     try:
-        if word[0] == "p" and info.type == "text":
+        if word == "n":
+            setattr(owner, info.attribute, None)
+        elif word[0] == "p" and info.type == "text":
             setattr(owner, info.physical, bytes.fromhex(word[1:]).decode())
         elif word[0] == "p":
             setattr(owner, info.physical, _floats.float64(int(word[1:])))
@@ -238,6 +240,8 @@ def _raw(info: FieldInfo, word: str) -> Any:
 
 
 def _shown(info: FieldInfo, value: Any) -> Any:
+    if value is None:
+        return "-"
     if info.type == "float":
         is_single = info.bits == 32
         return (_floats.float32_bits if is_single else _floats.float64_bits)(value)
@@ -261,10 +265,10 @@ def _described(message: Message, names: bool = False) -> str:
         if info.type == "text":
             text = one.get(info.physical)
             said.append("" if "\ufffd" in text else f" physical={_hex(text)}")
-        elif info.physical:
+        elif info.physical and one.get(info.physical) is not None:
             bits = _floats.float64_bits(one.get(info.physical))
             said.append(f" physical={bits}")
-        if names and info.enum:
+        if names and info.enum and one.get(info.attribute) is not None:
             label = one.get(info.attribute).label
             said.append(f" name={_hex(label)}" if label else "")
     return "".join(said)

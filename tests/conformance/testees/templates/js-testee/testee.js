@@ -42,12 +42,13 @@ function told(candidates, frame) {
 
 function fieldsOf(plan, raw) {
   return plan.fields.map((field, index) => {
-    const value = field.type === "bytes" ? hexOf(raw[index]) : String(raw[index]);
+    const value = raw[index] === null ? "-" : field.type === "bytes" ? hexOf(raw[index]) : String(raw[index]);
     return { field, raw: raw[index], row: `field field=${hexOfText(field.name)} raw=${value}` };
   });
 }
 
 function physicalOf(field, raw) {
+  if (raw === null) return "";
   if (field.scale || field.curve) return ` physical=${codec.doubleBits(codec.physical(field, raw))}`;
   const text = field.text ? codec.text(raw) : "\ufffd";
   return text.includes("\ufffd") ? "" : ` physical=${hexOfText(text)}`;
@@ -55,7 +56,7 @@ function physicalOf(field, raw) {
 
 function described(plan, raw) {
   const rows = fieldsOf(plan, raw).map(({ field, raw: value, row }) => {
-    const name = field.enum && codec.memberName(field.enum, value);
+    const name = value === null || !field.enum ? undefined : codec.memberName(field.enum, value);
     return row + physicalOf(field, value) + (name === undefined ? "" : ` name=${hexOfText(name)}`);
   });
   return [`bytes=${hexOf(codec.encode(plan, raw))}`, ...rows].join(" ");
@@ -63,6 +64,7 @@ function described(plan, raw) {
 
 function rawOf(field, word) {
   if (field.view) return 0n;
+  if (word === "n") return null;
   const [way, value] = [word[0], word.slice(1)];
   if (way === "p" && field.text) return codec.rawFromText(field, Buffer.from(value, "hex").toString("utf8"));
   if (way === "p") return codec.rawFromPhysical(field, codec.doubleOf(BigInt(value)));

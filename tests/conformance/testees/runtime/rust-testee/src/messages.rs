@@ -59,6 +59,23 @@ impl Value for bool {
     }
 }
 
+impl<T: Value + Default> Value for Option<T> {
+    fn show(&self) -> String {
+        self.as_ref().map_or_else(|| "-".into(), Value::show)
+    }
+
+    fn take(&mut self, given: &str) -> bool {
+        let mut value = T::default();
+        let fits = given.is_empty() || value.take(given);
+        *self = if given.is_empty() { None } else { Some(value) };
+        fits
+    }
+
+    fn name(&self) -> Option<&'static str> {
+        self.as_ref().and_then(Value::name)
+    }
+}
+
 impl<const N: usize> Value for [u8; N] {
     fn show(&self) -> String {
         hex(self)
@@ -265,7 +282,7 @@ fn described<M: Subject>(message: &mut M) -> Answer {
     for field in M::FIELDS {
         let (raw, name) = field.show(message);
         let _ = write!(answer, " field raw={raw}{name}");
-        if let Some(scale) = &field.scale {
+        if let Some(scale) = field.scale.as_ref().filter(|_| raw != "-") {
             let _ = write!(answer, " physical={}", (scale.get)(message).to_bits());
         }
         if let Some(said) = field.text.as_ref().and_then(|text| (text.get)(message)) {

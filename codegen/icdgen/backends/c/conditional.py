@@ -1,0 +1,79 @@
+"""Fields that are not always there: the function that tells, and what it decides."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from icdgen.backends.c import bits, decoding
+from icdgen.backends.c.names import enumerator, has
+from icdgen.backends.c.statement import assigned_byte
+from icdgen.backends.c.types import mask
+from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe.comments import presence_comment
+from icdgen.describe.description import Need
+
+
+class Conditional(NamedTuple):
+    """A member that is not always there; what it is where it isn't, and what is done where it is."""
+
+    name: str  # of the function
+    about: str
+    test: str
+    absent: str
+    decode: str
+    encode: tuple[str, ...]
+
+
+def conditional(message: MessageDescription) -> list[Conditional]:
+    """Those of a message."""
+    return [
+        Conditional(
+            has(field),
+            presence_comment(field.model, message.model),
+            (
+                " && ".join(_grouped(_test(need)) for need in field.needs)
+                if len(field.needs) > 1
+                else _test(field.needs[0])
+            ),
+            f"message->{field.name} = {_ZERO.get(field.model.type, '0u' if not field.storage.signed else '0')};",
+            decoding.number(field),
+            tuple(_written(field)),
+        )
+        for field in message.conditional
+    ]
+
+
+_ZERO = {"bool": "false", "float": "0"}
+
+
+def _grouped(test: str) -> str:
+    return f"({test})"
+
+
+def _test(need: Need) -> str:
+    """Whether a member has one of the values."""
+    field, member = need.field, f"message->{need.field.name}"
+    if field.model.type == "bool":
+        tests = [member if value else f"!{member}" for value in need.values]
+    else:
+        tests = [f"{member} == {_literal(field, value)}" for value in need.values]
+    return " || ".join(map(_grouped, tests)) if len(tests) > 1 else tests[0]
+
+
+def _literal(field: FieldDescription, value: int) -> str:
+    one = field.enum.member(value) if field.enum is not None else None
+    if field.enum is not None and one is not None:
+        return enumerator(field.enum, one)
+    if field.storage.signed:
+        return f"({value})" if value < 0 else str(value)
+    return f"{value}u" if value < 1 << 16 else mask(value, field.storage.bits)
+
+
+def _written(field: FieldDescription) -> list[str]:
+    """Statements that put it into bytes that hold none of its bits yet."""
+    if bits.is_word(field):
+        return [bits.store(field)]
+    return [
+        assigned_byte(f"buffer[{piece.byte}]", [f"buffer[{piece.byte}]", bits.put(field, piece)])
+        for piece in field.pieces
+    ]

@@ -1,0 +1,59 @@
+"""Fields that are not always there: the method that tells, and what it decides. What is not there is `None`."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from icdgen.backends.lines import STEP
+from icdgen.backends.rust import bits
+from icdgen.backends.rust.names import field_name, has
+from icdgen.backends.rust.text import assigned, string
+from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe.comments import presence_comment
+from icdgen.describe.description import Need
+
+
+class Conditional(NamedTuple):
+    """A member that is not always there."""
+
+    name: str  # of the method
+    about: str
+    test: str
+    decode: str  # the line that sets the member
+    encode: tuple[str, ...]  # lines that put it into ``bytes``
+
+
+def conditional(message: MessageDescription) -> list[Conditional]:
+    """Those of a message."""
+    return [
+        Conditional(
+            has(field),
+            presence_comment(field.model, message.model),
+            " && ".join(map(_test, field.needs)),
+            _read(field),
+            (
+                f"let {bits.RAW} = there({string(field.model.name)}, self.{field_name(field)})?;",
+                *(bits.fitting(field) if field.is_narrow else ()),
+                *bits.writing(field),
+            ),
+        )
+        for field in message.conditional
+    ]
+
+
+def _read(field: FieldDescription) -> str:
+    value = f"Some({bits.reading(field, set())})"
+    line = f"{STEP * 3}message.{field_name(field)} = {value};"
+    return line if "\n" in value else assigned(f"message.{field_name(field)} =", value, ";", STEP * 3)
+
+
+def _test(need: Need) -> str:
+    """Whether a member has one of the values."""
+    field, member = need.field, f"self.{field_name(need.field)}"
+    if field.model.type == "bool":
+        both = len(need.values) > 1
+        return "true" if both else member if need.values[0] else f"!{member}"
+    member += ".raw()" if field.enum is not None else ""
+    if len(need.values) == 1:
+        return f"{member} == {need.values[0]}"
+    return f"matches!({member}, {' | '.join(map(str, need.values))})"

@@ -1,0 +1,122 @@
+"""Messages: their fields, the end that may be open, and their ids."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Protocol
+
+from icdgen.describe.comments import Comment, message_comment
+from icdgen.describe.description import Composite, FieldDescription, Known, StructDescription, TailDescription
+from icdgen.describe.named import Id
+from icdgen.describe.shared_ids import sharing
+from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.variants import Ids
+from icdgen.once import cached_property
+
+
+class Whole(Known, Protocol):
+    """The set of ICDs that all of this describes: `icdgen.describe.whole.Description`."""
+
+    icd: Icd
+
+    @property
+    def id_bits(self) -> int: ...
+
+    def log_bits(self, node: Node) -> dict[int, int]: ...
+
+    def spoken(self, node: Node) -> tuple[MessageDescription, ...]: ...
+
+    def known_ids(self, node: Node) -> Ids: ...
+
+    def message(self, message: Message) -> MessageDescription: ...
+
+
+class MessageDescription(Composite[Message]):
+    """A message."""
+
+    def __init__(self, description: Whole, message: Message, node: Node) -> None:
+        super().__init__(description, message, node, "message")
+        self._whole = description
+
+    @cached_property
+    def conditional(self) -> tuple[FieldDescription, ...]:
+        """The members that are not always there."""
+        return tuple(field for field in self.fields if field.model.when)
+
+    @cached_property
+    def steady(self) -> tuple[FieldDescription, ...]:
+        """The fields that are in every frame, each element of an array."""
+        fields = self.sent_fields
+        return tuple(field for field in fields if not field.model.when) if self.conditional else fields
+
+    @cached_property
+    def tail(self) -> TailDescription | None:
+        """Its open end, where frames differ in length."""
+        tail = self.model.tail
+        if tail is None:
+            return None
+        part, counter = (
+            next(one for one in self.members if one.model.name == name) for name in (tail.name, tail.counter)
+        )
+        return TailDescription(part, counter, self.model.least, tail.step, tail.most, self._element(part))
+
+    def _element(self, part: FieldDescription) -> StructDescription | None:
+        if part.struct is None:
+            return None
+        byte_order, bit_order = part.model.orders(self.node)
+        fields = (
+            replace(one, byte_order=one.byte_order or byte_order, bit_order=one.bit_order or bit_order)
+            for one in part.struct.model.fields
+        )
+        found = StructDescription(self._description, replace(part.struct.model, fields=tuple(fields)), part.struct.node)
+        found.seen_from = self.node
+        return found
+
+    @property
+    def sent_fields(self) -> tuple[FieldDescription, ...]:
+        """Fields that have bits in the frame, each element of an array, but those of open structs."""
+        if self.tail is None:
+            return self.fields
+        return tuple(
+            one for one in self.fields if not one.model.implied and not (self.tail.element is not None and one.is_open)
+        )
+
+    @cached_property
+    def contained(self) -> tuple[tuple[MessageDescription, int], ...]:
+        """The messages that it repeats, each with the bit at which it begins, in the order of the ICD."""
+        if not self.model.contains:
+            return ()
+        known = {one.model.name: one for one in self._whole.spoken(self.node)}
+        return tuple((known[one.message], one.at) for one in self.model.contains if one.message in known)
+
+    @cached_property
+    def ids(self) -> tuple[Id, ...]:
+        """The id, or the set id and the get id."""
+        message = self.model
+        found = (
+            ("id", message.id, f"Id of the {message.kind}."),
+            ("set_id", message.set_id, "Id of the telecommand that sets it."),
+            ("get_id", message.get_id, "Id of the telemetry that gets it."),
+        )
+        return tuple(Id(name, value, comment) for name, value, comment in found if value is not None)
+
+    @property
+    def telecommand_id_name(self) -> str:
+        """Name of the id under which it is sent: ``id`` or ``set_id``."""
+        return "id" if self.model.id is not None else "set_id"
+
+    @property
+    def telemetry_id_name(self) -> str:
+        """Name of the id under which it is requested: ``id`` or ``get_id``."""
+        return "id" if self.model.id is not None else "get_id"
+
+    @property
+    def is_narrow(self) -> bool:
+        """Whether a field of it may be given a raw value that does not fit, or a count."""
+        return super().is_narrow or (self.tail is not None and self.tail.is_bound)
+
+    @cached_property
+    def comment(self) -> Comment:
+        whole, telemetry_id = self._whole, self.model.telemetry_id
+        bit = None if telemetry_id is None else whole.log_bits(self.node).get(telemetry_id)
+        return message_comment(self.model, bit, sharing(whole.known_ids(self.node), self.model))

@@ -1,0 +1,76 @@
+"""Fields that are not always there: what they depend on, and what carries them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.icd import conditions, tails
+from icdgen.icd.located import Map
+from icdgen.icd.model import Struct
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import rule
+from icdgen.icd.rules.wording import quote
+
+_NEVER = (("count", "an array"), ("size", "open"), ("bitfields", "divided"), ("view", "a view"))
+
+
+@rule("ICD160")
+def depends_on_a_field(ctx: Context) -> Iterator[Fault]:
+    for field, message, _ in ctx.having["when"]:
+        yield from map(_fault, conditions.faults_of_names(message.source, field.source))
+
+
+@rule("ICD161")
+def may_hold(ctx: Context) -> Iterator[Fault]:
+    for field, message, node in ctx.having["when"]:
+        enums = {one.name: one for known in ctx.scope(node) for one in known.enums}
+        yield from map(_fault, conditions.faults_of_values(message.source, field.source, enums))
+
+
+@rule("ICD162")
+def can_be_absent(ctx: Context) -> Iterator[Fault]:
+    for field, message, _ in ctx.having["when"]:
+        source = field.source
+        odd = next((words for key, words in _NEVER if source.get(key)), f"`{field.type}`" if field.is_bytes else "")
+        if isinstance(message, Struct):
+            text = f"{quote(field.name)} is a field of a struct, which is always there as a whole"
+            yield Fault(
+                source, source.at("when"), text, "write the fields of the struct into the message, or remove `when`"
+            )
+        elif odd:
+            text = f"{quote(field.name)} is {odd}, and only a number, a flag or a value of an enumeration may be there or not"
+            yield Fault(source, source.at("when"), text, "remove `when`")
+        elif tails.open_parts(message.source):
+            text = f"{quote(message.name)} has an open end, so each field before it is always there"
+            yield Fault(source, source.at("when"), text, "remove `when`")
+
+
+@rule("ICD163")
+def carried(ctx: Context) -> Iterator[Fault]:
+    """Links, logs and composites take every field for one that is there."""
+    told = {id(message.source) for _, message, _ in ctx.having["when"]}
+    for node in ctx.icd.nodes if told else ():
+        linked, spoken = bool(ctx.protocol_of(node)), ctx.messages_of(node)
+        for message in spoken:
+            if linked and id(message.source) in told:
+                text = (
+                    f"fields of {quote(message.name)} are not always there, which the links of `protocol` do not carry"
+                )
+                yield Fault(
+                    message.source, message.source.at("name"), text, "leave `protocol` out of this ICD, or `when`"
+                )
+    for message, node in ctx.messages if told else ():
+        named = {one.name for one in ctx.messages_of(node) if id(one.source) in told}
+        for part in message.source.get("contains") or ():
+            name = part.get("message") if isinstance(part, Map) else None
+            if isinstance(name, str) and (name in named or id(message.source) in told):
+                who = name if name in named else message.name
+                text = (
+                    f"fields of {quote(who)} are not always there, so {quote(message.name)} cannot repeat {quote(name)}"
+                )
+                yield Fault(message.source, part.at("message"), text, "remove it from `contains`")
+
+
+def _fault(one: conditions.Obstacle) -> Fault:
+    return Fault(one.item, one.item.key_at(one.key), one.message, one.help)

@@ -1,0 +1,82 @@
+"""Fields that are not always there: others say by their values whether they are. What is not there is None."""
+
+from __future__ import annotations
+
+from . import _lazy
+from ._codec import REFUSED, range_error, signed, signed_bits, unsigned_bits
+from ._fields import is_there
+from ._floats import float32, float32_bits, float64, float64_bits
+from ._layout import pieces
+
+
+def settle(message: _lazy.Message, given: _lazy.Any) -> None:
+    """Makes what is not there None, unless it was given."""
+    for info in message.FIELDS:
+        is_given = info.attribute in given or info.physical in given
+        if info.when and not is_given and not is_there(info, message):
+            setattr(message, info.attribute, None)
+
+
+def decoder(owner: _lazy.Any, steady: _lazy.Any) -> _lazy.Any:
+    """``from_bytes`` of a class of which ``steady`` decodes the fields that are always there."""
+    found = [(info, pieces(info, owner)) for info in owner.FIELDS if info.when]
+
+    def from_bytes(cls: _lazy.Any, data: _lazy.Buffer) -> _lazy.Any:
+        self = steady(cls, data)
+        frame = memoryview(data).tobytes()
+        for info, runs in found:
+            value = None
+            if is_there(info, self):
+                bits = 0
+                for one in runs:
+                    part = frame[one.byte] >> one.shift & (1 << one.bits) - 1
+                    bits |= part << one.at
+                value = _value(info, bits)
+            setattr(self, info.attribute, value)
+        return self
+
+    return from_bytes
+
+
+def encoder(owner: _lazy.Any, steady: _lazy.Any) -> _lazy.Any:
+    """``to_bytes`` of a class of which ``steady`` encodes the fields that are always there."""
+    found = [(info, pieces(info, owner)) for info in owner.FIELDS if info.when]
+
+    def to_bytes(self: _lazy.Any) -> bytes:
+        frame = bytearray(steady(self))
+        for info, runs in found:
+            if is_there(info, self):
+                try:
+                    bits = _bits(info, getattr(self, info.attribute))
+                except REFUSED:
+                    raise range_error(self) from None
+                for one in runs:
+                    part = bits >> one.at & (1 << one.bits) - 1
+                    frame[one.byte] |= part << one.shift
+        return bytes(frame)
+
+    return to_bytes
+
+
+def _value(info: _lazy.FieldInfo, bits: int) -> _lazy.Any:
+    if info.type == "float":
+        return float32(bits) if info.bits == 32 else float64(bits)
+    if info.type == "bool":
+        return bool(bits)
+    number = signed(bits, info.bits) if info.signed else bits
+    return number if info.enum is None else info.enum(number)
+
+
+def _bits(info: _lazy.FieldInfo, value: _lazy.Any) -> int:
+    """What of a value goes into the frame, if it fits."""
+    if info.type == "float":
+        return float32_bits(value) if info.bits == 32 else float64_bits(value)
+    return (signed_bits if info.signed else unsigned_bits)(value, info.bits)
+
+
+def absent(numpy: _lazy.Any, info: _lazy.FieldInfo, columns: _lazy.Any) -> _lazy.Any:
+    """Of each frame, whether a field is not there; ``columns`` are the raw values of the others."""
+    there = numpy.ones((), bool)
+    for name, values in info.when:
+        there = there & numpy.isin(columns[name], values)
+    return ~there
