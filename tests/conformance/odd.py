@@ -322,6 +322,12 @@ include: [common.yaml]
 enums:
   - name: Action
     members: [{value: -2, name: Stop}, {value: 1, name: Go}]
+structs:
+  - name: Step
+    length: 3
+    fields:
+      - {at: 0, bits: 8, name: Mark, type: uint, const: 7}
+      - {at: 8, bits: 16, name: Value, type: int, formula: raw*0.25}
 messages:
   - name: Arm command
     id: 0x004C
@@ -460,6 +466,33 @@ messages:
     may_end_early: zeros
     reserved: 3
     fields: [{at: 0, bits: 40, name: Value, type: bytes}]
+  - name: Steps
+    id: 0x1503
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Type, type: uint, const: 1}
+      - {at: 8, bits: 8, name: Steps Count, type: uint}
+      - {at: 16, name: Steps, struct: Step, count: Steps Count, up_to: 3}
+  - name: State
+    id: 0x1503
+    kind: telemetry
+    length: 5
+    fields:
+      - {at: 0, bits: 8, name: Type, type: uint, const: 2}
+      - {at: 8, bits: 8, name: Mode, type: uint}
+      - {at: 16, bits: 8, name: Rate, type: int, const: 5, when: {Mode: 0}}
+      - {at: 16, bits: 16, name: Torque, type: int, formula: raw*0.5, when: {Mode: [1, 2], Type: 2}}
+      - {at: 32, bits: 8, name: Load, type: uint, when: {Type: 2}}
+  - name: Any other state
+    id: 0x1503
+    kind: telemetry
+    length: 5
+    reserved: 2
+    fields:
+      - {at: 0, bits: 8, name: Type, type: uint}
+      - {at: 8, bits: 8, name: Mode, type: uint}
+      - {at: 16, bits: 8, name: Rate, type: int, const: 4, when: {Mode: 0}}
   - {name: Alone, id: 0x0107, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: A, type: uint, const: 5}]}
 """
 
@@ -651,6 +684,18 @@ messages:
       - {at: 0, bits: 62, name: Value, type: uint, when: {Type: 1}}
       - {at: 0, bits: 60, name: Longer, type: int, when: {Type: 2}, formula: raw*0.1}
       - {at: 62, bits: 2, name: Type, type: uint}
+  - name: Flags
+    id: 13
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Page, type: uint}
+      - {at: 8, bits: 1, name: Flag 0, type: bool, when: {Page: 0}}
+      - {at: 9, bits: 1, name: Flag 1, type: bool, when: {Page: 0}}
+      - {at: 10, bits: 1, name: Flag 2, type: bool, when: {Page: 0}}
+      - {at: 11, bits: 1, name: Flag 3, type: bool, when: {Page: 0}}
+      - {at: 12, bits: 1, name: Flag 4, type: bool, when: {Page: 1}}
+      - {at: 13, bits: 1, name: Flag 5, type: bool, when: {Page: 1}}
 """
 
 EMPTY = """\
