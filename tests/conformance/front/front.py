@@ -83,7 +83,7 @@ class Front:
         link = self.plan["nodes"][place]["link"] if place is not None else None
         try:
             if link is None:
-                checked = wire.Asking(lambda *words: _nothing(), {"longest": 1 << 16, "framing": None})
+                checked = wire.Asking(lambda *words: _nothing(), {"longest": 1 << 16, "around": 0, "framing": None})
             else:
                 checked = wire.Asking(lambda word, *more: self.ask(word, place, *more), link)
             return {**wire.OPS, **scripts.OPS}[op](checked, request)

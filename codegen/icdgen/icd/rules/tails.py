@@ -41,7 +41,8 @@ def at_the_end(ctx: Context) -> Iterator[Fault]:
 def carried(ctx: Context) -> Iterator[Fault]:
     """Links, logs and composites know each message by one length."""
     for node in ctx.icd.nodes:
-        linked = bool(ctx.protocol_of(node))
+        protocol = ctx.protocol_of(node)
+        linked = bool(protocol) and "stream" not in protocol
         for message in ctx.messages_of(node):
             if message.tail is not None and linked:
                 longest = f"{message.least} to {count(message.length, 'byte')}"
