@@ -88,7 +88,7 @@ class Front:
                 checked = wire.Asking(lambda word, *more: self.ask(word, place, *more), link)
             return {**wire.OPS, **scripts.OPS}[op](checked, request)
         except Refusal as refusal:
-            if refusal.answer["error"] == "range" and op != "dos_time":
+            if refusal.answer["error"] == "range" and op not in ("dos_time", "stream_encode"):
                 raise Refusal("range") from None
             raise
 

@@ -60,9 +60,11 @@ def stream_encode(
     """
     form = need(link.stream, "stream")
     if isinstance(message, Message):
-        sent = direction == "telecommand"
-        own = message.TELECOMMAND_ID if sent else message.TELEMETRY_ID
-        id, data = -1 if own is None else own, message.to_bytes()
+        known = link.TELECOMMANDS if direction == "telecommand" else link.TELEMETRY
+        id = message.IDS[0 if direction == "telecommand" else -1]
+        if id not in known or known[id] is not type(message):
+            raise UnknownIdError(link.node, direction, message.NAME)
+        data = message.to_bytes()
     else:
         id, data = message, bytes(data)
     row = next((row for row in form.rows(direction) if row.id == id), None)
@@ -247,7 +249,7 @@ class StreamDecoder:
         self._count(id, values, events)
         data = data.ljust(row.least, b"\0")
         events.append(
-            StreamEvent("message", id, data, values, 0, self._types.get(id))
+            StreamEvent("message", id, data, values, 0, self._types[id])
         )
         return "message"
 

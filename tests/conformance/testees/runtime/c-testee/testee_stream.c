@@ -113,6 +113,7 @@ static void stream_events(void)
         refuse_status(status);
         return;
     }
+    put_row("ok");
     union {
         const icd_link_t *link;
         void *context;
