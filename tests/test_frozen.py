@@ -7,6 +7,7 @@ import dataclasses
 import pytest
 
 from icdgen.frozen import dataclass as frozen
+from icdgen.frozen import rare
 from icdgen.icd.model import Field, Limits, Member
 
 
@@ -43,3 +44,35 @@ def test_without_eq_an_object_is_equal_to_itself_alone():
 def test_a_field_of_another_class_is_never_equal():
     assert Member(1, "a") != Limits() and Member(1, "a") == Member(1, "a")
     assert dataclasses.replace(Field("a", 0, 8, "uint"), at=8) == Field("a", 8, 8, "uint")
+
+
+@rare(frozen=True)
+class Rare:
+    """Few are made of it."""
+
+    first: int
+    second: str = "b"
+    more: dict = dataclasses.field(default_factory=dict)
+
+
+def test_an_object_of_a_rare_class_has_what_it_is_given_and_its_defaults():
+    one, other = Rare(1), Rare(1, second="c")
+    assert (one.first, one.second, one.more) == (1, "b", {}) and other.second == "c"
+    assert one.more is not other.more and one != Rare(1)
+    assert dataclasses.replace(one, first=2).first == 2
+
+
+@pytest.mark.parametrize("given, named", [((), {}), ((1, "b", {}, 4), {}), ((1,), {"first": 2}), ((1,), {"fourth": 2})])
+def test_a_rare_class_refuses_what_its_declaration_does_not_allow(given, named):
+    with pytest.raises(TypeError, match="Rare is made of first, second, more"):
+        Rare(*given, **named)
+
+
+def test_what_is_given_by_name_only_is_not_taken_by_its_place():
+    @rare(frozen=True, kw_only=True)
+    class Named:
+        only: int
+
+    assert Named(only=1).only == 1
+    with pytest.raises(TypeError):
+        Named(1)

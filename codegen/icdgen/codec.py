@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from icdgen.icd.curve import Curve
-from icdgen.icd.model import Field, Message, Node
+from icdgen.icd.model import Field, Message, Node, Special
 
 
 class CodecError(ValueError):
@@ -28,7 +28,7 @@ class LengthError(CodecError):
 
 def decode(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]:
     """Raw value of every field by name; elements that are not in the frame are 0. Raises `LengthError`."""
-    bits, actual = int.from_bytes(frame, "little"), len(frame)
+    bits, actual = int.from_bytes(frame, "little"), len(frame)  # what a frame leaves out reads as 0
     if actual not in message.lengths:
         raise LengthError(message, _next_length(message, actual), actual)
     raw = {field.name: _read(node, field, bits) for field in message.fields}
@@ -169,6 +169,17 @@ def raw_from_text(field: Field, value: str) -> bytes:
     if not value.isascii() or "\0" in value or len(value) > size:
         raise CodecError(f"{field.name!r} takes up to {size} ASCII characters, none of them NUL")
     return value.encode("ascii").ljust(size, b"\0")
+
+
+def special_of(field: Field, raw: int) -> Special | None:
+    """The meaning that a raw value has, of floats the number: each NaN is the same, and so are both zeros."""
+    if field.type != "float":
+        return next((one for one in field.special if one.value == raw), None)
+    for one in field.special:
+        value, number = float_value(field, one.value), float_value(field, raw)
+        if value == number or (value != value and number != number):
+            return one
+    return None
 
 
 def float_value(field: Field, bits: int) -> float:

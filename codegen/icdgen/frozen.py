@@ -11,8 +11,11 @@ from collections.abc import Callable
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
+__all__ = ["dataclass", "rare"]
+
 if TYPE_CHECKING:
-    from dataclasses import dataclass as dataclass
+    from dataclasses import dataclass
+    from dataclasses import dataclass as rare
 else:
 
     def dataclass(
@@ -30,6 +33,16 @@ else:
 
         return made
 
+    def rare(*, frozen: bool, kw_only: bool = False) -> Callable[[type[Any]], type[Any]]:
+        """For classes of which few objects are made, each equal to itself alone: all begin by the same method."""
+
+        def made(plain: type[Any]) -> type[Any]:
+            kind = dataclasses.dataclass(init=False, eq=False, repr=False, kw_only=kw_only)(plain)
+            kind.__init__ = _begin
+            return kind
+
+        return made
+
 
 def _compare_by_value(kind: type[Any]) -> None:
     compared = [one for one in dataclasses.fields(kind) if one.compare]
@@ -43,6 +56,21 @@ def _compare_by_value(kind: type[Any]) -> None:
         return hash(hashed(self))
 
     kind.__eq__, kind.__hash__ = equals, hash_value  # type: ignore[assignment]
+
+
+def _begin(self: Any, *given: object, **named: object) -> None:
+    known = {one.name: one for one in dataclasses.fields(self)}
+    positional = (name for name, one in known.items() if not one.kw_only)
+    values = {**dict(zip(positional, given, strict=False)), **named}
+    is_clear = len(values) == len(given) + len(named)
+    for name, one in known.items():
+        if name not in values and one.default_factory is not dataclasses.MISSING:
+            values[name] = one.default_factory()
+        elif name not in values and one.default is not dataclasses.MISSING:
+            values[name] = one.default
+    if not is_clear or values.keys() != known.keys():
+        raise TypeError(f"{type(self).__qualname__} is made of {', '.join(known)}")
+    self.__dict__.update(values)
 
 
 def _shown(one: Any) -> str:

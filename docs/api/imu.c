@@ -29,6 +29,7 @@ int main(void)
     imu_state_t state;
     imu_setup_t setup;
     imu_attitude_t attitude;
+    imu_climate_t climate;
     imu_telemetry_t any;
     imu_client_t client;
     icd_status_t status;
@@ -186,6 +187,13 @@ int main(void)
     setup.timeout = IMU_SETUP_TIMEOUT_NEVER;
     /* [] */
     CHECK(setup.timeout == 4095u);
+    imu_climate_init(&climate);
+    CHECK(!icd_is_special_f32(climate.pressure, IMU_CLIMATE_PRESSURE_NOT_KNOWN));
+    climate.pressure = IMU_CLIMATE_PRESSURE_NOT_KNOWN;
+    /* [nan] */
+    holds = icd_is_special_f32(climate.pressure, IMU_CLIMATE_PRESSURE_NOT_KNOWN);
+    /* [] */
+    CHECK(holds);
 
     /* [client] */
     status = imu_client_uart(&client, buffer, sizeof buffer);

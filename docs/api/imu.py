@@ -1,7 +1,7 @@
 """What stands on the page about the API, between [key] and []: it is run by a test."""
 
-from icdgen_messages import RangeError, imu
-from icdgen_messages.imu import LINK, Attitude, Mode, Setup, State
+from icdgen_messages import RangeError, imu, is_special
+from icdgen_messages.imu import LINK, Attitude, Climate, Mode, Setup, State
 from icdgen_messages.wire import Client, Done, Event
 
 frame = bytes.fromhex("2efb0a00d700fbff494d550011526400")
@@ -150,6 +150,13 @@ assert limit == 400
 setup.timeout = Setup.TIMEOUT_NEVER
 # []
 assert setup.timeout == 4095
+climate = Climate()
+assert not is_special(climate.pressure, Climate.PRESSURE_NOT_KNOWN)
+climate.pressure = Climate.PRESSURE_NOT_KNOWN
+# [nan]
+holds = is_special(climate.pressure, Climate.PRESSURE_NOT_KNOWN)
+# []
+assert holds
 
 # [client]
 client = Client(LINK, "uart")

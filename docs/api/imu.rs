@@ -1,8 +1,8 @@
 //! What stands on the page about the API, between [key] and []: it is built and run by a test.
 
-use icd::imu::{enums::Mode, Attitude, Node, Setup, State, Telemetry, LINK, LONGEST};
+use icd::imu::{enums::Mode, Attitude, Climate, Node, Setup, State, Telemetry, LINK, LONGEST};
 use icd::wire::Client;
-use icd::Message;
+use icd::{is_special, Message};
 
 const FRAME: [u8; 16] = *b"\x2e\xfb\x0a\x00\xd7\x00\xfb\xffIMU\x00\x11\x52\x64\x00";
 
@@ -152,6 +152,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     setup.timeout = Setup::TIMEOUT_NEVER;
     // []
     assert_eq!(setup.timeout, 4095);
+    let mut climate = Climate::default();
+    assert!(!is_special(climate.pressure, Climate::PRESSURE_NOT_KNOWN));
+    climate.pressure = Climate::PRESSURE_NOT_KNOWN;
+    // [nan]
+    let holds = is_special(climate.pressure, Climate::PRESSURE_NOT_KNOWN);
+    // []
+    assert!(holds);
 
     // [client]
     let mut client = Client::<Node, LONGEST>::uart(&LINK)?;

@@ -295,6 +295,44 @@ ICDGEN_INLINE uint64_t icdgen_bits_f64(const double *value)
     return bits;
 }
 
+/** The float of these bits: special values that are no numbers are made so, for not every target has names for them. */
+static inline float icd_f32_of(uint32_t bits)
+{
+    float value;
+    icdgen_set_f32(&value, bits);
+    return value;
+}
+
+/** The double of these bits. */
+static inline double icd_f64_of(uint64_t bits)
+{
+    double value;
+    icdgen_set_f64(&value, bits);
+    return value;
+}
+
+/** Whether a float is a special value, which no comparison says of NaN: all NaNs are the same here, and both zeros. */
+static inline bool icd_is_special_f32(float value, float special)
+{
+    const uint32_t infinity = UINT32_C(0x7F800000);
+    const uint32_t one = icdgen_bits_f32(&value);
+    const uint32_t other = icdgen_bits_f32(&special);
+    const uint32_t most = one & UINT32_C(0x7FFFFFFF);
+    const uint32_t others = other & UINT32_C(0x7FFFFFFF);
+    return one == other || (most | others) == 0u || (most > infinity && others > infinity);
+}
+
+/** Whether a double is a special value, which no comparison says of NaN: all NaNs are the same here, and both zeros. */
+static inline bool icd_is_special_f64(double value, double special)
+{
+    const uint64_t infinity = UINT64_C(0x7FF0000000000000);
+    const uint64_t one = icdgen_bits_f64(&value);
+    const uint64_t other = icdgen_bits_f64(&special);
+    const uint64_t most = one & UINT64_C(0x7FFFFFFFFFFFFFFF);
+    const uint64_t others = other & UINT64_C(0x7FFFFFFFFFFFFFFF);
+    return one == other || (most | others) == 0u || (most > infinity && others > infinity);
+}
+
 /*
  * Four or eight neighbouring bools of a struct that are neighbouring bits of a byte, from bit 0 up (FALLING: down to
  * bit 0). Where bools are bytes, one multiplication moves all of them: it puts a copy of the bits over each byte of a

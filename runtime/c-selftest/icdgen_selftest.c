@@ -380,14 +380,15 @@ static void message(run_t *run)
     const uint64_t *doubles = run->message->doubles;
 #endif
     for (i = 0; i < run->message->vector_count; i++) {
-        const uint16_t length = run->message->tail != NULL ? run->message->tail->lengths[i] : run->message->length;
+        const uint16_t length = run->message->lengths != NULL ? run->message->lengths[i] : run->message->length;
+        const uint16_t made = run->message->tail != NULL ? length : run->message->length;
         run->vector = i;
         fill(run);
         check(run, run->message->decode(run->node->value, at, length) == ICD_OK, "decode refuses", NULL);
         raw_values(run, at + run->message->length);
-        encoded(run, at, length);
+        encoded(run, at, made);
         assemble(run, at + run->message->length);
-        encoded(run, at, length);
+        encoded(run, at, made);
         expected = texts(run, expected);
 #ifndef ICDGEN_NO_DOUBLE
         doubles = physical_values(run, doubles);

@@ -101,7 +101,6 @@ typedef struct {
     uint16_t least;                      /* bytes of the shortest frame */
     uint16_t counter;                    /* which field has the number of elements */
     uint16_t most;                       /* elements */
-    const uint16_t *lengths;             /* of the frame of each vector; the rest of its bytes is 0 */
     size_t (*size)(const void *message); /* bytes of the frame that it makes */
     const uint8_t *refused_frames;       /* that have more or fewer elements than they say, `length` bytes each */
     const uint16_t *refused_frame_lengths;
@@ -118,6 +117,7 @@ typedef struct {
     const uint8_t *vectors;
     const uint8_t *kept; /* the bits of a frame that fields cover */
     const icdgen_selftest_field_t *fields;
+    const uint16_t *lengths; /* of the frame of each vector, the rest of its bytes is 0; NULL where they are `length` */
     const uint16_t *refused_lengths;
     uint16_t refused_length_count;
     uint16_t constant_count;

@@ -19,9 +19,10 @@ const icdgenCodec = (() => {
   function decode(message, frame) {
     const { tail } = message;
     const count = tail ? elementsIn(message, frame.length) : 0;
-    if (!tail && frame.length !== message.length) throw misfit(message, message.length, frame.length);
-    const longest = tail ? new Uint8Array(message.length) : frame;
-    if (tail) longest.set(frame);
+    const endsEarly = message.endsEarly && frame.length > 0 && frame.length < message.length;
+    if (!tail && !endsEarly && frame.length !== message.length) throw misfit(message, message.endsEarly && !frame.length ? 1 : message.length, frame.length);
+    const longest = tail || endsEarly ? new Uint8Array(message.length) : frame;
+    if (longest !== frame) longest.set(frame);
     const raw = message.fields.map((field) => read(field, longest));
     if (!tail) return raw;
     const counter = counterOf(message);

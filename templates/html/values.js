@@ -72,11 +72,18 @@ const icdgenValues = ((codec, frames) => {
 
   /** What there is to say about a value, as `{ text, wrong }`: its special meaning, or that the message may not hold it. */
   function remark(field, value, enums) {
-    const special = field.special?.find(([one]) => BigInt(one) === value);
+    const special = field.special?.find(([one]) => isSame(field, BigInt(one), value));
     if (special) return { text: special[1], wrong: false };
     if (field.const !== undefined && BigInt(field.const) !== value) return { text: `must be ${field.const}`, wrong: true };
     if (field.type === "enum" && memberName(enums[field.enum], value) === undefined) return { text: "no such member", wrong: true };
     return { text: isOutside(field, value) ? "outside the limits" : "", wrong: isOutside(field, value) };
+  }
+
+  /** Whether two raw values are one: of floats all NaNs are, and both zeros. */
+  function isSame(field, one, other) {
+    if (field.type !== "float") return one === other;
+    const [a, b] = [codec.floatValue(field, one), codec.floatValue(field, other)];
+    return a === b || (Number.isNaN(a) && Number.isNaN(b));
   }
 
   function isOutside(field, value) {

@@ -26,14 +26,17 @@ def difference(expected: dict, line: bytes | None) -> str | None:
     if expected.get("ok") is False:
         answer.pop("detail", None)
         if expected.get("field") != answer.get("field") and _is_array_of(answer.get("field"), expected.get("field")):
-            expected = {**expected, "field": answer["field"]}  # which element, not every language says
+            expected = {
+                **expected,
+                "field": answer["field"],
+            }  # which element, and of which struct, not every language says
     return _difference(expected, answer, "")
 
 
 def _is_array_of(name: object, element: object) -> bool:
     if isinstance(element, Maybe):
         element = element.value
-    return isinstance(element, str) and re.sub(r"\[\d+\]\Z", "", element) == name
+    return isinstance(element, str) and re.sub(r"\[\d+\]\Z", "", element.rpartition(".")[2]) == name
 
 
 def _difference(expected: object, actual: object, path: str) -> str | None:

@@ -26,7 +26,8 @@ messages:
       - {at: 81, bits: 1, name: Flag, type: bool}
       - {at: 82, bits: 64, name: Wide, type: uint, formula: raw*0.1}
       - {at: 146, bits: 33, name: Between, type: int, formula: (raw - 32)*5/9}
-      - {at: 179, bits: 32, name: Unaligned Float, type: float}
+      - {at: 179, bits: 32, name: Unaligned Float, type: float,
+         special: [{value: nan, meaning: Not known}, {value: -99.9, meaning: no data}]}
       - {at: 216, bits: 16, name: Octets, type: bytes}
       - {at: 232, bits: 8, name: Magic, type: uint, const: 0x5A}
       - {at: 240, bits: 9, name: Ninth, type: int, special: [{value: -256, meaning: none at all}], min: -100, max: 100.5}
@@ -142,7 +143,57 @@ node: {name: wide, title: Wide ids, byte_order: little, bit_order: lsb0, id_bits
 enums:
   - name: Turn
     members: [{value: -5, name: Left}, {value: 100, name: Right}]
+structs:
+  - name: Odd
+    length: 9
+    fields:
+      - {at: 0, bits: 12, name: Type, type: int, formula: raw*0.5}
+      - {at: 12, bits: 1, count: 4, name: Flags, type: bool}
+      - {at: 16, bits: 8, name: Turn, type: enum, enum: Turn, const: -5}
+      - {at: 24, bits: 16, count: 2, name: Words, type: uint, unit: V, formula: raw*0.1, max: 6000}
+      - {at: 56, bits: 8, name: Str, identifier: a str, type: text}
+      - {at: 64, bits: 8, name: Octet, type: bytes}
+  - name: Nested
+    length: 40
+    summary: A struct within a struct, and what crosses bytes.
+    fields:
+      - {at: 0, name: Match, struct: Odd, count: 2}
+      - {at: 147, bits: 32, name: Across, type: float, special: [{value: nan, meaning: none}, {value: -1.5, meaning: left}]}
+      - {at: 184, bits: 32, name: Whole Float, type: float, byte_order: big, formula: raw*57.29578}
+      - {at: 216, bits: 64, name: Longest, type: int, special: [{value: -1, meaning: none}]}
+      - {at: 282, bits: 3, count: 3, name: Crossing, type: uint, byte_order: big, formula: raw^3 - 9*raw}
+      - {at: 296, bits: 8, count: 2, name: Turns, type: enum, enum: Turn}
+  - name: Row
+    length: 40
+    fields:
+      - {at: 0, bits: 32, count: 9, name: Floats, type: float}
+      - {at: 288, bits: 8, name: One, type: uint, formula: raw^2 + raw*0.5}
 messages:
+  - name: Structs
+    id: 0x01020308
+    kind: telemetry
+    length: 180
+    fields:
+      - {at: 0, name: First, struct: Odd}
+      - {at: 72, bits: 3, name: Between, type: int}
+      - {at: 80, name: Nests, struct: Nested, count: 2}
+      - {at: 720, name: Fn, struct: Row, count: 1}
+      - {at: 1040, bits: 32, name: Aligned, type: float}
+      - {at: 1040, bits: 8, name: View, type: uint, view: true}
+      - {at: 1072, name: Odds, struct: Odd, count: 4}
+      - {at: 1360, name: Last, struct: Odd}
+      - {at: 1432, bits: 8, name: End, type: uint}
+  - name: Turned Structs
+    set_id: 0x01020309
+    get_id: 0x0102030A
+    kind: configuration
+    length: 50
+    byte_order: big
+    bit_order: msb0
+    fields:
+      - {at: 0, name: Nest, struct: Nested}
+      - {at: 320, name: Odd, identifier: other odd, struct: Odd, count: 1}
+      - {at: 392, bits: 8, name: End, type: uint}
   - name: Wide
     id: [0x12, 0x34, 0x56, 0x78]
     kind: telemetry
@@ -222,7 +273,7 @@ messages:
       - {at: 64, bits: 32, name: Half a double, type: float, view: true, byte_order: big}
       - {at: 96, bits: 64, name: Eight, type: text}
       - {at: 97, bits: 63, name: Long, type: int, view: true, formula: raw*1e-19 + 3}
-      - {at: 96, bits: 64, name: Real, type: float, view: true}
+      - {at: 96, bits: 64, name: Real, type: float, view: true, special: [{value: nan, meaning: not known}]}
       - {at: 160, bits: 32, name: Four bytes, type: float}
       - {at: 160, bits: 32, name: Its bits, type: uint, view: true, formula: raw*0.5}
       - {at: 191, bits: 1, name: Its sign, type: uint, view: true}
@@ -235,12 +286,36 @@ messages:
   - {name: All ones, set_id: 0xFFFFFFFF, get_id: 0xFFFFFFFF, kind: configuration, length: 0}
 """
 
+NESTED = """\
+icdgen: 1
+node: {name: nested, title: Structs of another node, byte_order: big, bit_order: msb0, id_bits: 32}
+include: [wide.yaml]
+structs:
+  - name: Around
+    length: 52
+    fields:
+      - {at: 0, name: Nest, struct: Nested}
+      - {at: 328, name: Odd, struct: Odd}
+      - {at: 400, bits: 12, name: Twelve, type: uint, bitfields: [{at: 0, bits: 4, name: Low}, {at: 4, bits: 8, name: High}]}
+messages:
+  - name: Around
+    id: 0x02000000
+    identifier: all around
+    kind: telecommand
+    length: 105
+    fields:
+      - {at: 0, name: Around, struct: Around, count: 2}
+      - {at: 832, bits: 8, name: End, type: int}
+"""
+
 OPEN = """\
 icdgen: 1
 node: {name: open, title: Messages of variable length, byte_order: big, bit_order: msb0}
 enums:
   - name: Gauge
     members: [{value: 1, name: First}, {value: 300, name: Last}]
+  - name: Narrow Gauge
+    members: [{value: -1, name: Before}, {value: 1, name: After}]
 messages:
   - name: Counted
     id: 130
@@ -281,7 +356,7 @@ messages:
     length: 1
     fields:
       - {at: 0, bits: 8, name: Number, type: uint}
-      - {at: 8, bits: 32, name: Values, type: float, count: rest, up_to: 4}
+      - {at: 8, bits: 32, name: Values, type: float, count: rest, up_to: 4, special: [{value: inf, meaning: too much}]}
   - name: Octets
     kind: configuration
     set_id: 7
@@ -295,7 +370,7 @@ messages:
     id: 138
     kind: telemetry
     length: 0
-    fields: [{at: 0, bits: 64, name: Values, type: float, count: rest, up_to: 1}]
+    fields: [{at: 0, bits: 64, name: Values, type: float, count: rest, up_to: 1, special: [{value: -inf, meaning: too little}]}]
   - name: Fives
     id: 139
     kind: telecommand
@@ -303,6 +378,29 @@ messages:
     fields:
       - {at: 0, bits: 8, name: One, type: uint, const: 9}
       - {at: 8, bits: 40, name: Fives, type: uint, count: rest, up_to: 2, min: 4, special: [{value: 1099511627775, meaning: none}]}
+  - name: Cut Off
+    id: 140
+    kind: telemetry
+    length: 23
+    may_end_early: zeros
+    reserved: 2
+    fields:
+      - {at: 0, bits: 12, name: Input, type: int, unit: V, formula: raw*0.01}
+      - {at: 12, bits: 4, name: Length, type: uint, const: 5}
+      - {at: 16, bits: 32, name: Value, type: float}
+      - {at: 48, bits: 8, name: Gauge, type: enum, enum: Narrow Gauge}
+      - {at: 56, bits: 40, name: Words, type: text}
+      - {at: 96, bits: 16, name: Buffer, type: int, count: 3, byte_order: little}
+      - {at: 144, bits: 1, name: Flag, type: bool, count: 8}
+      - {at: 152, bits: 16, name: Whole, type: bytes}
+      - {at: 88, bits: 24, name: Both, type: uint, view: true}
+  - name: Two
+    set_id: 8
+    get_id: 141
+    kind: configuration
+    length: 2
+    may_end_early: zeros
+    fields: [{at: 3, bits: 9, name: Whole, type: uint}]
 """
 
 EMPTY = """\
@@ -311,9 +409,19 @@ node: {name: empty, title: No messages, byte_order: little, bit_order: lsb0}
 """
 
 
+_TEXTS = {
+    "shared": SHARED,
+    "mixed": MIXED,
+    "other": OTHER,
+    "wide": WIDE,
+    "nested": NESTED,
+    "open": OPEN,
+    "empty": EMPTY,
+}
+
+
 def write(folder: Path) -> Path:
     """The folder, with the ICDs in it."""
-    icds = {"shared": SHARED, "mixed": MIXED, "other": OTHER, "wide": WIDE, "open": OPEN, "empty": EMPTY}
-    for name, text in icds.items():
+    for name, text in _TEXTS.items():
         (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
     return folder

@@ -129,7 +129,9 @@ class Reference:
             "ids": list(message.ids),
             "length": message.length,
             "default": {f.name: shown(f, default[f.name]) for f in message.fields},
-            "special": {f.name: [special.value for special in f.special] for f in message.fields if f.special},
+            "special": {
+                f.name: [shown(f, special.value) for special in f.special] for f in message.fields if f.special
+            },
             "limits": {f.name: limits(f) for f in message.fields if f.limits},
         }
 

@@ -87,10 +87,13 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         "byte_order": draw(st.sampled_from(("little", "big"))),
         "bit_order": draw(st.sampled_from(("lsb0", "msb0"))),
     }
+    structs: list[dict] = []
+    for _ in range(draw(st.sampled_from((0, 0, 1, 2)))):
+        structs.append(draw(_struct(names.one("struct"), enums, structs, orders)))
     messages = []
     for number in range(draw(st.integers(1, 5))):
         own = draw(_own_orders())
-        fields, length = draw(_fields(enums if number else enums + enums, orders | own))
+        fields, length = draw(_fields(enums if number else enums + enums, orders | own, structs))
         message = {
             **names.one("message"),
             **own,
@@ -106,23 +109,38 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         elif draw(st.integers(0, 4)) == 0:
             message["reserved"] = draw(st.integers(1, 9))
             message["length"] += message["reserved"]
+        elif length > 1 and draw(st.integers(0, 4)) == 0:
+            message["may_end_early"] = "zeros"
         if fields:
             message["fields"] = fields
         messages.append(message)
-    messages.append(_uses_all(names.one("message"), enums, ids(first_id + 59)))
+    messages.append(_uses_all(names.one("message"), enums, structs, ids(first_id + 59)))
     node = {"name": name, "title": draw(st.sampled_from(("Plain", 'Odd "*/ {{ \\'))), **orders}
     if ids.bits != 8:
         node["id_bits"] = ids.bits
-    return {"icdgen": 1, "node": node, "enums": enums, "messages": messages}
+    return {"icdgen": 1, "node": node, "enums": enums, "structs": structs, "messages": messages}
 
 
-def _uses_all(names: dict, enums: list[dict], id: int | list[int]) -> dict:
-    """A message with a field of each enumeration, so that none is unused."""
+@st.composite
+def _struct(draw, names: dict, enums: list[dict], others: list[dict], orders: dict) -> dict:
+    """A struct, others in it; ``orders`` are those of its node. Where it stands, bits may be counted in another way."""
+    fields, length = draw(_fields(enums, orders, others, in_struct=True))
+    if not fields:
+        fields, length = [{"at": 3, "bits": 2, "name": "only", "type": "uint"}], 1
+    return {**names, "length": length + draw(st.sampled_from((0, 0, 1, 3))), "fields": fields}
+
+
+def _uses_all(names: dict, enums: list[dict], structs: list[dict], id: int | list[int]) -> dict:
+    """A message with a field of each enumeration and of each struct, so that none is unused."""
     fields, at = [], 3
     for number, enum in enumerate(enums):
         bits = _needed(enum)
         fields.append({"at": at, "bits": bits, "name": f"user {number}", "type": "enum", "enum": enum["name"]})
         at += bits
+    for number, struct in enumerate(structs):
+        at = (at + 7) // 8 * 8
+        fields.append({"at": at, "name": f"struct {number}", "struct": struct["name"]})
+        at += 8 * struct["length"]
     return {**names, "kind": "telemetry", "id": id, "length": (at + 7) // 8, "fields": fields}
 
 
@@ -167,7 +185,9 @@ def _bits_of(field: dict, orders: dict) -> int:
 
 
 @st.composite
-def _fields(draw, enums: list[dict], orders: dict) -> tuple[list[dict], int]:
+def _fields(
+    draw, enums: list[dict], orders: dict, structs: list[dict], in_struct: bool = False
+) -> tuple[list[dict], int]:
     """Fields one after another with gaps of reserved bits, and their bytes; ``orders`` are those of the message."""
     fields: list[dict] = []
     names = Names(draw, set())
@@ -177,6 +197,8 @@ def _fields(draw, enums: list[dict], orders: dict) -> tuple[list[dict], int]:
         field = draw(_field(enums))
         is_plain = field.keys() == {"bits", "type"} and field["type"] == "uint"
         own = draw(_own_orders()) if field["type"] not in ("bytes", "text", "bool") else {}
+        if in_struct:
+            own.pop("bit_order", None)  # of other messages it might be the same, and fields overlap
         straight = tuple({**orders, **own}.values()) in (("little", "lsb0"), ("big", "msb0"))
         if field["type"] in ("bytes", "text"):
             at = (at + 7) // 8 * 8
@@ -185,11 +207,20 @@ def _fields(draw, enums: list[dict], orders: dict) -> tuple[list[dict], int]:
             at = (at + 7) // 8 * 8 if field["type"] in ("bytes", "text") else at
         used |= _bits_of({"at": at, **field}, orders | own)
         fields.append({"at": at, "bits": field.pop("bits"), **names.one("field"), **field, **own})
-        if is_plain and (straight or at % 8 + fields[-1]["bits"] <= 8) and draw(st.booleans()):
+        if is_plain and not in_struct and (straight or at % 8 + fields[-1]["bits"] <= 8) and draw(st.booleans()):
             fields[-1]["bitfields"] = draw(_division(names, fields[-1]["bits"]))
         end = max(end, at + _width(fields[-1]))
         at = draw(st.sampled_from((end, end, end // 8 * 8)))
-    fields += draw(_views(fields, used, names, enums, orders))
+    if not in_struct:
+        fields += draw(_views(fields, used, names, enums, orders))
+    for struct in structs:
+        count = draw(st.sampled_from((None, None, 0, 1, 2, 3)))
+        if count is not None:
+            at = (end + 7) // 8 * 8
+            fields.append(
+                {"at": at, **names.one("part"), "struct": struct["name"], **({"count": count} if count else {})}
+            )
+            end = at + 8 * struct["length"] * (count or 1)
     order = draw(st.permutations(fields)) if draw(st.booleans()) else fields
     return order, (end + 7) // 8
 
@@ -262,7 +293,9 @@ def _field(draw, enums: list[dict]) -> dict:
         return {"bits": 1, "type": kind, **array}
     if kind == "float":
         formula = {"formula": draw(_curve())} if draw(st.booleans()) else {}
-        return {"bits": draw(st.sampled_from((32, 64))), "type": kind, **array, **formula}
+        values = draw(st.lists(st.sampled_from(("nan", "inf", "-inf", -99.9, 0, 1e30)), max_size=2, unique=True))
+        named = {"special": [_meaning(one, index) for index, one in enumerate(values)]} if values else {}
+        return {"bits": draw(st.sampled_from((32, 64))), "type": kind, **array, **formula, **named}
     if kind == "enum":
         enum = draw(st.sampled_from(enums))
         return {"bits": draw(st.integers(_needed(enum), 64)), "type": kind, "enum": enum["name"], **array}
@@ -278,8 +311,12 @@ def _field(draw, enums: list[dict]) -> dict:
         field["const"] = draw(raw)
     elif draw(st.integers(0, 5)) == 0:
         values = draw(st.lists(raw, min_size=1, max_size=2, unique=True))
-        field["special"] = [{"value": value, "meaning": f'*/ odd \\ " {index}'} for index, value in enumerate(values)]
+        field["special"] = [_meaning(value, index) for index, value in enumerate(values)]
     return field
+
+
+def _meaning(value: float | str, index: int) -> dict:
+    return {"value": value, "meaning": f'*/ odd \\ " {index}'}
 
 
 @st.composite

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from icdgen.describe import whole
 from icdgen.icd import rules
 from icdgen.loading import load
 from tests.icd.files import HEAD, codes, findings, loaded, status, write
@@ -57,6 +58,20 @@ def test_accepting_at_one_place_leaves_the_others(tmp_path):
     (found,) = findings(tmp_path, status(VOLTAGE, length=6) + other + ACCEPTED)
     assert found.code == "ICD024"
     assert "`Other`" in found.message
+
+
+def test_the_name_of_a_field_with_an_accepted_finding_is_still_looked_at(tmp_path):
+    overlap = ACCEPTED.replace("{message: Status}", "{message: Status, field: int}").replace("ICD024", "ICD021")
+    icd = status(VOLTAGE, "at: 8, bits: 16, name: int, type: uint", length=3)
+    assert codes(tmp_path, icd) == ["ICD021"]
+    assert codes(tmp_path, icd + overlap)[:1] == ["ICD070"]
+
+
+def test_what_is_described_for_the_rules_about_names_is_described_for_code_too(tmp_path):
+    icd = status(VOLTAGE, "at: 8, bits: 16, name: Current, type: uint", length=3)
+    accepted = ACCEPTED.replace("{message: Status}", "{message: Status, field: Current}").replace("ICD024", "ICD021")
+    model = loaded(tmp_path, icd + accepted).icd
+    assert any(known.icd is model for known in whole._kept)
 
 
 def test_findings_stand_in_the_order_of_the_file(tmp_path):

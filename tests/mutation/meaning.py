@@ -19,7 +19,7 @@ def _facts(node: Node, message: Message) -> tuple:
         )
         for f in message.fields
     ]  # fmt: skip
-    return message.name, message.kind, message.ids, message.length, message.tail, fields
+    return message.name, message.kind, message.ids, message.length, message.tail, message.may_end_early, fields
 
 
 def _place(node: Node, field: Field) -> object:

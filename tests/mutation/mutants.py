@@ -111,6 +111,8 @@ def _message(home: _Home, message: Message) -> Iterator[Mutant]:
                 yield on_message("id", f"{key} {number} -> {number + step}", **{key: number + step})
     for step in (-1, 1) if message.tail is None else ():  # an open end begins where it ends
         yield on_message("length", f"length {message.length} -> {message.length + step}", length=message.length + step)
+    if message.may_end_early:
+        yield mutant("end", "never ends early", lambda tree: tree["messages"][0].pop("may_end_early"))
     for key, values in (("byte_order", ("little", "big")), ("bit_order", ("lsb0", "msb0"))):
         own = key in base["messages"][0]
         other = values[(base["messages"][0] if own else base["node"])[key] == values[0]]
@@ -180,8 +182,8 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
             for step in (-1, 1):
                 yield _number("limit", field, key, step)
     for index, special in enumerate(field.get("special") or ()):
-        for step in (-1, 1):
-            value = special["value"] + step
+        named = {"nan": ("inf", "-inf"), "inf": ("nan", "-inf"), "-inf": ("nan", "inf")}.get(special["value"])
+        for value in named or (special["value"] - 1, special["value"] + 1):
             about = f"special {special['value']} -> {value}"
             yield "special", about, lambda f, i=index, v=value: f["special"][i].update(value=v)
 
@@ -192,6 +194,8 @@ def _number(kind: str, field: dict, key: str, step: int) -> tuple[str, str, Chan
 
 
 def _retype(field: dict, type_: str) -> None:
+    if field["type"] == "float":
+        field.pop("special", None)
     field["type"] = type_
     field.pop("enum", None)
     if type_ not in ("uint", "int"):

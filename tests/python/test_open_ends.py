@@ -63,6 +63,19 @@ def test_more_elements_than_there_can_be_are_refused(package, messages):
         messages.Payload(data=bytes(256)).to_bytes()
 
 
+def test_zeros_that_a_frame_ends_with_may_be_left_out(package, messages):
+    whole = messages.CutOff.from_bytes(b"\xff\xe5\x3f\x80" + bytes(19))
+    cut = messages.CutOff.from_bytes(b"\xff\xe5\x3f\x80")
+    assert cut == whole and (cut.input, cut.value, cut.words_text) == (-2, 1.0, "")
+    assert len(cut.to_bytes()) == 23 and messages.Two.from_bytes(b"\0") == messages.Two()
+    for size, known in ((0, 1), (24, 23)):
+        with pytest.raises(package.module("_errors").LengthError, match=f"has {known} byte.*, {size} given"):
+            messages.CutOff.from_bytes(bytes(size))
+    frames = [b"\0\5\x3f\x80", bytes(23)]
+    assert messages.CutOff.decode_many(frames)["value"].tolist() == [1.0, 0.0]
+    assert messages.CutOff.decode_many(bytes(46))["value"].tolist() == [0.0, 0.0]
+
+
 def test_columns_hold_what_is_there(package, messages):
     frames = [messages.Narrow(samples=values).to_bytes() for values in ((), (1, -1), (7,))]
     column = messages.Narrow.decode_many(frames)["samples"]

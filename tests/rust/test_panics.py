@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -66,10 +67,21 @@ def everything(icd: Icd) -> Iterator[str]:
             yield ENUM.format(name=name, type=type_, raw=f"{'i' if enum.storage.signed else 'u'}{enum.storage.bits}")
 
 
-def symbols(subject, toolchain: str, level: str, folder: Path, more: str = "") -> set[str]:
+@pytest.fixture(scope="module")
+def libraries(tmp_path_factory):
+    """Crates as libraries, each compiled once."""
+
+    @cache
+    def library(crate: Path, toolchain: str, level: str) -> Path:
+        return Toolchain(toolchain).library(crate, tmp_path_factory.mktemp("library"), level)
+
+    return library
+
+
+def symbols(libraries, subject, toolchain: str, level: str, folder: Path, more: str = "") -> set[str]:
     """What the linker sees of the program."""
     tools = Toolchain(toolchain)
-    library = tools.library(subject.crate, folder, level)
+    library = libraries(subject.crate, toolchain, level)
     source = folder / "everything.rs"
     source.write_text(HEAD + "".join(everything(subject.icd)) + more)
     archive = tools.freestanding(source, library, folder / "libeverything.a", level)
@@ -83,17 +95,17 @@ def suspicious(found: set[str]) -> list[str]:
 
 @pytest.mark.parametrize("level", ["3", "z"])
 @pytest.mark.parametrize("toolchain", list(toolchains()))
-def test_no_way_to_a_panic_is_left(shipped, toolchain, level, tmp_path):
-    found = symbols(shipped, toolchain, level, tmp_path, WIRE.read_text())
+def test_no_way_to_a_panic_is_left(libraries, shipped, toolchain, level, tmp_path):
+    found = symbols(libraries, shipped, toolchain, level, tmp_path, WIRE.read_text())
     assert {"wire_uart_feed", "wire_client_received", "wire_download_next"} <= found
     assert sum(one.startswith("decode_") for one in found) == sum(len(node.messages) for node in shipped.icd.nodes)
     assert suspicious(found) == []
 
 
-def test_no_way_to_a_panic_is_left_in_odd_messages(strange, tmp_path):
-    assert suspicious(symbols(strange, "default", "3", tmp_path)) == []
+def test_no_way_to_a_panic_is_left_in_odd_messages(libraries, strange, tmp_path):
+    assert suspicious(symbols(libraries, strange, "default", "3", tmp_path)) == []
 
 
-def test_a_panic_would_be_seen(shipped, tmp_path):
+def test_a_panic_would_be_seen(libraries, strange, tmp_path):
     more = "#[no_mangle] pub fn decode_badly(bytes: &[u8]) -> u8 { bytes[0] }\n"
-    assert "this_can_panic" in symbols(shipped, "default", "3", tmp_path, more)
+    assert "this_can_panic" in symbols(libraries, strange, "default", "3", tmp_path, more)

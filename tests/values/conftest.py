@@ -53,7 +53,8 @@ messages:
       - {at: 1,   bits: 7,  name: Small,      type: int}
       - {at: 8,   bits: 8,  name: Mode,       type: enum, enum: Switch}
       - {at: 16,  bits: 32, name: Ratio,      type: float, unit: "%", above: 0}
-      - {at: 48,  bits: 64, name: Precise,    type: float}
+      - {at: 48,  bits: 64, name: Precise,    type: float,
+         special: [{value: nan, meaning: not known}, {value: -9999, meaning: no data}]}
       - {at: 112, bits: 32, name: Key = Code, type: bytes}
       - {at: 144, bits: 64, name: Wide,       type: uint}
       - {at: 208, bits: 64, name: Wide angle, type: int, unit: rad, formula: (raw - 32)*5/9}

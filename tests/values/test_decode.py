@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import struct
 
+import pytest
+
 from icdgen.loading import load
 from icdgen.values.hexadecimal import parse_hex
 from icdgen.values.text import to_text
@@ -101,6 +103,19 @@ def test_what_the_icd_does_not_know_is_shown_as_it_came(icd):
     assert (rows["Ratio"]["raw"], rows["Ratio"]["value"]) == ("7fc00000", "nan")
     assert rows["Ratio"]["remarks"] == ["not a number"]
     assert (rows["Precise"]["raw"], rows["Precise"]["value"]) == ("fff0000000000000", "-inf")
+
+
+@pytest.mark.parametrize(
+    ("value", "remarks"),
+    [
+        (float("nan"), ("not known",)),
+        (-float("nan"), ("not known",)),
+        (-9999.0, ("no data",)),
+        (-9998.0, ()),
+    ],
+)
+def test_special_values_of_floats_are_told_and_every_nan_is_one(icd, value, remarks):
+    assert everything(icd, precise=value).rows[4].remarks == remarks
 
 
 def test_limits_that_exclude_their_bound(icd):

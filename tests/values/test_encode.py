@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from icdgen.describe.numbers import exact_text
+from icdgen.icd import floats
 from icdgen.values import numbers
 from icdgen.values.encode import encode
 from icdgen.values.errors import BadValue
@@ -113,6 +114,8 @@ def test_with_raw_only_the_width_is_checked(icd):
         ("precise", "-0", 1 << 63),
         ("precise", "nan", 0x7FF8000000000000),
         ("precise", "-inf", 0xFFF0000000000000),
+        ("precise", "Not Known", 0x7FF8000000000000),
+        ("precise", "no data", 0xC0C3878000000000),
         ("precise", "Infinity", 0x7FF0000000000000),
         ("wide", "0xFFFFFFFFFFFFFFFF", 2**64 - 1),
         ("wide", "1e3", 1000),
@@ -207,8 +210,8 @@ def test_a_single_is_the_nearest_to_the_exact_decimal_not_to_a_double(bits, betw
 def test_the_shortest_text_of_a_float_is_read_back():
     for bits in (0, 1, 0x007FFFFF, 0x00800000, 0x3DCCCCCD, 0x3F800001, 0x7F7FFFFF, 0x80000000, 0xC2F6E979):
         value = struct.unpack("<f", bits.to_bytes(4, "little"))[0]
-        assert numbers.float_bits(numbers.float_text(value, 32), 32) == bits
-    assert numbers.float_text(struct.unpack("<f", struct.pack("<f", 0.1))[0], 32) == "0.1"
+        assert numbers.float_bits(floats.text_of(value, 32), 32) == bits
+    assert floats.text_of(struct.unpack("<f", struct.pack("<f", 0.1))[0], 32) == "0.1"
 
 
 @pytest.mark.parametrize(

@@ -67,9 +67,20 @@ def test_only_what_is_in_a_frame_is_shown(icd):
     assert found.frame.to_json()["length"] == 4
 
 
+def test_a_frame_without_its_last_zeros_shows_all_fields(icd):
+    (found,) = recognize(icd, "2f 60", "open", "Two")
+    assert [(row.field.name, row.raw) for row in found.frame.rows] == [("Whole", 0b011110110)]
+    (found,) = recognize(icd, "2f", "open", "Two")
+    assert [row.raw for row in found.frame.rows] == [0b011110000]
+    (found,) = recognize(icd, "8c 00 05", "open")  # 140
+    assert found.message.name == "Cut Off" and len(found.frame.rows) == 18
+    assert frame(icd, "Two", "whole=0") == "0000"
+
+
 @pytest.mark.parametrize(
     ("message", "text", "said"),
     [
+        ("Two", "00 00 00", "Two has 1 to 2 bytes, 3 given"),
         ("Narrow", "03 00", "Narrow has 1 to 16 bytes, 2 given"),
         ("Gauges", "0300 0001", "8 are needed for as many elements as `Gauges Count` says"),
         ("Gauges", "0000 0001", "2 are needed"),

@@ -30,10 +30,8 @@ def exploded(head: str, items: Sequence[str], tail: str, indent: str = "", last:
 
 
 def wrapped(text: str, width: int) -> list[str]:
-    """The words of a text on lines of at most ``width`` characters, as far as words allow."""
-    if len(text) <= width:
-        return [text]
-    rest, lines = " ".join(text.split()), []
+    """The words of a text, one blank apart, on lines of at most ``width`` characters, as far as words allow."""
+    rest, lines = text, []
     while len(rest) > width:
         end = rest.rfind(" ", 0, width + 1)
         if end < 0:

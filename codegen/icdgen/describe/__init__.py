@@ -7,13 +7,13 @@ values with names, and the paragraphs of comments. A backend only spells it.
 from __future__ import annotations
 
 from icdgen.describe.description import (
-    Description,
     FieldDescription,
     MessageDescription,
-    NodeDescription,
-    describe,
+    StructDescription,
 )
 from icdgen.describe.enums import EnumDescription
+from icdgen.describe.nodes import NodeDescription
+from icdgen.describe.whole import Description, describe
 
 __all__ = [
     "Description",
@@ -21,5 +21,6 @@ __all__ = [
     "FieldDescription",
     "MessageDescription",
     "NodeDescription",
+    "StructDescription",
     "describe",
 ]

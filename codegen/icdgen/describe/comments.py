@@ -10,9 +10,19 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.describe.bounds import Bound, bounds, span
-from icdgen.describe.numbers import array_text, bit_range, byte_count, byte_range, exact_text, length_text, value_text
+from icdgen.describe.numbers import (
+    array_text,
+    bit_range,
+    byte_count,
+    byte_range,
+    exact_text,
+    length_text,
+    special_text,
+    value_text,
+)
 from icdgen.describe.steps import Steps, steps
-from icdgen.icd.model import CONFIGURATION, Enum, Erratum, Field, Member, Message, Tail
+from icdgen.icd.erratum import Erratum
+from icdgen.icd.model import CONFIGURATION, Enum, Field, Member, Message, Struct, Tail
 
 
 class Comment(NamedTuple):
@@ -28,10 +38,15 @@ class Comment(NamedTuple):
         return self.head, *self.rest, *self.errata
 
 
+def one_line(text: str) -> str:
+    """The words of a text, one blank apart."""
+    return text.strip() if text.isprintable() and "  " not in text else " ".join(text.split())
+
+
 @lru_cache(maxsize=8192)
 def words(text: str) -> str:
     """Text of the ICD, for a paragraph: on one line, without backticks."""
-    return " ".join(text.replace("`", "'").split())
+    return one_line(text.replace("`", "'"))
 
 
 def sentence(text: str) -> str:
@@ -64,6 +79,8 @@ def message_comment(message: Message, log_bit: int | None = None) -> Comment:
     if log_bit is not None:
         facts.append(f"Bit {log_bit} of the log mask.")
     facts += (f"Repeats {words(part.message)} from {_from(part.at)}." for part in message.contains)
+    if message.may_end_early:
+        facts.append("Zeros that a frame ends with may be left out.")
     if message.reserved:
         facts.append(f"The last {'byte is' if message.reserved == 1 else f'{message.reserved} bytes are'} reserved.")
     head = f"{words(message.name)}: {kind} {ids}, {length_text(message)}.{_table(message.table)}"
@@ -81,6 +98,12 @@ def _from(at: int) -> str:
 
 def _table(number: int | None) -> str:
     return "" if number is None else f" Table {number}."
+
+
+def struct_comment(struct: Struct) -> Comment:
+    """Name, length and table; summary."""
+    head = f"{words(struct.name)}: a struct of {byte_count(struct.length)}.{_table(struct.table)}"
+    return _comment(head, (sentence(struct.summary),), struct.errata, {})
 
 
 def enum_comment(enum: Enum) -> Comment:
@@ -108,7 +131,7 @@ def field_comment(field: Field, told: Mapping[str, str], tail: Tail | None = Non
         facts.append(f"Always {value_text(field.const)}.")
     if field.limits is not None:
         facts.append(_limits(field))
-    facts += (f"{value_text(special.value)}: {sentence(special.meaning)}" for special in field.special)
+    facts += (f"{special_text(special)}: {sentence(special.meaning)}" for special in field.special)
     if tail is not None and tail.counter == field.name:
         facts.append(f"Counts {words(tail.name)}: at most {tail.most}.")
     place = _place(field) if tail is None or tail.name != field.name else _open_place(field, tail)
@@ -130,6 +153,9 @@ def _place(field: Field) -> str:
     if field.is_bytes:
         where = byte_range(field.at // 8, field.bits // 8)
         return f"{where}, text filled with NUL" if field.type == "text" else where
+    if field.struct is not None:
+        where = byte_range(field.at // 8, field.width // 8)
+        return f"{where}, {f'{field.count} ' if field.count else ''}{words(field.struct.name)}"
     where = bit_range(field.at, field.width)
     elements = array_text(field.count, field.bits) if field.count else ""
     return ", ".join(filter(None, (where, elements, orders_text(field))))

@@ -22,6 +22,7 @@ class Constant(NamedTuple):
     value: int | Fraction
     is_raw: bool  # a raw value (an int); else a physical one, or one that the raw type can't hold
     comment: str
+    number: str = ""  # of a special value of a float, whose bits ``value`` are: `nan`, `inf`, `-inf`, or a decimal
 
 
 def constants(field: Field, name: str, physical_name: str, vocabulary: tuple[str, ...]) -> Iterator[Constant]:
@@ -34,9 +35,10 @@ def constants(field: Field, name: str, physical_name: str, vocabulary: tuple[str
         meaning = naming.words(special.meaning, vocabulary)
         end = naming.snake(meaning)
         if not 0 < len(meaning) <= MOST_WORDS or end in taken:
-            end = f"special_{special.value}".replace("-", "minus_")
+            end = f"special_{special.number or special.value}".replace("-", "minus_").replace(".", "_").replace("+", "")
         taken.add(end)
-        yield Constant("special", f"{name}_{end}", special.value, True, f"{title}: {sentence(special.meaning)}")
+        comment = f"{title}: {sentence(special.meaning)}"
+        yield Constant("special", f"{name}_{end}", special.value, True, comment, special.number)
     unit = f" in {words(field.unit.symbol)}" if field.unit else ""
     for bound in bounds(field.limits):
         value, has_raw = bound.value, not field.has_formula and field.type != "float"

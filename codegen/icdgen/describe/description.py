@@ -2,26 +2,46 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 from icdgen import layout, naming
 from icdgen.describe import steps
 from icdgen.describe.bounds import Bound, bounds
-from icdgen.describe.comments import Comment, field_comment, message_comment, words
+from icdgen.describe.comments import Comment, field_comment, message_comment, struct_comment, words
 from icdgen.describe.constants import Constant, constants
-from icdgen.describe.enums import EnumDescription, enum_widths
-from icdgen.describe.errata import tellers, told_elsewhere
+from icdgen.describe.enums import EnumDescription
+from icdgen.describe.errata import Thing, tellers, told_elsewhere
 from icdgen.describe.named import Named
-from icdgen.describe.storage import Storage, holding, storage_of
+from icdgen.describe.storage import Storage, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.curve import Curve
-from icdgen.icd.identifiers import Identifier
-from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
+from icdgen.icd.model import Enum, Field, Icd, Message, Node, Struct
+from icdgen.icd.paths import Step, placed
+from icdgen.once import cached_property
+
+
+class Whole(Protocol):
+    """The set of ICDs that all of this describes: `icdgen.describe.whole.Description`."""
+
+    icd: Icd
+
+    @property
+    def id_bits(self) -> int: ...
+
+    def log_bits(self, node: Node) -> dict[int, int]: ...
+
+    def spoken(self, node: Node) -> tuple[MessageDescription, ...]: ...
+
+    def message(self, message: Message) -> MessageDescription: ...
+
+    def struct(self, struct: Struct) -> StructDescription: ...
+
+    def enum(self, enum: Enum) -> EnumDescription: ...
 
 
 class FieldDescription(Named[Field]):
-    """A field of ``message``; of an array, an element, or among `MessageDescription.members` all of it.
+    """A field of ``message``, or of a struct; of an array, an element, or among ``members`` all of it.
 
     Made by the ten thousand, and each asked for its names at once: what these need is worked out at the beginning.
     """
@@ -35,21 +55,43 @@ class FieldDescription(Named[Field]):
     physical_name: str
     """``estimated_roll_angle_deg``"""
     member: str
-    """What an expression calls it, in any language: its name, of an element ``temperatures[3]``."""
+    """What an expression calls it, in any language: its name, ``temperatures[3]``, ``satellites[2].gnss``."""
     declared: str
-    """The name that is declared for it: of an element, that of its array."""
+    """The name that is declared for it: of an element, that of its array; of a field of a struct, that in the struct."""
+    holder: str
+    """What an expression calls the struct in which it stands, ``satellites[2]``; empty of what its message has itself."""
+    declaration: FieldDescription
+    """The field as its struct, or its message, declares it."""
 
-    def __init__(self, field: Field, message: MessageDescription, enum: EnumDescription | None) -> None:
+    def __init__(
+        self,
+        field: Field,
+        message: Composite[Any],
+        enum: EnumDescription | None,
+        struct: StructDescription | None = None,
+        within: StructDescription | None = None,
+    ) -> None:
         super().__init__(field, message.node.vocabulary, f"field `{field.name}` of `{message.model.name}`")
-        self.message, self.enum = message, enum
+        self.message, self.enum, self.struct = message, enum, struct
         self.storage = enum.storage if enum is not None else storage_of(field.bits, field.signed)
         self.steps, self.curve = steps.steps(field), field.curve
         self.member = self.declared = self.name
+        self.holder, self.declaration = "", self
         if field.path:
-            step = field.path[-1]
-            self.declared = naming.snake(naming.words(step.identifier or step.name, message.node.vocabulary))
-            self.name, self.member = f"{self.declared}_{step.index}", f"{self.declared}[{step.index}]"
+            self._within(field.path[0], within)
         self.physical_name = f"{self.declared}_{self.unit_name}"
+
+    def _within(self, step: Step, struct: StructDescription | None) -> None:
+        """What it is called as an element of an array, or as a field of a struct."""
+        head = naming.snake(naming.words(step.identifier or step.name, self.message.node.vocabulary))
+        name, member = (head, head) if step.index is None else (f"{head}_{step.index}", f"{head}[{step.index}]")
+        if struct is None:
+            self.declared, self.name, self.member = head, name, member
+            return
+        inner = struct.known[self.model.name.removeprefix(f"{step.text}.")]
+        self.declaration, self.declared = inner.declaration, inner.declared
+        self.name, self.member = f"{name}_{inner.name}", f"{member}.{inner.member}"
+        self.holder = f"{member}.{inner.holder}" if inner.holder else member
 
     @property
     def count(self) -> int:
@@ -64,10 +106,26 @@ class FieldDescription(Named[Field]):
 
     @cached_property
     def elements(self) -> tuple[FieldDescription, ...]:
-        """The elements of an array that stands as one; else none."""
-        if not self.count:
+        """The fields of an array, or of a struct, that stands as one; else none."""
+        if not self.count and self.struct is None:
             return ()
-        return tuple(one for one in self.message.fields if one.model.path and one.model.path[0].name == self.model.name)
+        return tuple(map(self.message.field, self.model.elements))
+
+    @cached_property
+    def leaves(self) -> tuple[FieldDescription, ...]:
+        """What is read and written as one: itself, or of a struct what stands in it, arrays as one."""
+        if self.struct is None:
+            return (self,)
+        return tuple(leaf for row in self.instances for one in row for leaf in one.leaves)
+
+    @cached_property
+    def instances(self) -> tuple[tuple[FieldDescription, ...], ...]:
+        """The members of a struct wherever it stands: once, or as often as there are elements; else none."""
+        if self.struct is None:
+            return ()
+        members = [one.model for one in self.struct.members]
+        rows = (placed(self.model, place, members) for place in self.model.places)
+        return tuple(tuple(map(self.message.field, row)) for row in rows)
 
     @property
     def is_narrow(self) -> bool:
@@ -138,6 +196,8 @@ class FieldDescription(Named[Field]):
     def constants(self) -> tuple[Constant, ...]:
         """The only valid value, values with a meaning, limits: all by name."""
         field = self.model
+        if self.declaration is not self:
+            return self.declaration.constants
         return () if field.const is None and not field.special and field.limits is None else self._constants
 
     @cached_property
@@ -173,26 +233,40 @@ class TailDescription(NamedTuple):
         return self.counter.storage.max > self.most
 
 
-class MessageDescription(Named[Message]):
-    """A message that ``node`` declares."""
+Fielded = TypeVar("Fielded", bound=Message | Struct)
 
-    def __init__(self, description: Description, message: Message, node: Node) -> None:
-        super().__init__(message, node.vocabulary, f"message `{message.name}`")
+
+class Composite(Named[Fielded]):
+    """What has fields: a message, or a struct, that ``node`` declares."""
+
+    def __init__(self, description: Whole, model: Fielded, node: Node, what: str) -> None:
+        super().__init__(model, node.vocabulary, f"{what} `{model.name}`")
         self._description, self.node = description, node
 
     @cached_property
+    def comment(self) -> Comment:
+        """What comments say of it."""
+        raise NotImplementedError
+
+    @cached_property
     def all_fields(self) -> tuple[FieldDescription, ...]:
-        """Fields and views, in the order of the ICD; each element of an array."""
-        return tuple(map(self._field, self.model.fields))
+        """Fields and views, in the order of the ICD; each element of an array, each field of a struct."""
+        return tuple(map(self.field, self.model.fields))
 
     @cached_property
     def all_members(self) -> tuple[FieldDescription, ...]:
         """Members and views, in the order of the ICD: what is declared in code."""
         declared = self.model.members
-        return self.all_fields if declared is self.model.fields else tuple(map(self._field, declared))
+        return self.all_fields if declared is self.model.fields else tuple(map(self.field, declared))
 
-    def _field(self, field: Field) -> FieldDescription:
-        return FieldDescription(field, self, self._description.enum(field.enum) if field.enum else None)
+    def field(self, field: Field) -> FieldDescription:
+        """The description of a field of it."""
+        enum = self._description.enum(field.enum) if field.enum else None
+        if field.struct is None and not field.path:
+            return FieldDescription(field, self, enum)
+        struct = self._description.struct(field.struct) if field.struct else None
+        within = field.path[0].struct if field.path else None
+        return FieldDescription(field, self, enum, struct, self._description.struct(within) if within else None)
 
     @cached_property
     def views(self) -> tuple[FieldDescription, ...]:
@@ -201,16 +275,94 @@ class MessageDescription(Named[Message]):
 
     @cached_property
     def members(self) -> tuple[FieldDescription, ...]:
-        """What a message is made of, in the order of the ICD, an array as one."""
+        """What it is made of, in the order of the ICD, an array as one, and a struct."""
         return self._owners(self.all_members)
 
     @cached_property
     def fields(self) -> tuple[FieldDescription, ...]:
-        """What has bits of its own, in the order of the ICD, each element of an array."""
+        """What has bits of its own, in the order of the ICD, each element of an array, each field of a struct."""
         return self._owners(self.all_fields)
+
+    @property
+    def tail(self) -> TailDescription | None:
+        """The open end of a message, where frames differ in length."""
+        return None
+
+    @property
+    def sent(self) -> tuple[FieldDescription, ...]:
+        """Members that have bits in the frame: without the count that only the length of the frame tells."""
+        return self.members if self.tail is None else tuple(one for one in self.members if not one.model.implied)
+
+    @cached_property
+    def leaves(self) -> tuple[FieldDescription, ...]:
+        """The same, but arrays as one."""
+        if all(one.struct is None for one in self.members):
+            return self.members
+        return tuple(leaf for one in self.members for leaf in one.leaves)
+
+    @cached_property
+    def enums(self) -> tuple[EnumDescription, ...]:
+        """The enumerations of the members that it declares itself, each once."""
+        return tuple(dict.fromkeys(one.enum for one in self.all_members if one.enum is not None))
+
+    @cached_property
+    def structs(self) -> tuple[StructDescription, ...]:
+        """The structs that stand in it, each once."""
+        return tuple(dict.fromkeys(one.struct for one in self.all_members if one.struct is not None))
 
     def _owners(self, fields: tuple[FieldDescription, ...]) -> tuple[FieldDescription, ...]:
         return tuple(field for field in fields if not field.model.view) if self.views else fields
+
+    @property
+    def is_narrow(self) -> bool:
+        """Whether a field of it may be given a raw value that does not fit."""
+        return any(field.is_narrow for field in self.fields)
+
+    @property
+    def has_floats(self) -> bool:
+        return any(field.type == "float" for field in self.model.owners)
+
+    @cached_property
+    def has_wide_steps(self) -> bool:
+        """Whether the formula of a field that it declares has numbers of many digits."""
+        return any(field.steps is not None and field.steps.is_wide for field in self.all_members)
+
+    @cached_property
+    def tellers(self) -> dict[str, Thing]:
+        """By the ids of errata: which part of it tells of it."""
+        return tellers((self.model, *self.model.members))
+
+
+def _wholes(fields: Iterable[FieldDescription]) -> Iterator[FieldDescription]:
+    """Those that are structs, and those in them."""
+    for field in fields:
+        if field.struct is not None:
+            yield field
+            for row in field.instances:
+                yield from _wholes(row)
+
+
+class StructDescription(Composite[Struct]):
+    """A struct."""
+
+    def __init__(self, description: Whole, struct: Struct, node: Node) -> None:
+        super().__init__(description, struct, node, "struct")
+
+    @cached_property
+    def known(self) -> dict[str, FieldDescription]:
+        """Fields by name, and arrays and structs that stand as one."""
+        return {one.model.name: one for one in (*self.fields, *self.leaves, *_wholes(self.members))}
+
+    @cached_property
+    def comment(self) -> Comment:
+        return struct_comment(self.model)
+
+
+class MessageDescription(Composite[Message]):
+    """A message."""
+
+    def __init__(self, description: Whole, message: Message, node: Node) -> None:
+        super().__init__(description, message, node, "message")
 
     @cached_property
     def tail(self) -> TailDescription | None:
@@ -224,11 +376,6 @@ class MessageDescription(Named[Message]):
         return TailDescription(part, counter, self.model.least, tail.step, tail.most)
 
     @property
-    def sent(self) -> tuple[FieldDescription, ...]:
-        """Members that have bits in the frame: without the count that only the length of the frame tells."""
-        return self.members if self.tail is None else tuple(one for one in self.members if not one.model.implied)
-
-    @property
     def sent_fields(self) -> tuple[FieldDescription, ...]:
         """Fields that have bits in the frame, each element of an array."""
         return self.fields if self.tail is None else tuple(one for one in self.fields if not one.model.implied)
@@ -238,7 +385,7 @@ class MessageDescription(Named[Message]):
         """The messages that it repeats, each with the bit at which it begins, in the order of the ICD."""
         if not self.model.contains:
             return ()
-        known = {one.model.name: one for one in self._description.node(self.node).spoken}
+        known = {one.model.name: one for one in self._description.spoken(self.node)}
         return tuple((known[one.message], one.at) for one in self.model.contains if one.message in known)
 
     @cached_property
@@ -264,147 +411,11 @@ class MessageDescription(Named[Message]):
 
     @property
     def is_narrow(self) -> bool:
-        """Whether a field of it may be given a raw value that does not fit."""
-        return any(field.is_narrow for field in self.fields) or (self.tail is not None and self.tail.is_bound)
-
-    @property
-    def has_floats(self) -> bool:
-        return any(field.type == "float" for field in self.model.owners)
-
-    @cached_property
-    def has_wide_steps(self) -> bool:
-        """Whether the formula of a field has numbers of many digits."""
-        return any(field.steps is not None and field.steps.is_wide for field in self.all_fields)
-
-    @cached_property
-    def tellers(self) -> dict[str, Message | Field | Enum | Member]:
-        """By the ids of errata: which part of the message tells of it."""
-        return tellers((self.model, *self.model.members))
+        """Whether a field of it may be given a raw value that does not fit, or a count."""
+        return super().is_narrow or (self.tail is not None and self.tail.is_bound)
 
     @cached_property
     def comment(self) -> Comment:
-        bits = self._description.node(self.node).log_bits
+        bits = self._description.log_bits(self.node)
         telemetry_id = self.model.telemetry_id
         return message_comment(self.model, None if telemetry_id is None else bits.get(telemetry_id))
-
-
-class Direction(NamedTuple):
-    """What a node speaks in one direction: messages, each with the name of its id there (``id``, ``set_id`` or ``get_id``)."""
-
-    kind: str  # "telecommand" | "telemetry"
-    messages: tuple[tuple[MessageDescription, str], ...]
-
-
-class NodeDescription:
-    """A node (``model``) of the set."""
-
-    def __init__(self, description: Description, node: Node) -> None:
-        self._description, self.model, self.name = description, node, node.name
-
-    def identifier(self, scope: str, name: str) -> Identifier:
-        """A name that generated code declares for it."""
-        return Identifier(scope, name, f"node `{self.name}`", self.model.source)
-
-    @cached_property
-    def messages(self) -> tuple[MessageDescription, ...]:
-        """Those that it declares."""
-        return tuple(map(self._description.message, self.model.messages))
-
-    @cached_property
-    def enums(self) -> tuple[EnumDescription, ...]:
-        """Those that it declares."""
-        return tuple(map(self._description.enum, self.model.enums))
-
-    @cached_property
-    def spoken(self) -> tuple[MessageDescription, ...]:
-        """All messages that it speaks: those of included nodes first."""
-        return tuple(map(self._description.message, self._description.icd.messages_of(self.model)))
-
-    @property
-    def telecommands(self) -> tuple[MessageDescription, ...]:
-        """Those of `spoken` that can be sent to it."""
-        return tuple(one for one in self.spoken if one.model.telecommand_id is not None)
-
-    @property
-    def telemetry(self) -> tuple[MessageDescription, ...]:
-        """Those of `spoken` that can be requested from it."""
-        return tuple(one for one in self.spoken if one.model.telemetry_id is not None)
-
-    @property
-    def directions(self) -> tuple[Direction, ...]:
-        """Telecommands, then telemetry; without one of which it has none."""
-        found = (
-            Direction("telecommand", tuple((one, one.telecommand_id_name) for one in self.telecommands)),
-            Direction("telemetry", tuple((one, one.telemetry_id_name) for one in self.telemetry)),
-        )
-        return tuple(direction for direction in found if direction.messages)
-
-    @property
-    def is_linked(self) -> bool:
-        """Whether it is known how its messages travel."""
-        return bool(self._description.icd.protocol_of(self.model))
-
-    @property
-    def has_client(self) -> bool:
-        """Whether requests can be sent on its link, which is not so of an envelope."""
-        return self.is_linked and "stream" not in self._description.icd.protocol_of(self.model)
-
-    @property
-    def id_bits(self) -> int:
-        """Those of the set: see `Description.id_bits`."""
-        return self._description.id_bits
-
-    @cached_property
-    def log_bits(self) -> dict[int, int]:
-        """Telemetry id -> the bit of the log mask that selects it."""
-        return {row.id: row.bit for row in self.model.loggable}
-
-
-class Description:
-    """A set of ICDs. ``nodes`` stand in the order of the set: each after those that it includes."""
-
-    def __init__(self, icd: Icd) -> None:
-        self.icd = icd
-        self._enum_bits = enum_widths(icd)
-        self._messages: dict[tuple[str, str], MessageDescription] = {}
-        self._enums: dict[tuple[str, str], EnumDescription] = {}
-        self._nodes = {node.name: NodeDescription(self, node) for node in icd.nodes}
-        self.nodes = tuple(self._nodes.values())
-
-    @cached_property
-    def id_bits(self) -> int:
-        """8, 16 or 32: bits of the integer that holds every id of the set."""
-        used = (id.bit_length() for node in self.icd.nodes for message in node.messages for id in message.ids)
-        return holding(max((*(node.id_bits for node in self.icd.nodes), *used), default=8))
-
-    def node(self, node: str | Node) -> NodeDescription:
-        """The description of a node, by its name or of the node itself. Raises `KeyError`."""
-        return self._nodes[node if isinstance(node, str) else node.name]
-
-    def message(self, message: Message) -> MessageDescription:
-        """The description of a message, whoever speaks it."""
-        key = message.node, message.name
-        found = self._messages.get(key)
-        if found is None or found.model is not message:
-            found = self._messages[key] = MessageDescription(self, message, self.icd.node(message.node))
-        return found
-
-    def enum(self, enum: Enum) -> EnumDescription:
-        """The description of an enumeration, whoever uses it."""
-        key = enum.node, enum.name
-        found = self._enums.get(key)
-        if found is None or found.model is not enum:
-            found = self._enums[key] = EnumDescription(enum, self.icd.node(enum.node), self._enum_bits[key])
-        return found
-
-
-_kept: list[Description] = []
-
-
-def describe(icd: Icd) -> Description:
-    """The description of a set of ICDs. The last ones are kept, so that the backends of one run share theirs."""
-    for known in _kept:
-        if known.icd is icd:
-            return known
-    _kept[:] = [*_kept[-1:], Description(icd)]
-    return _kept[-1]

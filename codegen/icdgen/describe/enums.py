@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 from icdgen.describe.comments import Comment, enum_comment, member_comment
-from icdgen.describe.errata import tellers, told_elsewhere
+from icdgen.describe.errata import Thing, tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding
-from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
+from icdgen.icd.model import Enum, Icd, Member, Message, Node, Struct
+from icdgen.once import cached_property
 
 
 def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
@@ -18,8 +17,9 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
         for enum in node.enums:
             bits = enum.bits_for(enum.widest.value) if enum.widest else 1
             found[enum.node, enum.name] = max(found.get((enum.node, enum.name), 1), bits)
-        for message in node.messages:
-            for field in message.fields:
+        every: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
+        for one in every:
+            for field in one.fields:
                 if field.enum is not None:
                     key = field.enum.node, field.enum.name
                     found[key] = max(found.get(key, 1), field.bits)
@@ -39,7 +39,7 @@ class EnumDescription(Named[Enum]):
         return tuple(MemberDescription(member, self) for member in self.model.members)
 
     @cached_property
-    def tellers(self) -> dict[str, Message | Field | Enum | Member]:
+    def tellers(self) -> dict[str, Thing]:
         """By the ids of errata: which part of the enumeration tells of it."""
         return tellers((self.model, *self.model.members))
 

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from icdgen.icd.model import Enum, Erratum, Field, Member, Message
+from icdgen.icd.erratum import Erratum
+from icdgen.icd.model import Enum, Field, Member, Message, Struct
+
+Thing = Message | Struct | Field | Enum | Member
 
 
 def errata_of_message(message: Message) -> list[Erratum]:
-    """Those of the message and of its fields, each once."""
-    return _each_once((message, *message.fields))
+    """Those of the message, of the structs in it and of its fields, each once."""
+    return _each_once((message, *message.members, *message.fields))
 
 
 def errata_of_enum(enum: Enum) -> list[Erratum]:
@@ -17,19 +20,19 @@ def errata_of_enum(enum: Enum) -> list[Erratum]:
     return _each_once((enum, *enum.members))
 
 
-def _each_once(things: Iterable[Message | Field | Enum | Member]) -> list[Erratum]:
+def _each_once(things: Iterable[Thing]) -> list[Erratum]:
     return list(dict.fromkeys(erratum for thing in things for erratum in thing.errata))
 
 
-def tellers(things: Iterable[Message | Field | Enum | Member]) -> dict[str, Message | Field | Enum | Member]:
+def tellers(things: Iterable[Thing]) -> dict[str, Thing]:
     """By the ids of errata: the first thing that has it, whose comment tells of it."""
-    found: dict[str, Message | Field | Enum | Member] = {}
+    found: dict[str, Thing] = {}
     for thing in things:
         for erratum in thing.errata:
             found.setdefault(erratum.id, thing)
     return found
 
 
-def told_elsewhere(thing: Field | Member, by: Mapping[str, Message | Field | Enum | Member]) -> dict[str, str]:
+def told_elsewhere(thing: Field | Member, by: Mapping[str, Thing]) -> dict[str, str]:
     """By the ids of those errata of a thing that another one tells of: the name of that one."""
     return {one.id: by[one.id].name for one in thing.errata if by.get(one.id, thing) is not thing}

@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cached_property
 from typing import NamedTuple
 
-from icdgen.describe.description import Description, FieldDescription
+from icdgen.describe.description import FieldDescription
+from icdgen.describe.whole import Description
 from icdgen.frozen import dataclass
 from icdgen.icd.model import CONFIGURATION, Message
+from icdgen.once import cached_property
 from icdgen.protocol import facts as protocol_facts
 from icdgen.protocol.declared import Fact
 from icdgen.protocol.facts import Facts

@@ -6,9 +6,9 @@ from typing import Generic, TypeVar
 
 from icdgen import naming
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.model import Enum, Field, Member, Message
+from icdgen.icd.model import Enum, Field, Member, Message, Struct
 
-Model = TypeVar("Model", Message, Field, Enum, Member)
+Model = TypeVar("Model", bound=Message | Struct | Field | Enum | Member)
 
 
 class Named(Generic[Model]):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import lru_cache
 
-from icdgen.icd.model import Message
+from icdgen.icd.model import Message, Special
 
 MOST_DIGITS = 24  # of a decimal that is shown in full
 
@@ -41,6 +41,12 @@ def value_text(raw: int) -> str:
     return f"{raw} (0x{raw:X})" if raw > 9 else str(raw)
 
 
+def special_text(special: Special) -> str:
+    """``65535 (0xFFFF)``; of floats ``NaN``, ``-infinity``, ``-99.9``."""
+    words = {"nan": "NaN", "inf": "infinity", "-inf": "-infinity"}
+    return words.get(special.number, special.number) or value_text(special.value)
+
+
 def bit_range(at: int, bits: int) -> str:
     """``bit 3``, ``bits 4 to 7``"""
     return f"bit {at}" if bits == 1 else f"bits {at} to {at + bits - 1}"
@@ -58,7 +64,9 @@ def byte_range(first: int, count: int) -> str:
 
 def length_text(message: Message) -> str:
     """``6 bytes``; where frames differ ``4 to 28 bytes``."""
-    return byte_count(message.length) if message.tail is None else f"{message.least} to {byte_count(message.length)}"
+    return (
+        byte_count(message.length) if len(message.lengths) == 1 else f"{message.least} to {byte_count(message.length)}"
+    )
 
 
 def byte_count(count: int) -> str:

@@ -30,10 +30,10 @@ class PartDescription(NamedTuple):
     begins: tuple[int, ...]  # the bits at which it does, in the order of the ICD
 
     def copies(self, composite: MessageDescription, begin: int) -> Iterator[Copied]:
-        """What its members are of a message, from a bit on."""
+        """What its members are of a message, from a bit on; of a struct what stands in it."""
         fields = {field.model.at: field for field in composite.fields}
-        arrays = {field.model.at: field for field in composite.members if field.count}
-        for member in self.message.members:
+        arrays = {field.model.at: field for field in composite.leaves if field.count}
+        for member in self.message.leaves:
             at = begin + member.model.at
             array = arrays.get(at) if member.count else None
             if array is not None and array.count == member.count:

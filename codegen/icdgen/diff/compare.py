@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from operator import itemgetter
 
 from icdgen.diff.change import Change
@@ -16,20 +16,26 @@ from icdgen.diff.changes import (  # noqa: F401  (importing a theme registers it
     names,
     numbers,
     sense,
+    structs,
     text,
 )
 from icdgen.diff.context import Context
 from icdgen.diff.layers import LAYERS
 from icdgen.diff.match import match
-from icdgen.diff.pairs import Match, MessagePair, NodePair, Pair
+from icdgen.diff.pairs import FieldPair, Match, MessagePair, NodePair, Pair
 from icdgen.diff.rule import REGISTERED, Check, Found, Rule
-from icdgen.icd.model import Erratum, Icd
+from icdgen.icd.erratum import Erratum
+from icdgen.icd.model import Icd
+from icdgen.icd.rules.wording import listing, quote
 
 RULES: dict[str, Rule] = dict(sorted(REGISTERED.items()))
 _CHECKS: dict[tuple[str, str], dict[Check, str]] = {}  # and the code of what it finds, unless it names another
 for _rule in RULES.values():
     for _of in _rule.of:
         _CHECKS.setdefault((_of, _rule.when), {})[_rule.check] = _rule.code
+
+
+MOST_PLACES = 3  # that are shown of a change of a struct
 
 
 @dataclass
@@ -44,8 +50,43 @@ class Comparison:
 def compare(old: Icd, new: Icd) -> Comparison:
     """Everything that differs between two sound sets of ICDs. Order, formatting and spelling of formulas are no difference."""
     context = Context(match(old, new))
-    changes = sorted(_all(context), key=lambda c: LAYERS.index(c.layer))
+    changes = sorted(_once(_all(context)), key=lambda c: LAYERS.index(c.layer))
     return Comparison(context.match, changes, context)
+
+
+def _once(changes: Iterable[Change]) -> list[Change]:
+    """What changed in a struct is said where it stands first, with the other places."""
+    found: list[Change] = []
+    known: dict[object, int] = {}
+    others: dict[int, list[str]] = {}
+    for change in changes:
+        key = _in_struct(change)
+        if key is None or key not in known:
+            if key is not None:
+                known[key] = len(found)
+            found.append(change)
+        else:
+            where = change.where
+            others.setdefault(known[key], []).append(f"{quote(where.field)} of {quote(where.message)}")
+    for index, places in others.items():
+        shown = (
+            places
+            if len(places) <= MOST_PLACES
+            else [*places[: MOST_PLACES - 1], f"{len(places) - MOST_PLACES + 1} more"]
+        )
+        found[index] = replace(found[index], details=(*found[index].details, f"The same of {listing(shown)}."))
+    return found
+
+
+def _in_struct(change: Change) -> object:
+    """What a change of a field of a struct has in common with the same change wherever the struct stands; None of others."""
+    pair: object = change.pair
+    if isinstance(pair, MessagePair):  # many fields are looked at together
+        pair = next((one for one in pair.parts if one.any.name == change.where.field), None)
+    if not isinstance(pair, FieldPair) or not pair.is_of_struct:
+        return None
+    sides = [one for one in (pair.before, pair.after) if one is not None]
+    return change.rule.code, change.old, change.new, sides[-1].at - sides[0].at
 
 
 def _all(context: Context) -> Iterator[Change]:

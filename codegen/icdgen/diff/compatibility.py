@@ -136,7 +136,7 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     reasons = [*odd, *_together((p.any.name, why) for p, why in wrong)]
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
-    verdict = NO if len(absent) + len(wrong) == len(reader.members) - len(reader.views) else PARTLY
+    verdict = NO if len(absent) + len(wrong) == len(reader.lines) - len(reader.views) else PARTLY
     return verdict, tuple(reasons)
 
 
@@ -174,7 +174,7 @@ def _lengths(sent: Message, reader: Message, verb: str) -> tuple[str, tuple[str,
     fitting = sum(one in reader.lengths for one in sent.lengths)
     if fitting == len(sent.lengths):
         return YES, ()
-    if sent.tail is None and reader.tail is None:
+    if len(sent.lengths) == len(reader.lengths) == 1:
         return NO, (f"{sent.length} bytes {verb}, {reader.length} are expected",)
     text = f"{length_text(sent)} {verb}, {length_text(reader)} are expected"
     return (PARTLY if fitting else NO), (text,)

@@ -32,7 +32,7 @@ class Context:
         """Fields that hold the values of an enumeration of the new ICD, by the enumeration's identity."""
         found: dict[int, list[str]] = {}
         for message in (m for node in self.match.new.nodes for m in node.messages):
-            for field in message.members:
+            for field in message.lines:
                 if field.enum is not None:
                     found.setdefault(id(field.enum), []).append(f"{message.name}: {field.name}")
         return found

@@ -118,7 +118,7 @@ class Generated:
 
     def retyped(self, pair: FieldPair) -> list[tuple[str, str, str]]:
         """Language, old and new type of the raw value, where they differ."""
-        if not _is_sound(pair.old) or not _is_sound(pair.new):
+        if not _is_sound(pair.old) or not _is_sound(pair.new) or pair.is_of_struct:
             return []
         types = ((one, self._before.type_of(one, pair), self._under_old_owners.type_of(one, pair)) for one in LANGUAGES)
         return [(language, before, after) for language, before, after in types if before != after]
@@ -169,7 +169,7 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
     """The generated names of one side of each sample, by language, all in one message of an ICD of its own."""
     marks = [Map(Place("")) for _ in samples]
     fields = [
-        replace(pair.new if side else pair.old, name=f"Sample {number}", identifier=None, source=mark, count=0)
+        replace(pair.new if side else pair.old, name=f"Sample {number}", identifier=None, source=mark, count=0, path=())
         for number, (pair, mark) in enumerate(zip(samples, marks, strict=True))
     ]
     found: dict[int, list[tuple[str, str]]] = {id(mark): [] for mark in marks}
@@ -258,12 +258,12 @@ class _Cut:
         pair = self.match.messages[id(message)]
         fields = {_place(side): p for p in pair.parts if (side := self.side_of(p)) is not None}
         own: list[Field] = []
-        for one in message.members:
+        for one in message.lines:
             if one.implied:
                 own.append(one)
                 continue
             part = fields[_place(one)]
-            if id(part) not in self.kept or not _is_sound(one):
+            if id(part) not in self.kept or not _is_sound(one) or part.is_of_struct:
                 continue
             enum = self.enums.get(id(one.enum), one.enum)
             field = self.marked(one, part, enum=enum)

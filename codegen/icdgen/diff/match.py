@@ -142,11 +142,11 @@ class _Left(Generic[Declared]):
     @cached_property
     def shape(self: _Left[Message]) -> frozenset[tuple[int, int, str]]:
         """Of a message: where its fields lie, and how they are read."""
-        return frozenset((f.at, f.width, kind(f)) for f in self.one.members)
+        return frozenset((f.at, f.width, kind(f)) for f in self.one.lines)
 
     @cached_property
     def field_names(self: _Left[Message]) -> frozenset[str]:
-        return frozenset(f.name for f in self.one.members)
+        return frozenset(f.name for f in self.one.lines)
 
     @cached_property
     def members(self: _Left[Enum]) -> frozenset[tuple[int, str]]:
@@ -263,7 +263,7 @@ def _renamed_message(one: _Left[Message], other: _Left[Message]) -> float:
     if layout + 0.15 < SAME_MESSAGE:
         return 0.0  # no likeness of names, which takes long to tell, can make up for it
     alike = likeness(old.name, new.name)
-    if not same_id and min(len(old.members), len(new.members)) < 2 and alike < 0.6:
+    if not same_id and min(len(old.lines), len(new.lines)) < 2 and alike < 0.6:
         return 0.0  # too little to go by
     return layout + 0.15 * alike
 
@@ -289,8 +289,8 @@ _MESSAGES_LIKELY = ((_moved_message, _name, SAME_MESSAGE), (_renamed_message, _m
 
 
 def _printed(message: Message) -> list[Field]:
-    """The members that the ICD has lines for."""
-    return [one for one in message.members if not one.implied]
+    """The fields that the ICD has lines for, those of structs wherever they stand."""
+    return [one for one in message.lines if not one.implied]
 
 
 def _fields(pair: MessagePair) -> list[FieldPair]:

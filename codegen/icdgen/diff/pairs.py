@@ -127,6 +127,11 @@ class FieldPair(SideBySide[Field]):
         return any(message.tail is not None and message.tail.name == one.name for message, one in sides)
 
     @property
+    def is_of_struct(self) -> bool:
+        """Whether a struct declares its names, and no message."""
+        return any(step.struct is not None for step in self.any.path)
+
+    @property
     def moved(self) -> bool:
         """Whether it lies elsewhere for another reason than the order of bytes or bits."""
         return self.old.at != self.new.at and not self.same_bits
@@ -228,7 +233,7 @@ def _first_of(one: Field) -> Field:
 def position(node: Node, one: Field) -> Position:
     """The bits that the field lies on, comparable between nodes of different byte and bit order."""
     if one.is_bytes:
-        return (byte_range(one),)
+        return tuple(map(byte_range, one.elements))
     return tuple(piece for element in one.elements for piece in pieces(element, node))
 
 

@@ -10,8 +10,9 @@ from functools import partial
 from itertools import chain
 from typing import TypeVar
 
-from icdgen.icd import curve, division, formula, model, tails, wire_ids
+from icdgen.icd import annex, curve, division, floats, formula, model, tails, wire_ids
 from icdgen.icd.errata import Applied
+from icdgen.icd.implied import implied_count
 from icdgen.icd.located import Map, plain
 from icdgen.icd.units import STANDARD, Unit
 
@@ -23,14 +24,16 @@ _LIMITS = frozenset({"min", "max", "above", "below"})
 
 
 class Scope:
-    """What a node may refer to: enumerations, units and vocabulary of its own and of what it includes."""
+    """What a node may refer to: enumerations, structs, units and vocabulary of its own and of what it includes."""
 
     def __init__(self, included: Iterable[model.Node]) -> None:
         self.enums: dict[str, model.Enum] = {}
+        self.structs: dict[str, model.Struct] = {}
         self.units: dict[str, Unit] = dict(STANDARD)
         self.vocabulary: list[str] = []
         for node in included:
             self.enums.update((e.name, e) for e in node.enums)
+            self.structs.update((one.name, one) for one in node.structs)
             self.units.update((u.symbol, u) for u in node.units)
             self.vocabulary += node.vocabulary
 
@@ -52,6 +55,7 @@ class Builder:
         self.scope.units.update((u.symbol, u) for u in units)
         enums = tuple(self.each("enums", self.enum))
         self.scope.enums.update((e.name, e) for e in enums)
+        structs = self.structs()
         listed, protocol = self.tree.get("vocabulary"), self.tree.get("protocol")
         words = tuple(w for w in (listed if isinstance(listed, list) else ()) if isinstance(w, str) and w.isalnum())
         return model.Node(
@@ -63,6 +67,7 @@ class Builder:
             id_bits=head.get("id_bits", wire_ids.DEFAULT_BITS),
             messages=tuple(self.each("messages", self.message)),
             enums=enums,
+            structs=structs,
             node_type=head.get("node_type"),
             interface_version=head.get("interface_version"),
             document=tuple((k, str(v)) for k, v in (head.get("source") or {}).items()),
@@ -109,6 +114,40 @@ class Builder:
             source=item,
         )
 
+    def structs(self) -> tuple[model.Struct, ...]:
+        """Those of the node, each after what it has in it. Of a circle, none has the next in it: it is a finding."""
+        listed = list(self.each("structs", lambda item: item))
+        items = {item["name"]: item for item in reversed(listed)}
+        made: list[model.Struct] = []
+        begun: set[str] = set()
+
+        def make(name: str) -> None:
+            begun.add(name)
+            for row in self.each("fields", lambda row: row, items[name]):
+                if row.get("struct") in items and row["struct"] not in begun:
+                    make(row["struct"])
+            made.append(self.struct(items[name]))
+            self.scope.structs[name] = made[-1]
+
+        for name in items:
+            if name not in begun:
+                make(name)
+        made += (self.struct(item) for item in listed if item is not items[item["name"]])  # names that are there twice
+        return tuple(made)
+
+    def struct(self, item: Map) -> model.Struct:
+        return model.Struct(
+            name=item["name"],
+            length=item["length"],
+            fields=tuple(chain.from_iterable(self.each("fields", partial(self.fields, ("", "")), item))),
+            identifier=item.get("identifier"),
+            summary=item.get("summary", ""),
+            table=(item.get("source") or {}).get("table"),
+            node=self.name,
+            errata=self.applied.about(item),
+            source=item,
+        )
+
     def message(self, item: Map) -> model.Message:
         where = item.get("source") or {}
         fields = tuple(chain.from_iterable(self.each("fields", partial(self.fields, orders(item)), item)))
@@ -133,6 +172,7 @@ class Builder:
             contains=tuple(self.each("contains", lambda p: model.Part(p["message"], p["at"]), item)),
             reserved=item.get("reserved", 0),
             tail=tail,
+            may_end_early=item.get("may_end_early", ""),
             node=self.name,
             errata=self.applied.about(item),
             source=item,
@@ -150,13 +190,19 @@ class Builder:
         end = replace(end, bits=8 * most) if "size" in item else replace(end, count=most)
         if counter is not None:
             return tail, end.elements
-        implied = model.implied_count(end, message["length"] + most * tail.step)
+        implied = implied_count(end, message["length"] + most * tail.step)
         return replace(tail, counter=implied.name), (*end.elements, implied)
 
     def fields(self, around: Orders, item: Map) -> tuple[model.Field, ...]:
-        """The field, the elements of an array, or the parts that it is divided into; ``around``: the orders of its message."""
+        """The field, the elements of an array, the fields of a struct, or the parts that it is divided into.
+
+        ``around``: the orders of its message.
+        """
         if tails.is_open(item):
             return ()  # see `tail`
+        if "struct" in item:
+            struct = self.scope.structs.get(item["struct"])
+            return () if struct is None else self.standing(item, struct, around).elements
         if "count" in item:
             return replace(self.field(item, around), count=item["count"]).elements
         if "bitfields" not in item:
@@ -177,6 +223,23 @@ class Builder:
             for part in parts
         )
 
+    def standing(self, item: Map, struct: model.Struct, around: Orders) -> model.Field:
+        """A struct where it stands."""
+        return model.Field(
+            name=item["name"],
+            at=item["at"],
+            bits=struct.length * 8,
+            type="struct",
+            identifier=item.get("identifier"),
+            summary=item.get("summary", ""),
+            byte_order=around[0],
+            bit_order=around[1],
+            count=item.get("count", 0),
+            struct=struct,
+            errata=self.applied.about(item),
+            source=item,
+        )
+
     def field(self, item: Map, around: Orders) -> model.Field:
         get = item.get
         kind = get("type", "uint")  # which parts of a field need not say
@@ -194,7 +257,7 @@ class Builder:
             scale=scale,
             curve=polynomial,
             const=get("const"),
-            special=tuple(self.each("special", special, item)) if "special" in item else (),
+            special=self.special(item, kind) if "special" in item else (),
             limits=limits(item),
             summary=get("summary", ""),
             byte_order=byte_order,
@@ -204,12 +267,18 @@ class Builder:
             source=item,
         )
 
-    def loggable(self, item: Map) -> model.Loggable:
-        errata = self.applied.about(item)
-        return model.Loggable(item["bit"], wire_ids.number(item["id"]), item.get("name", ""), errata, item)
+    def special(self, item: Map, kind: str) -> tuple[model.Special, ...]:
+        """The values with a meaning of a field of a type, but what it cannot hold."""
+        bits = item.get("bits", 0)
+        found = self.each("special", lambda one: special(kind, bits, one["value"], one["meaning"]), item)
+        return tuple(one for one in found if one is not None)
 
-    def missing(self, item: Map) -> model.Missing:
-        return model.Missing(item["kind"], wire_ids.number(item["id"]), item["name"], item["why"])
+    def loggable(self, item: Map) -> annex.Loggable:
+        errata = self.applied.about(item)
+        return annex.Loggable(item["bit"], wire_ids.number(item["id"]), item.get("name", ""), errata, item)
+
+    def missing(self, item: Map) -> annex.Missing:
+        return annex.Missing(item["kind"], wire_ids.number(item["id"]), item["name"], item["why"])
 
 
 def _id(item: Map, key: str) -> int | None:
@@ -236,9 +305,23 @@ def calibration(text: str | None, kind: str) -> tuple[formula.Scale | None, curv
     return None, None
 
 
-def special(item: Map) -> model.Special:
-    """A value with a meaning."""
-    return model.Special(item["value"], item["meaning"])
+def special(kind: str, bits: int, value: int | float | str, meaning: str) -> model.Special | None:
+    """A value with a meaning; None if a field of the type has no such value."""
+    if kind != "float":
+        return model.Special(value, meaning) if isinstance(value, int) else None
+    raw = float_bits(value, bits)
+    return None if raw is None else model.Special(raw, meaning, floats.text_of(floats.value_of(raw, bits), bits))
+
+
+def float_bits(value: int | float | str, bits: int) -> int | None:
+    """The bits of what an ICD says is the value of a float of that width; None if that is none."""
+    if bits not in floats.WIDTHS or (isinstance(value, str) and value not in floats.NAMED):
+        return None
+    with suppress(OverflowError):
+        return (
+            floats.bits_of(floats.NAMED[value], bits) if isinstance(value, str) else floats.nearest(exact(value), bits)
+        )
+    return None
 
 
 def limits(item: Map) -> model.Limits | None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Set
 
 from icdgen.diagnostics import Finding, Place
+from icdgen.icd.erratum import Erratum
 from icdgen.icd.located import Map, Seq, unread
-from icdgen.icd.model import Erratum
 from icdgen.suggest import close_to
 
 _AGAIN = "look at the manual again, then update or remove the entry"
@@ -134,9 +134,10 @@ def _targets(tree: Map, where: Map, named: _ByName) -> Iterator[Map]:
                 yield from (m for m in _maps(enum.get("members")) if m.get("value") == where["member"])
     elif "loggable" in where:
         yield from (row for row in _maps(tree.get("loggable")) if row.get("bit") == where["loggable"])
-    elif "message" in where:
+    elif "message" in where or "struct" in where:
         names = where.get("fields") or ([where["field"]] if "field" in where else None)
-        for message in named.of(tree, "messages", where["message"]):
+        what = "message" if "message" in where else "struct"
+        for message in named.of(tree, f"{what}s", where[what]):
             if names is None:
                 yield message
             else:
@@ -226,14 +227,15 @@ def _nowhere(tree: Map, where: Map) -> Finding:
         known = [e.get("name") for e in _maps(tree.get("enums"))]
     elif "loggable" in where:
         wanted = f"loggable bit {where['loggable']}"
-    elif "message" in where:
-        wanted = f"message `{where['message']}`"
-        known = [m.get("name") for m in _maps(tree.get("messages"))]
-        messages = list(_named(tree, "messages", where["message"]))
+    elif "message" in where or "struct" in where:
+        what = "message" if "message" in where else "struct"
+        wanted = f"{what} `{where[what]}`"
+        known = [m.get("name") for m in _maps(tree.get(f"{what}s"))]
+        messages = list(_named(tree, f"{what}s", where[what]))
         if messages:
             wanted = f"field `{where.get('field') or where.get('fields')}` in {wanted}"
             known = [f.get("name") for m in messages for f in _maps(m.get("fields"))]
-    target = str(where.get("field") or where.get("message") or where.get("enum") or "")
+    target = str(where.get("field") or where.get("message") or where.get("struct") or where.get("enum") or "")
     close = close_to(target, (k for k in known if isinstance(k, str)))
     help = f"did you mean `{close}`?" if close else "names are the manual's, to the letter"
     return Finding(NOWHERE, f"there is no {wanted}", where.place, help)

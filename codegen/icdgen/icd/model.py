@@ -12,9 +12,12 @@ from fractions import Fraction
 from typing import Any
 
 from icdgen.frozen import dataclass
+from icdgen.icd.annex import Loggable, Missing
 from icdgen.icd.curve import Curve, leads_back
+from icdgen.icd.erratum import Erratum as Erratum
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, unread
+from icdgen.icd.paths import Step, lines_of, members_of, name_of, placed
 from icdgen.icd.units import Unit
 
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"
@@ -22,33 +25,6 @@ TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configurati
 # Where the ICD gives no other numbers.
 CAN_DATA_BYTES = 8  # of a packet
 CAN_PACKETS = 256  # of an extended message
-
-
-@dataclass(frozen=True, slots=True)
-class Erratum:
-    """A decision about a fault of the manual; or a note, which holds and accepts nothing: ``why`` is what it says."""
-
-    id: str
-    title: str
-    why: str
-    evidence: str
-    confidence: str  # "certain" | "likely" | "open"; a note may do without: ""
-    tables: tuple[int, ...] = ()
-    printed: tuple[tuple[str, object], ...] = ()
-    held: tuple[tuple[str, object], ...] = ()
-    changes: bool = False
-    is_note: bool = False
-    source: Map = field(default_factory=unread, compare=False, repr=False)
-
-    @property
-    def label(self) -> str:
-        """What it is called in comments and on pages."""
-        return "Note" if self.is_note else "Erratum"
-
-    @property
-    def sureness(self) -> str:
-        """Its confidence in brackets behind a name, if it has one."""
-        return f" ({self.confidence})" if self.confidence else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,10 +70,11 @@ class Enum:
 
 @dataclass(frozen=True, slots=True)
 class Special:
-    """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out'."""
+    """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out', or NaN for 'not known'."""
 
-    value: int
+    value: int  # of a float its bits
     meaning: str
+    number: str = ""  # of a float: `nan`, `inf`, `-inf`, or the shortest decimal
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,41 +88,22 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
-    """A step of the path from a message to a field of its: what stands there, and which element of it, where it is an array."""
-
-    name: str
-    index: int | None = None
-    count: int = 0  # of all elements
-    identifier: str | None = None
-
-    @property
-    def text(self) -> str:
-        """``Temperatures[3]``"""
-        return self.name if self.index is None else f"{self.name}[{self.index}]"
-
-    @property
-    def alias(self) -> str:
-        """The same of its identifier, if it has one."""
-        return self.text if self.identifier is None else replace(self, name=self.identifier).text
-
-
-@dataclass(frozen=True, slots=True)
 class Field:
-    """A field of a message: ``bits`` bits at bit ``at`` of the frame. Each element of an array is one: `Message.members`."""
+    """A field of a message, or of a struct: ``bits`` bits at bit ``at`` of it.
+
+    Each element of an array is one, and each field of a struct, wherever the struct stands: `Message.members`.
+    """
 
     name: str
     at: int
     bits: int
-    type: str  # "uint" | "int" | "bool" | "enum" | "float" | "bytes" | "text"
+    type: str  # "uint" | "int" | "bool" | "enum" | "float" | "bytes" | "text"; of a member also "struct"
     identifier: str | None = None
     enum: Enum | None = None
     unit: Unit | None = None
     formula: str = ""  # as held, for documentation
     scale: Scale | None = None  # of a number, where the formula is a line
-    curve: Curve | None = (
-        None  # of any other formula, and of one on floats; without either, the physical value is the raw one
-    )
+    curve: Curve | None = None  # of any other formula, and of one on floats; without either it is the raw value
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
@@ -153,8 +111,9 @@ class Field:
     byte_order: str = ""  # its own or its message's; empty: the node's
     bit_order: str = ""  # likewise; `at` is counted by it
     view: bool = False  # it reads bits that other fields have, and has none: see `Message.owners`
-    path: tuple[Step, ...] = ()  # of an element: its array; empty: the message has the field itself
+    path: tuple[Step, ...] = ()  # of an element, or a field of a struct: the steps to it, itself the last; else empty
     count: int = 0  # of an array that stands as one: its elements, of which this is the first but for its name
+    struct: Struct | None = None  # what a member of type "struct" is made of
     implied: bool = False  # it has no bits: the length of a frame tells its value; see `Tail`
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
@@ -170,15 +129,25 @@ class Field:
 
     @property
     def elements(self) -> tuple[Field, ...]:
-        """The fields that an array which stands as one is made of; else the field itself.
+        """The fields that an array or a struct which stands as one is made of; else the field itself."""
+        if self.struct is not None:
+            return tuple(one for place in self.places for one in placed(self, place, self.struct.fields))
+        return self.places
 
-        They follow each other without a gap.
-        """
-        return tuple(map(self._element, range(self.count))) or (self,)
-
-    def _element(self, index: int) -> Field:
-        step = Step(self.name, index, self.count, self.identifier)
-        return replace(self, name=step.text, at=self.at + index * self.bits, path=(step,), count=0)
+    @property
+    def places(self) -> tuple[Field, ...]:
+        """All elements of what stands as one, structs whole; else the field itself."""
+        if not self.count:
+            return (self,)
+        found: list[tuple[int, tuple[Step, ...]]] = [(self.at, ())]
+        for step in self.path or (Step(self.name, None, self.count, self.bits, self.identifier),):
+            indexes = range(step.count) if step.is_open else (None,)
+            found = [
+                (at + (index or 0) * step.stride, (*before, step if index is None else replace(step, index=index)))
+                for at, before in found
+                for index in indexes
+            ]
+        return tuple(replace(self, name=name_of(steps), at=at, path=steps, count=0) for at, steps in found)
 
     @property
     def index(self) -> int | None:
@@ -229,6 +198,40 @@ class Field:
 
 
 @dataclass(frozen=True, slots=True)
+class Struct:
+    """Fields that stand together, in messages and in other structs; declared once."""
+
+    name: str
+    length: int  # bytes
+    fields: tuple[Field, ...]  # where they lie in it, with orders of their own only
+    identifier: str | None = None
+    summary: str = ""
+    table: int | None = None
+    node: str = ""  # name of the node that declares it
+    errata: tuple[Erratum, ...] = ()
+    source: Map = field(default_factory=unread, compare=False, repr=False)
+
+    @property
+    def owners(self) -> tuple[Field, ...]:
+        """All fields: a struct has no views."""
+        return self.fields
+
+    @property
+    def members(self) -> tuple[Field, ...]:
+        """The fields as the ICD declares them: an array stands as one, and so does a struct."""
+        return members_of(self.fields)
+
+    @property
+    def lines(self) -> tuple[Field, ...]:
+        """See `Message.lines`."""
+        return lines_of(self.fields)
+
+    @property
+    def tail(self) -> None:
+        """It has no open end."""
+
+
+@dataclass(frozen=True, slots=True)
 class Tail:
     """The end of a message whose frames differ in length: an array, bytes or text, of which there is not always all.
 
@@ -239,28 +242,6 @@ class Tail:
     counter: str  # the field that says how many elements there are: one of the frame, or an implied one
     step: int  # bytes of an element
     most: int  # elements
-
-
-def implied_count(end: Field, length: int) -> Field:
-    """How many elements the open ``end`` has (bytes, text, an array as one) of frames of up to so many bytes that do not say it."""
-    most, what = (end.bits // 8, "Size") if end.is_bytes else (end.count, "Count")
-    return Field(
-        name=f"{end.name} {what}",
-        at=8 * length,
-        bits=8 if most < 256 else 16,
-        type="uint",
-        identifier=f"{end.identifier} {what}" if end.identifier else None,
-        implied=True,
-        source=end.source,
-    )
-
-
-def _declared(field: Field) -> Field:
-    """The array of which a field is the first element; or else the field."""
-    if not field.path:
-        return field
-    step = field.path[0]
-    return replace(field, name=step.name, path=(), count=step.count)
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,6 +275,7 @@ class Message:
     contains: tuple[Part, ...] = ()
     reserved: int = 0  # bytes at the end that are said to be reserved
     tail: Tail | None = None  # where frames differ in length
+    may_end_early: str = ""  # "zeros": frames may be sent without the zeros that they end with; else empty
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
@@ -301,6 +283,8 @@ class Message:
     @property
     def least(self) -> int:
         """Bytes of the shortest frame."""
+        if self.may_end_early:
+            return min(1, self.length)  # of zeros alone, one is sent
         return self.length - (self.tail.most * self.tail.step if self.tail else 0)
 
     @property
@@ -333,10 +317,16 @@ class Message:
 
     @property
     def members(self) -> tuple[Field, ...]:
-        """The fields as the ICD declares them: an array stands as one."""
-        if not any(field.path for field in self.fields):
-            return self.fields
-        return tuple(map(_declared, (one for one in self.fields if not any(step.index for step in one.path))))
+        """The fields as the ICD declares them: an array stands as one, and so does a struct."""
+        return members_of(self.fields)
+
+    @property
+    def lines(self) -> tuple[Field, ...]:
+        """The fields, each line of the ICD once: an array stands as one; a field of a struct is ``Satellites[].GNSS``.
+
+        What repeats such a field is its ``count``, and ``elements`` are its places.
+        """
+        return lines_of(self.fields)
 
     @property
     def fresh(self) -> dict[str, int | bytes]:
@@ -360,27 +350,6 @@ class Message:
 
 
 @dataclass(frozen=True, slots=True)
-class Loggable:
-    """One bit of the log mask (bit 0: least significant bit of the first byte) and the frame it selects."""
-
-    bit: int
-    id: int
-    name: str = ""
-    errata: tuple[Erratum, ...] = ()
-    source: Map = field(default_factory=unread, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Missing:
-    """A message that the manual mentions and does not describe."""
-
-    kind: str
-    id: int
-    name: str
-    why: str
-
-
-@dataclass(frozen=True, slots=True)
 class Node:
     """One ICD file, errata applied. Messages of included nodes are not repeated here: see `Icd.messages_of`."""
 
@@ -391,6 +360,7 @@ class Node:
     bit_order: str  # "lsb0" | "msb0"
     messages: tuple[Message, ...]
     enums: tuple[Enum, ...]
+    structs: tuple[Struct, ...] = ()  # each after those that it has in it
     node_type: int | None = None
     interface_version: int | None = None
     document: tuple[tuple[str, str], ...] = ()

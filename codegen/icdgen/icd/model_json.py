@@ -28,8 +28,8 @@ _CLASSES: dict[str, type[Any]] = {
 
 def text(icd: model.Icd, inputs: dict[Path, str]) -> bytes:
     """The model, and what it was read from with the fingerprint of each."""
-    tree = _Writer().plain(icd)
-    return json.dumps([tree, [[str(path), seen] for path, seen in inputs.items()]], separators=(",", ":")).encode()
+    tree = [_Writer().plain(icd), [[str(path), seen] for path, seen in inputs.items()]]
+    return json.dumps(tree, separators=(",", ":"), check_circular=False).encode()
 
 
 def read(data: bytes) -> tuple[model.Icd, dict[Path, str]] | None:

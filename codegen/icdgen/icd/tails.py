@@ -5,7 +5,7 @@ In the model it has all its elements; `Message.tail` says how many of them a fra
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from icdgen.icd.located import Map
@@ -32,7 +32,7 @@ def is_open(item: Map) -> bool:
 
 def open_parts(message: Map) -> list[Map]:
     """The fields of a message that are said to be open."""
-    return [item for item in _fields(message) if is_open(item) and type(item.get("up_to", 0)) is int]
+    return [item for item in _fields(message, is_open) if type(item.get("up_to", 0)) is int]
 
 
 def unit(item: Map) -> int:
@@ -47,10 +47,10 @@ def counter_of(message: Map, item: Map) -> Map | None:
     return None if name == REST else next((one for one in _fields(message) if one.get("name") == name), None)
 
 
-def _fields(message: Map) -> list[Map]:
-    """Those whose place can be read: what is wrong with the others is the schema's business."""
+def _fields(message: Map, wanted: Callable[[Map], bool] | None = None) -> list[Map]:
+    """Those, or the wanted ones, whose place can be read: what is wrong with the others is the schema's business."""
     items = message.get("fields")
-    found = [item for item in items if isinstance(item, Map)] if isinstance(items, list) else []
+    found = filter(wanted, (item for item in items if isinstance(item, Map))) if isinstance(items, list) else ()
     return [
         item
         for item in found

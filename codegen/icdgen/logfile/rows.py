@@ -76,7 +76,7 @@ def _enum(column: Column) -> Callable[[bytes], Value]:
 
 
 def _float(column: Column) -> Callable[[bytes], Value]:
-    from icdgen.values.numbers import float_text
+    from icdgen.icd import floats
 
     assert column.field
     raw, bits, curve = _raw(column), column.field.bits, column.curve
@@ -86,7 +86,7 @@ def _float(column: Column) -> Callable[[bytes], Value]:
         value = struct.unpack(form, struct.pack(whole, raw(entry)))[0]
         if curve is not None:
             return curve.double(value)
-        return float(float_text(value, bits)) if math.isfinite(value) else value  # 0.1, not 0.10000000149011612
+        return float(floats.text_of(value, bits)) if math.isfinite(value) else value  # 0.1, not 0.10000000149011612
 
     return read
 

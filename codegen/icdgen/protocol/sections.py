@@ -10,7 +10,7 @@ from dataclasses import field
 from typing import Any
 
 from icdgen import codec
-from icdgen.frozen import dataclass
+from icdgen.frozen import rare
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message, Node
 from icdgen.protocol.declared import (
     BYTE,
@@ -40,7 +40,7 @@ CAN_KINDS = ("telecommand", "acknowledge", "refusal", "request", "reply", "reque
 _POLL = "time between two polls of "
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@rare(frozen=True)
 class Direction:
     """Ids of one direction."""
 
@@ -48,7 +48,7 @@ class Direction:
     last: int
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@rare(frozen=True)
 class Framing:
     """How messages are delimited on the UART. The escape byte comes before each of the other three."""
 
@@ -66,7 +66,7 @@ class Framing:
     )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@rare(frozen=True)
 class Acknowledge:
     """The acknowledge as a message on the UART, which counts from its first byte."""
 
@@ -75,7 +75,7 @@ class Acknowledge:
     error_at: int = octets("", "where the error code stands")
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@rare(frozen=True)
 class Polled:
     """The frame that tells what became of a telecommand, with the names of its fields."""
 
@@ -86,7 +86,7 @@ class Polled:
     parameter: str
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@rare(frozen=True)
 class Crc:
     """Parameters of a CRC in the notation of the usual catalogues."""
 
@@ -99,7 +99,7 @@ class Crc:
     empty: int | None = code("empty", "checksum of no bytes at all, where it is not what the algorithm gives", None)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+@rare(frozen=True, kw_only=True)
 class Checksum:
     """The optional checksum of telecommands and frames."""
 
@@ -110,7 +110,7 @@ class Checksum:
     bytes: int = octets("", "bytes that it adds to a message", 1, BYTE)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@rare(frozen=True)
 class CanPart:
     """A part of the CAN identifier."""
 
@@ -118,7 +118,7 @@ class CanPart:
     shift: int
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+@rare(frozen=True, kw_only=True)
 class Extended:
     """CAN messages of several packets."""
 
@@ -135,7 +135,7 @@ class Extended:
     packet_timeout: int = time("packet_timeout_ms", "longest time between two packets of a message", 1000)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+@rare(frozen=True, kw_only=True)
 class Can:
     """CAN: parts of the identifier by role (type, channel, source, destination), and types by kind of message."""
 
@@ -153,7 +153,7 @@ class Can:
     extended: Extended | None
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@rare(frozen=True)
 class LogBit:
     """A bit of the log mask and the frame that it selects; ``id`` and ``name`` are None for an unassigned bit."""
 
@@ -163,7 +163,7 @@ class LogBit:
     name: str | None
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+@rare(frozen=True, kw_only=True)
 class LogMask:
     """The mask of a log. Frames stand in slots, in the order of rising bits."""
 
@@ -183,7 +183,7 @@ class LogMask:
         return found
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@rare(frozen=True)
 class LogFile:
     """The file form of a log."""
 
@@ -195,7 +195,7 @@ class LogFile:
     file_type: int | None = number("file_type.value", "type of such a file", 0, BYTE, None)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@rare(frozen=True)
 class LogMessage:
     """The unsolicited form of a log. Places count from the id."""
 
@@ -204,7 +204,7 @@ class LogMessage:
     frames_at: int = octets("frames_byte", "where the selected frames begin, counted from the id", 0)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@rare(frozen=True)
 class TimePart:
     at: int
     bits: int
@@ -212,13 +212,13 @@ class TimePart:
     offset: int
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@rare(frozen=True)
 class IndexField:
     at: int
     bytes: int
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+@rare(frozen=True, kw_only=True)
 class Index:
     """Entries of the index file: fields by role (type, counter, checksum, size, time, meta)."""
 
@@ -227,7 +227,7 @@ class Index:
     fields: dict[str, IndexField]
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+@rare(frozen=True, kw_only=True)
 class HoleMap:
     """A bit for each packet of a block."""
 
@@ -249,7 +249,7 @@ class HoleMap:
     field: str
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@rare(frozen=True)
 class Step:
     """A message that plays a part in a procedure, and its fields by role."""
 
@@ -262,7 +262,7 @@ class Step:
         return codec.encode(node, self.message, self.message.fresh | given)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+@rare(frozen=True, kw_only=True)
 class Listing:
     """How the list of files is read one by one."""
 
@@ -276,7 +276,7 @@ class Listing:
 _COVERS_FILL = "whether the checksum of a block covers the fill of its last packet"
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+@rare(frozen=True, kw_only=True)
 class Download:
     """How a file is downloaded."""
 
@@ -292,7 +292,7 @@ class Download:
     rounds: int = number("rounds", "most bursts for one block", 1, U32)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+@rare(frozen=True, kw_only=True)
 class Upload:
     """How a file is uploaded."""
 
@@ -317,7 +317,7 @@ class Upload:
     )
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+@rare(frozen=True, kw_only=True)
 class Erasure:
     """How files are deleted, or their medium is formatted."""
 
@@ -332,7 +332,7 @@ PROCEDURES: dict[str, type[Any]] = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+@rare(frozen=True, kw_only=True)
 class Files:
     """File transfer. A procedure that the ICD does not describe completely is None."""
 
@@ -365,7 +365,7 @@ class Files:
         }
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+@rare(frozen=True, kw_only=True)
 class Operation:
     """What a telecommand starts; its frame says when it is done: ``busy`` is clear, or ``ready`` is set."""
 
@@ -380,7 +380,7 @@ class Operation:
     )
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@rare(frozen=True)
 class Settings:
     """How a client waits and tries again, unless it is told otherwise."""
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 from icdgen import layout
 from icdgen.describe.bounds import allowed_ends, bounds
 from icdgen.describe.comments import orders_text
-from icdgen.describe.numbers import exact_text, factor_text, value_text
+from icdgen.describe.numbers import byte_count, exact_text, factor_text, special_text, value_text
 from icdgen.icd.model import Field, Message, Node
 from icdgen.tables import Column, render
 
@@ -28,7 +28,7 @@ _COLUMNS = [
 def field_table(message: Message, node: Node, width: int | None = None) -> str:
     """Fields and reserved bits in the order of the frame; empty for a message without any."""
     rows: list[tuple[int, tuple[str, ...]]] = [
-        (field.at, _row(field, message)) for field in message.members if not field.implied
+        (field.at, _row(field, message)) for field in message.lines if not field.implied
     ]
     reserved = ("reserved", "", "", "", "", "", "")
     rows += [(gap.at, (str(gap.at), str(gap.bits), *reserved)) for gap in layout.gaps(message, node)]
@@ -61,13 +61,16 @@ def remarks(
         yield "a view of bits that other fields have"
     if told := orders_text(field):
         yield told
+    for step in field.path:
+        if step.struct is not None and step.is_open:
+            yield f"{step.count} times, every {byte_count(step.struct.length)}" if step.count > 1 else "once"
     if field.const is not None:
         yield f"always {value_text(field.const)}"
     for bound in bounds(field.limits):
         if bound.key in ("above", "below"):
             yield f"{bound.kind.words} {number(bound.value)}"
     for special in field.special:
-        yield f"{number(Fraction(special.value))}: {special.meaning}"
+        yield f"{special_text(special) if special.number else number(Fraction(special.value))}: {special.meaning}"
 
 
 def _notes(field: Field, message: Message) -> list[str]:

@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from icdgen.describe.bounds import bounds
+from icdgen.icd.annex import Loggable
+from icdgen.icd.erratum import Erratum
 from icdgen.icd.located import plain
-from icdgen.icd.model import Enum, Erratum, Field, Icd, Limits, Loggable, Member, Message, Node
+from icdgen.icd.model import Enum, Field, Icd, Limits, Member, Message, Node, Struct
 
 FORMAT = 1
 SCHEMA = Path(__file__).parent.with_name("show.schema.json")
@@ -23,6 +25,7 @@ _OTHERWISE = {  # what is not shown, or not as it is
     Message: ("node",),
     Field: ("at", "formula"),
     Enum: ("node",),
+    Struct: ("node",),
     Erratum: ("why",),
 }
 
@@ -63,6 +66,7 @@ def _node(node: Node) -> _Object:
         notes=_errata(node, is_note=True),
     ) | {
         "includes": list(node.includes),
+        **({"structs": [_struct(one) for one in node.structs]} if node.structs else {}),
         "messages": [_message(m) for m in node.messages],
         "enums": [_enum(e) for e in node.enums],
         "loggable": [_row(row) for row in node.loggable],
@@ -93,12 +97,17 @@ def _tail(message: Message) -> _Object | None:
     )
 
 
+def _struct(struct: Struct) -> _Object:
+    return _row(struct) | {"fields": [_field(f) for f in struct.members]}
+
+
 def _field(field: Field) -> _Object:
     scale = field.scale
     return _present(
         **_attributes(field),
         offset=field.at,
         enum=field.enum.name if field.enum else None,
+        struct=field.struct.name if field.struct else None,
         unit=field.unit.symbol if field.unit else None,
         scale=str(scale.factor) if scale else None,
         scale_offset=str(scale.offset) if scale and scale.offset else None,
@@ -115,7 +124,7 @@ def _enum(enum: Enum) -> _Object:
     return _row(enum) | {"members": [_row(member) for member in enum.members]}
 
 
-def _row(one: Enum | Member | Loggable) -> _Object:
+def _row(one: Enum | Member | Loggable | Struct) -> _Object:
     return _present(**_attributes(one), **_ids(one.errata))
 
 
@@ -146,10 +155,11 @@ def _errata(node: Node, is_note: bool) -> list[_Object]:
 
 def _places(node: Node) -> Iterator[tuple[_Object, tuple[Erratum, ...]]]:
     """Every object of the node that errata can concern, with those that do."""
-    for message in node.messages:
-        yield {"message": message.name}, message.errata
-        for field in message.members:
-            yield {"message": message.name, "field": field.name}, field.errata
+    for what, owners in (("struct", node.structs), ("message", node.messages)):
+        for owner in owners:
+            yield {what: owner.name}, owner.errata
+            for field in owner.members:
+                yield {what: owner.name, "field": field.name}, field.errata
     for enum in node.enums:
         yield {"enum": enum.name}, enum.errata
         for member in enum.members:

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 from icdgen.describe.errata import errata_of_enum, errata_of_message
 from icdgen.describe.numbers import length_text
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Erratum, Icd, Message, Node
+from icdgen.icd.erratum import Erratum
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node
 from icdgen.icd.wire_ids import DEFAULT_BITS, size
 from icdgen.show.fields import field_table
 from icdgen.tables import Column, clean, render
@@ -89,7 +90,7 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
             "/".join(map(str, m.ids)),
             m.kind,
             m.name,
-            str(m.length) if m.tail is None else f"{m.least} to {m.length}",
+            str(m.length) if len(m.lengths) == 1 else f"{m.least} to {m.length}",
             str(len(m.fields)),
             _number(m.table),
             m.group,

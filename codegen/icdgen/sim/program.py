@@ -129,7 +129,7 @@ class Program:
         for index, field in enumerate(known.fields):
             value = raw[field.name]
             wrong = isinstance(value, int) and (
-                bool(violations(field, value)) and not any(s.value == value for s in field.special)
+                bool(violations(field, value)) and codec.special_of(field, value) is None
                 if self.settings.strict
                 else field.const is not None and value != field.const
             )

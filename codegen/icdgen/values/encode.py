@@ -190,7 +190,7 @@ def _fits(field: Field, value: int, text: str, raw: bool) -> None:
 
 
 def _allowed(field: Field, value: int, text: str) -> None:
-    if any(s.value == value for s in field.special):
+    if codec.special_of(field, value):
         return
     found = violations(field, value)
     if found:

@@ -82,12 +82,19 @@ def _text(field: Field, text: str) -> bytes:
         raise BadValue(f"`{text}` is not of up to {field.bits // 8} ASCII characters") from None
 
 
+def _special(field: Field, text: str) -> int | None:
+    """The value that has the text as its meaning."""
+    return next((s.value for s in field.special if s.meaning.casefold() == text.casefold()), None)
+
+
 def _float(field: Field, text: str, raw: bool = False) -> int:
     if text[:2] in ("0x", "0X"):
         value = numbers.integer(text)
         if raw and value is not None:
             return value
         raise BadValue(f"`{text}` is not a number; the bits of a float can be given with --raw")
+    if not raw and (special := _special(field, text)) is not None:
+        return special
     if field.curve is not None and not raw:
         return _on_curve(field, text)
     try:
@@ -100,8 +107,7 @@ def _float(field: Field, text: str, raw: bool = False) -> int:
 
 
 def _integer(field: Field, text: str) -> int:
-    special = next((s.value for s in field.special if s.meaning.casefold() == text.casefold()), None)
-    if special is not None:
+    if (special := _special(field, text)) is not None:
         return special
     if field.curve is not None:
         return _on_curve(field, text)

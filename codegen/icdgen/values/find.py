@@ -9,6 +9,7 @@ from typing import Protocol, TypeVar
 
 from icdgen import naming
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Field, Icd, Message, Node
+from icdgen.icd.paths import arrays_of
 from icdgen.suggest import close_words
 from icdgen.values.errors import Ambiguous, NotFound
 
@@ -109,7 +110,7 @@ def find_field(message: Message, key: str, vocabulary: tuple[str, ...] = ()) -> 
 
 def find_array(message: Message, key: str, vocabulary: tuple[str, ...] = ()) -> tuple[Field, ...]:
     """The elements of the array of that name, in any case, or of that identifier; none if there is no such array."""
-    arrays = [one for one in message.members if one.count]
+    arrays = arrays_of(message.fields)
     found = by_name(arrays, key, vocabulary)
     return found[0].elements if len(found) == 1 else ()
 

@@ -8,8 +8,8 @@ from fractions import Fraction
 from icdgen import codec, layout
 from icdgen.describe.bounds import bounds
 from icdgen.describe.numbers import bit_range, exact_text, value_text
+from icdgen.icd import floats
 from icdgen.icd.model import Field, Icd, Message, Node
-from icdgen.values import numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,9 +60,9 @@ class Row:
         if kind == "bool":
             return "true" if self.raw else "false"
         if self.field.curve is not None and self.number is not None:
-            return numbers.float_text(self.number, 64)
+            return floats.text_of(self.number, 64)
         if kind == "float":
-            return numbers.float_text(codec.float_value(self.field, self.raw), self.field.bits)
+            return floats.text_of(codec.float_value(self.field, self.raw), self.field.bits)
         physical = self.physical
         return self.raw_text if physical is None else exact_text(physical)
 
@@ -141,8 +141,8 @@ def remarks(field: Field, raw: int | bytes) -> list[str]:
     """What a reader should know about a value: its special meaning, or that the ICD does not allow it."""
     if isinstance(raw, bytes):
         return []
-    special = next((s.meaning for s in field.special if s.value == raw), None)
-    return violations(field, raw) if special is None else [special]
+    special = codec.special_of(field, raw)
+    return violations(field, raw) if special is None else [special.meaning]
 
 
 def violations(field: Field, raw: int) -> list[str]:

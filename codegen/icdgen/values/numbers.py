@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import re
-import struct
 from fractions import Fraction
+
+from icdgen.icd import floats
 
 LONGEST = 400
 
@@ -39,41 +39,6 @@ def float_bits(text: str, bits: int) -> int | None:
     """
     sign, word = text.startswith("-"), text.lstrip("+-").lower()
     if word in _SPECIAL and len(text) - len(word) <= 1:
-        return _pack(float(_SPECIAL[word]), bits) | sign << bits - 1
+        return floats.bits_of(float(_SPECIAL[word]), bits) | sign << bits - 1
     exact = rational(text)
-    return None if exact is None else _nearest(abs(exact), bits) | sign << bits - 1
-
-
-def _nearest(value: Fraction, bits: int) -> int:
-    """Bits of the nearest float, ties to even, from the exact value: going through a double would round twice."""
-    precision, lowest, highest = (24, -149, 104) if bits == 32 else (53, -1074, 971)
-    if not value:
-        return 0
-    exponent = value.numerator.bit_length() - value.denominator.bit_length() - precision
-    exponent = max(exponent, lowest)
-    digits = round(value / Fraction(2) ** exponent)
-    while digits.bit_length() > precision:
-        exponent += 1
-        digits = round(value / Fraction(2) ** exponent)
-    if exponent > highest:
-        raise OverflowError
-    return _pack(math.ldexp(digits, exponent), bits)
-
-
-def _pack(value: float, bits: int) -> int:
-    return int.from_bytes(struct.pack("<f" if bits == 32 else "<d", value), "little")
-
-
-def float_text(value: float, bits: int) -> str:
-    """The shortest decimal that is read back as the same float of that width."""
-    if bits == 64 or value != value or value in (float("inf"), float("-inf")):
-        return repr(value)
-    wanted = _pack(value, 32)
-    return next(repr(float(text)) for d in range(1, 10) if _reads_as(text := f"{value:.{d}g}", wanted))
-
-
-def _reads_as(text: str, wanted: int) -> bool:
-    try:
-        return float_bits(text, 32) == wanted
-    except OverflowError:
-        return False
+    return None if exact is None else floats.nearest(abs(exact), bits) | sign << bits - 1

@@ -32,6 +32,8 @@ def frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
 
     Where frames differ in length, the longest is cut to different numbers of elements, and says so.
     """
+    if message.may_end_early:
+        yield from _ended_early(message)
     if message.tail is None:
         yield from _longest(message)
         return
@@ -41,6 +43,15 @@ def frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
         yield why, cut(message, node, frame, message.tail.most)
         count = counts[number % len(counts)]
         yield f"{why}, elements: {count}", cut(message, node, frame, count)
+
+
+def _ended_early(message: Message) -> Iterator[tuple[str, bytes]]:
+    """Frames without the zeros of their end: of every number of bytes up to some, of the most, and of a few between."""
+    longest = message.length
+    sizes = {*range(1, min(longest, 10)), *(longest * part // 8 for part in range(1, 8)), longest - 1}
+    for size in sorted(sizes - {0}):
+        yield f"ended early, bytes: {size}", random_frame(message, f"ended early {size}")[:size]
+    yield "ended early, zeros", bytes(longest - 1)
 
 
 def _counts(most: int) -> list[int]:
@@ -91,7 +102,7 @@ def values(field: Field) -> list[int | bytes]:
             )
         return [ascending, bytes(size), bytes(byte ^ 0xFF for byte in ascending)]
     if field.type == "float":
-        return list(_FLOATS[field.bits])
+        return list(dict.fromkeys((*_FLOATS[field.bits], *(special.value for special in field.special))))
     if field.type == "bool":
         return [0, 1]
     return list(dict.fromkeys(v for v in _numbers(field) if field.raw_min <= v <= field.raw_max))

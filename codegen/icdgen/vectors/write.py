@@ -81,6 +81,8 @@ def _message(vectors: MessageVectors) -> str:
     ids = {"id": message.id, "set_id": message.set_id, "get_id": message.get_id}
     head.update((key, id) for key, id in ids.items() if id is not None)
     head["length"] = message.length
+    if message.may_end_early:
+        head["may_end_early"] = message.may_end_early
     if message.tail is not None:
         tail = message.tail
         head["tail"] = {
@@ -111,7 +113,7 @@ def _field(vectors: MessageVectors, field: Field) -> str:
         row["view"] = True
     row["default"] = raw_json(field, vectors.default[field.name])
     if field.special:
-        row["special"] = [special.value for special in field.special]
+        row["special"] = [raw_json(field, special.value) for special in field.special]
     if field.limits:
         limits = {key: getattr(field.limits, key) for key in ("min", "max", "above", "below")}
         row["limits"] = {key: decimal(value) for key, value in limits.items() if value is not None}

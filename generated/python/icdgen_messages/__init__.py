@@ -23,12 +23,14 @@ __all__ = [
     "NODES",
     "OpenEnum",
     "RangeError",
+    "Struct",
     "UnknownIdError",
     "bootloader",
     "common",
     "cubeacp",
     "cubemag",
     "cubewheel",
+    "is_special",
 ]
 
 TYPE_CHECKING = False
@@ -40,7 +42,9 @@ if TYPE_CHECKING:
     from . import cubewheel as cubewheel
     from ._base import FieldInfo as FieldInfo
     from ._base import Message as Message
+    from ._base import Struct as Struct
     from ._enumeration import OpenEnum as OpenEnum
+    from ._floats import is_special as is_special
 
 NODES = (
     "bootloader",
@@ -54,6 +58,8 @@ _HOMES = {
     "FieldInfo": "._base",
     "Message": "._base",
     "OpenEnum": "._enumeration",
+    "Struct": "._base",
+    "is_special": "._floats",
 }
 
 

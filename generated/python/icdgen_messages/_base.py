@@ -12,6 +12,7 @@ from ._fields import (
     curve,
     curve_only,
     field,
+    part,
     scaled,
     text,
     whole,
@@ -21,11 +22,13 @@ __all__ = [
     "FieldInfo",
     "Message",
     "MessageType",
+    "Struct",
     "Tail",
     "curve",
     "curve_only",
     "field",
     "on_curve",
+    "part",
     "scaled",
     "text",
     "view",
@@ -39,7 +42,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import ParamSpec, Self, TypeVar, dataclass_transform
 
-    from ._hints import M
+    from ._hints import S
 
     P = ParamSpec("P")
     N_contra = TypeVar("N_contra", contravariant=True, default=Any)
@@ -71,10 +74,10 @@ else:
 
 @dataclass_transform(
     kw_only_default=True,
-    field_specifiers=(field, scaled, curve, curve_only, whole, text),
+    field_specifiers=(field, part, scaled, curve, curve_only, whole, text),
 )
 class MessageType(type):
-    """Makes the class of a message: a dataclass with slots, of fields that `field` declares.
+    """Makes the class of a message or a struct: a dataclass with slots, of fields that `field` declares.
 
     `Message.from_bytes` and `Message.to_bytes` are compiled from these when they are
     first used, and what `dataclasses` wants is made when it is asked for.
@@ -125,11 +128,12 @@ class _DataclassParams:
         return PARAMS
 
 
-class Message(Spoken[N_contra], metaclass=MessageType):
-    """A message: its attributes hold raw values, just as they are on the wire.
+class Struct(metaclass=MessageType):
+    """Fields that stand together: a message, or what stands in messages once or several times.
 
-    It is made with keywords, of raw or of physical values. Values are not checked when
-    they are assigned, but by `to_bytes`.
+    Its attributes hold raw values, just as they are on the wire. It is made with
+    keywords, of raw or of physical values. Values are not checked when they are
+    assigned, but by `Message.to_bytes`.
     """
 
     __slots__ = ()
@@ -140,37 +144,21 @@ class Message(Spoken[N_contra], metaclass=MessageType):
         """The node whose ICD declares it."""
         NAME: ClassVar[str]
         """The manual's name, verbatim."""
-        KIND: ClassVar[str]
-        """``telecommand``, ``telemetry`` or ``configuration`` (which is both)."""
         LENGTH: ClassVar[int]
-        """Bytes of a frame, without the id; of the longest, where frames differ."""
-        TAIL: ClassVar[Tail | None]
-        """The end of frames that differ in length."""
-        IDS: ClassVar[tuple[int, ...]]
-        """Its ids: one, or the id to set it and the id to get it."""
-        TABLE: ClassVar[int | None]
-        """The manual's table."""
-        ACKNOWLEDGED: ClassVar[bool]
-        """Whether the node acknowledges it, where it is a telecommand."""
+        """Bytes: of a message those of a frame, without the id; of the longest, where frames differ."""
         FIELDS: ClassVar[tuple[FieldInfo, ...]]
         """The fields in the order of the manual."""
         VIEWS: ClassVar[tuple[FieldInfo, ...]]
         """What reads bits of the fields in another way, and is not set."""
-        PARTS: ClassVar[tuple[tuple[str, str, int], ...]]
-        """The messages that it repeats: their nodes, their classes, and from which bit."""
-        BYTE_ORDER: ClassVar[Literal["little", "big"]]
-        BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
     else:
-        IDS = FIELDS = VIEWS = PARTS = ()
-        TABLE = TAIL = None
-        ACKNOWLEDGED = True
-        BYTE_ORDER, BIT_ORDER = "little", "lsb0"
+        FIELDS = VIEWS = ()
         __dataclass_fields__ = _DataclassFields()
 
         def __init__(self, /, **values):
             """Of raw values, or physical ones, which go before. Raises `RangeError`."""
             for info in self.FIELDS:
-                setattr(self, info.attribute, values.pop(info.attribute, info.default))
+                fresh = info.default if info.struct is None else info.fresh
+                setattr(self, info.attribute, values.pop(info.attribute, fresh))
                 if info.physical in values:
                     setattr(self, info.physical, values.pop(info.physical))
             for name in values:
@@ -179,7 +167,7 @@ class Message(Spoken[N_contra], metaclass=MessageType):
     if TYPE_CHECKING:
 
         @classmethod  # pyright: ignore[reportArgumentType]
-        def from_physical(cls: Callable[P, M], *args: P.args, **values: P.kwargs) -> M:
+        def from_physical(cls: Callable[P, S], *args: P.args, **values: P.kwargs) -> S:
             """From physical values, raw ones where there is no scale or text; those of views are not looked at.
 
             Raises `RangeError`, and `TypeError` for a raw value that has a physical one.
@@ -203,6 +191,96 @@ class Message(Spoken[N_contra], metaclass=MessageType):
                 values.pop(info.attribute, None)
                 values.pop(info.physical, None)
             return cls(**values)
+
+    def as_dict(self, physical: bool = False) -> dict[str, _lazy.Any]:
+        """All values by attribute: raw, or physical where there is such a value; then those of views.
+
+        What is a struct is a dictionary itself.
+        """
+        infos = (*self.FIELDS, *self.VIEWS)
+        if physical:
+            names = [info.physical or info.attribute for info in infos]
+        else:
+            names = [info.attribute for info in infos]
+        values = {name: getattr(self, name) for name in names}
+        for info in self.FIELDS:
+            if info.struct is not None:
+                value = values[info.attribute]
+                values[info.attribute] = (
+                    tuple(one.as_dict(physical) for one in value)
+                    if info.elements
+                    else value.as_dict(physical)
+                )
+        return values
+
+    def _own(self) -> dict[str, _lazy.Any]:
+        """What it is made of: views follow from that."""
+        return {info.attribute: getattr(self, info.attribute) for info in self.FIELDS}
+
+    @classmethod
+    def from_dict(cls: type[_lazy.S], values: _lazy.Mapping[str, _lazy.Any]) -> _lazy.S:
+        """The reverse of `as_dict`, of raw or physical values; what is not there is as in a new message.
+
+        Bytes may be hexadecimal digits. Raises `RangeError` for a value that does not
+        fit, and `IcdError` for a name that is none.
+        """
+        from ._dicts import from_dict
+
+        return from_dict(cls, values)
+
+    def to_json(self, physical: bool = False) -> str:
+        """`as_dict` as JSON; bytes are hexadecimal digits."""
+        from ._dicts import to_json
+
+        return to_json(self, physical)
+
+    @classmethod
+    def from_json(cls: type[_lazy.S], data: str) -> _lazy.S:
+        """The reverse of `to_json`. Raises like `from_dict`, and `IcdError` for what is no JSON."""
+        from ._dicts import from_json
+
+        return from_json(cls, data)
+
+    def __replace__(self: _lazy.S, **changes: _lazy.Any) -> _lazy.S:
+        return type(self)(**{**self._own(), **changes})
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return self._own() == other._own()
+
+    def __repr__(self) -> str:
+        values = (f"{name}={value!r}" for name, value in self._own().items())
+        return f"{type(self).__name__}({', '.join(values)})"
+
+
+class Message(Spoken[N_contra], Struct):
+    """A message that travels: a frame of ``LENGTH`` bytes, under an id."""
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+        KIND: ClassVar[str]
+        """``telecommand``, ``telemetry`` or ``configuration`` (which is both)."""
+        IDS: ClassVar[tuple[int, ...]]
+        """Its ids: one, or the id to set it and the id to get it."""
+        TABLE: ClassVar[int | None]
+        """The manual's table."""
+        ACKNOWLEDGED: ClassVar[bool]
+        """Whether the node acknowledges it, where it is a telecommand."""
+        PARTS: ClassVar[tuple[tuple[str, str, int], ...]]
+        """The messages that it repeats: their nodes, their classes, and from which bit."""
+        TAIL: ClassVar[Tail | None]
+        """The end of frames that differ in length."""
+        ENDS_EARLY: ClassVar[bool]
+        """Whether frames may lack the zeros that they end with."""
+        BYTE_ORDER: ClassVar[Literal["little", "big"]]
+        BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
+    else:
+        IDS = PARTS = ()
+        TABLE = TAIL = None
+        ENDS_EARLY, ACKNOWLEDGED = False, True
+        BYTE_ORDER, BIT_ORDER = "little", "lsb0"
 
     @classmethod
     def from_bytes(cls: type[_lazy.M], data: _lazy.Buffer) -> _lazy.M:
@@ -235,43 +313,6 @@ class Message(Spoken[N_contra], metaclass=MessageType):
         frame: bytes = compiled(type(self), "to_bytes")(self)
         return frame
 
-    def as_dict(self, physical: bool = False) -> dict[str, _lazy.Any]:
-        """All values by attribute: raw, or physical where there is such a value; then those of views."""
-        infos = (*self.FIELDS, *self.VIEWS)
-        if physical:
-            names = [info.physical or info.attribute for info in infos]
-        else:
-            names = [info.attribute for info in infos]
-        return {name: getattr(self, name) for name in names}
-
-    def _own(self) -> dict[str, _lazy.Any]:
-        """What it is made of: views follow from that."""
-        return {info.attribute: getattr(self, info.attribute) for info in self.FIELDS}
-
-    @classmethod
-    def from_dict(cls: type[_lazy.M], values: _lazy.Mapping[str, _lazy.Any]) -> _lazy.M:
-        """The reverse of `as_dict`, of raw or physical values; what is not there is as in a new message.
-
-        Bytes may be hexadecimal digits. Raises `RangeError` for a value that does not
-        fit, and `IcdError` for a name that is none.
-        """
-        from ._dicts import from_dict
-
-        return from_dict(cls, values)
-
-    def to_json(self, physical: bool = False) -> str:
-        """`as_dict` as JSON; bytes are hexadecimal digits."""
-        from ._dicts import to_json
-
-        return to_json(self, physical)
-
-    @classmethod
-    def from_json(cls: type[_lazy.M], data: str) -> _lazy.M:
-        """The reverse of `to_json`. Raises like `from_dict`, and `IcdError` for what is no JSON."""
-        from ._dicts import from_json
-
-        return from_json(cls, data)
-
     @classmethod
     def decode_many(
         cls, frames: _lazy.Frames, physical: bool = False
@@ -280,7 +321,7 @@ class Message(Spoken[N_contra], metaclass=MessageType):
 
         The names are those of `as_dict`. What stands on whole bytes is a view of the
         frames, or of a copy of them if they can change. Raises `LengthError` if they
-        are not whole frames. Frames that differ in length are given one by one, as a
+        are not whole frames. Frames that differ in length, or end early, are given one by one, as a
         list; what ends them is an array of arrays, or of bytes. Needs numpy.
         """
         from . import _columns
@@ -298,18 +339,6 @@ class Message(Spoken[N_contra], metaclass=MessageType):
         from . import _columns
 
         return _columns.decode_table(cls, frames, physical)
-
-    def __replace__(self: _lazy.M, **changes: _lazy.Any) -> _lazy.M:
-        return type(self)(**{**self._own(), **changes})
-
-    def __eq__(self, other: object) -> bool:
-        if type(other) is not type(self):
-            return NotImplemented
-        return self._own() == other._own()
-
-    def __repr__(self) -> str:
-        values = (f"{name}={value!r}" for name, value in self._own().items())
-        return f"{type(self).__name__}({', '.join(values)})"
 
 
 def view(message: Message, attribute: str, kind: type[_lazy.T]) -> _lazy.T:

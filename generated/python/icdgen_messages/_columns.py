@@ -25,7 +25,7 @@ def decode_many(
     """See `Message.decode_many`."""
     numpy: Any = import_module("numpy")
     columns, counts = _columns(numpy, message, frames, physical)
-    for info, (name, column) in zip((*message.FIELDS, *message.VIEWS), columns.items()):
+    for info, (name, column) in zip(_lines(message), columns.items()):
         if info.is_open and column.ndim == 2:
             columns[name] = rows = numpy.empty(len(counts), object)
             for row, count in enumerate(counts):
@@ -41,7 +41,7 @@ def _columns(
     joined, counts = _together(message, frames)
     decoder = _Decoder(numpy, message, joined)
     columns = {}
-    for info in (*message.FIELDS, *message.VIEWS):
+    for info in _lines(message):
         if info.elements:
             found = [decoder.column(one) for one in info.parts]
             column = numpy.stack(found, axis=1)
@@ -61,6 +61,11 @@ def _columns(
 def _together(message: type[Message], frames: Frames) -> tuple[Buffer, list[int]]:
     """Frames that follow each other; where they differ in length, the longest, and the elements of each."""
     is_one = isinstance(frames, (bytes, bytearray, memoryview))
+    if message.ENDS_EARLY and not is_one:
+        given: list[Any] = list(frames)
+        for frame in given:
+            message.from_bytes(frame)  # if it is one
+        return b"".join(padded(message, frame) for frame in given), []
     if message.TAIL is None:
         return (frames if is_one else b"".join(frames)), []  # type: ignore[return-value, arg-type]
     if is_one:
@@ -79,7 +84,7 @@ def decode_table(message: type[Message], frames: Frames, physical: bool) -> Any:
     pyarrow: Any = import_module("pyarrow")
     columns, counts = _columns(numpy, message, frames, physical)
     fields, arrays = [], []
-    for info, (name, column) in zip((*message.FIELDS, *message.VIEWS), columns.items()):
+    for info, (name, column) in zip(_lines(message), columns.items()):
         column = numpy.ascontiguousarray(column)
         if info.is_open and column.ndim == 2:
             array = _lists(numpy, pyarrow, column, counts, info.type in OCTETS)
@@ -101,6 +106,12 @@ def decode_table(message: type[Message], frames: Frames, physical: bool) -> Any:
     }
     schema = pyarrow.schema(fields, metadata=about)
     return pyarrow.Table.from_arrays(arrays, schema=schema)
+
+
+def _lines(message: type[Message]) -> list[FieldInfo]:
+    """What has a column: fields, views, arrays, and the fields of each struct."""
+    fields = [line for info in message.FIELDS for line in info.lines]
+    return [*fields, *message.VIEWS]
 
 
 def _lists(numpy: Any, pyarrow: Any, rows: Any, counts: Any, is_octets: bool) -> Any:
@@ -293,9 +304,7 @@ def _plan(message: type[Message]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in (
-        one for field in (*message.FIELDS, *message.VIEWS) for one in field.parts
-    ):
+    for info in (one for field in _lines(message) for one in field.parts):
         if _is_whole(info):
             continue
         for piece in pieces(info, message):

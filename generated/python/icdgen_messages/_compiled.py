@@ -18,6 +18,7 @@ _FLOATS = {32: "f", 64: "d"}
 _DECODER = """\
 def from_bytes(cls, data):
     self = new(cls)
+    {made}
     try:
         {unpack}
     except error:
@@ -48,6 +49,10 @@ def compiled(message: type[_lazy.Message], name: str) -> _lazy.Any:
             function = {"from_bytes": _tails.decoder, "to_bytes": _tails.encoder}[name](
                 owner, function
             )
+        elif message.ENDS_EARLY and name == "from_bytes":
+            from . import _tails
+
+            function = _tails.filling_decoder(owner, function)
         _functions[owner, name] = function
         told = getattr(_lazy.Message, name)
         function.__doc__, function.__module__ = told.__doc__, owner.__module__
@@ -104,13 +109,18 @@ class Codec:
         )  # byte -> fields within it, from bit `shift` up
         self._terms: dict[int, list[str]] = {}  # byte -> what crossing fields add to it
         self._floats: list[str] = []  # 32-bit floats that the struct converts
+        self._holders: dict[str, str] = {}  # attribute of a struct -> its variable
+        self._made: list[str] = []  # statements that make the structs
+        self._placed: list[str] = []  # statements that put them where they stand
+        self._arrays: list[_lazy.FieldInfo] = []  # whose elements are read one by one
         self._plan()
 
     def decoder(self) -> str:
         """The source of ``from_bytes``."""
         targets = "".join(f"{item.target}, " for item in self._items)
         unpack = f"({targets}) = unpack(data)" if targets else "unpack(data)"
-        return _DECODER.format(unpack=unpack, assign=_lines(self._assign, 4))
+        made = _lines(self._made, 4)
+        return _DECODER.format(made=made, unpack=unpack, assign=_lines(self._assign, 4))
 
     def encoder(self) -> str:
         """The source of ``to_bytes``."""
@@ -149,6 +159,7 @@ class Codec:
         for info in crossing:
             self._put_together(info)
         self._join_elements()
+        self._assign += reversed(self._placed)
         self._items.sort(key=lambda item: item.byte)
         if self._floats:
             self.names |= {
@@ -166,18 +177,52 @@ class Codec:
     def _units(self) -> _lazy.Iterator[_lazy.FieldInfo]:
         """What is packed by itself: fields, arrays of words, and each element of other arrays."""
         for info in self.message.FIELDS:
-            if not info.attribute.isidentifier():
-                raise ValueError(f"{info.attribute!r} is no name of an attribute")
-            if info.elements and not _is_run(info):
-                self.names["counted"] = _codec.counted
-                self._prepare.append(f"counted(self.{info.attribute}, {info.elements})")
-                yield from info.parts
-            else:
-                yield info
+            yield from self._units_of(info)
+
+    def _units_of(self, info: _lazy.FieldInfo) -> _lazy.Iterator[_lazy.FieldInfo]:
+        if not info.attribute.rpartition(".")[2].isidentifier():
+            raise ValueError(f"{info.attribute!r} is no name of an attribute")
+        if info.struct is not None:
+            yield from self._within(info, info.struct)
+        elif info.elements and not _is_run(info):
+            self.names["counted"] = _codec.counted
+            self._prepare.append(f"counted({self._own(info)}, {info.elements})")
+            self._arrays.append(info)
+            yield from info.parts
+        else:
+            yield info
+
+    def _within(
+        self, info: _lazy.FieldInfo, struct: type[_lazy.Struct]
+    ) -> _lazy.Iterator[_lazy.FieldInfo]:
+        """The fields of a struct, wherever it stands. Each is a variable while a frame is read or written."""
+        own, parts = self._own(info), info.parts
+        kind = self._named("struct", struct)
+        held = []
+        for part in parts:
+            self._holders[part.attribute] = name = f"s{len(self._holders)}"
+            self._made.append(f"{name} = new({kind})")
+            held.append(name)
+        row = "".join(f"{name}, " for name in held) if info.elements else held[0]
+        self._placed.append(f"{own} = ({row})")
+        self._prepare.append(f"{row} = {own}")
+        for part in parts:
+            for inner in struct.FIELDS:
+                yield from self._units_of(inner.within(part))
+
+    def _own(self, info: _lazy.FieldInfo) -> str:
+        """The attribute as an expression: of a message, or of a struct in it."""
+        holder, _, name = info.attribute.rpartition(".")
+        return f"{self._holders[holder] if holder else 'self'}.{name}"
+
+    def _target(self, info: _lazy.FieldInfo) -> str:
+        """What decoding assigns a value to: the attribute; of an element a variable."""
+        is_element = info.attribute.endswith("]")
+        return f"e{info.at}" if is_element else self._own(info)
 
     def _run(self, info: _lazy.FieldInfo, byte: int) -> None:
         """An array of words: one item of the struct, which a struct of its own takes apart."""
-        own, local = f"self.{info.attribute}", f"v{byte}"
+        own, local = self._own(info), f"v{byte}"
         is_single = info.type == "float" and info.bits == 32  # a struct changes NaNs
         code = (_INTEGERS if info.type != "float" or is_single else _FLOATS)[info.bits]
         code = code.lower() if info.signed else code
@@ -202,16 +247,15 @@ class Codec:
         self._prepare.append(f"{local} = {pack}(*{given})")
 
     def _join_elements(self) -> None:
-        for info in self.message.FIELDS:
-            if info.elements and not _is_run(info):
-                values = "".join(f"{_target(part)}, " for part in info.parts)
-                self._assign.append(f"self.{info.attribute} = ({values})")
+        for info in self._arrays:
+            values = "".join(f"{self._target(part)}, " for part in info.parts)
+            self._assign.append(f"{self._own(info)} = ({values})")
 
     def _shared_bytes(self) -> set[int]:
         """Bytes that more than one field touches."""
         once: set[int] = set()
         more: set[int] = set()
-        for info in (part for one in self.message.FIELDS for part in one.parts):
+        for info in (leaf for one in self.message.FIELDS for leaf in one.leaves):
             span = _bytes_of(info)
             more |= once.intersection(span)
             once.update(span)
@@ -228,12 +272,17 @@ class Codec:
 
     def _whole(self, info: _lazy.FieldInfo, byte: int, size: int) -> None:
         """A field of whole bytes: one item of the struct."""
-        own, local, target = f"self.{info.attribute}", f"v{byte}", _target(info)
+        own, local, target = self._own(info), f"v{byte}", self._target(info)
         code = _INTEGERS.get(info.bits, "")
         if info.type in ("bytes", "text"):
             self._items.append(_Item(byte, size, f"{size}s", own, local))
             self.names["sized"] = _codec.sized
             self._prepare.append(f"{local} = sized({own}, {size})")
+        elif info.type == "float" and info.bits == 32 and "." in info.attribute:
+            self._items.append(_Item(byte, size, code, local, local))  # with its NaNs
+            self._store(info, f"{self._named('value_of', _floats.float32)}({local})")
+            bits_of = self._named("bits_of", _floats.float32_bits)
+            self._prepare.append(f"{local} = {bits_of}({own})")
         elif info.type == "float":
             self._items.append(_Item(byte, size, _FLOATS[info.bits], target, own))
             if info.bits == 32:
@@ -258,7 +307,7 @@ class Codec:
         """Assigns an integer's value as its type needs it."""
         if info.enum is not None:
             value = f"{self._named('members', _codec.Members(info.enum))}[{value}]"
-        self._assign.append(f"{_target(info)} = {value}")
+        self._assign.append(f"{self._target(info)} = {value}")
 
     def _bit_byte(self, byte: int) -> None:
         """A byte of bits: an item, the fields within it, and what crossing fields add to it."""
@@ -270,8 +319,8 @@ class Codec:
             rows, inverse = self._named("rows", table), self._named(
                 "bytes", _codec.Inverse(table)
             )
-            names = ", ".join(f"self.{info.attribute}" for _, info in parts)
-            targets = ", ".join(_target(info) for _, info in parts)
+            names = ", ".join(self._own(info) for _, info in parts)
+            targets = ", ".join(self._target(info) for _, info in parts)
             self._assign.append(f"{targets} = {rows}[{local}]")
             self._prepare.append(f"{local} = {inverse}[{names}]")
         for number, term in enumerate(self._terms.get(byte, [])):
@@ -279,7 +328,7 @@ class Codec:
 
     def _take_apart(self, info: _lazy.FieldInfo) -> None:
         """Encoding of a field that crosses bytes: its bits as an integer, and its pieces for the bytes."""
-        own, local = f"self.{info.attribute}", f"n{info.at}"
+        own, local = self._own(info), f"n{info.at}"
         if info.type == "float":
             bits_of = self._named(
                 "bits_of",
@@ -327,12 +376,6 @@ def _is_run(info: _lazy.FieldInfo) -> bool:
     """Whether it is an array of words, which are taken apart at once."""
     is_word = info.at % 8 == 0 and info.bits in _INTEGERS and info.type != "bool"
     return bool(info.elements) and is_word
-
-
-def _target(info: _lazy.FieldInfo) -> str:
-    """What decoding assigns a value to: the attribute; of an element a variable."""
-    is_element = info.attribute.endswith("]")
-    return f"e{info.at}" if is_element else f"self.{info.attribute}"
 
 
 def _bytes_of(info: _lazy.FieldInfo) -> range:

@@ -8,6 +8,8 @@ import sys
 from inspect import Parameter, Signature
 from typing import Any
 
+from ._fields import FieldInfo
+
 _KEYWORDS: dict[str, Any] = {"kw_only": True} if sys.version_info >= (3, 10) else {}
 
 PARAMS: Any = vars(dataclasses.make_dataclass("Message", [], **_KEYWORDS))[
@@ -20,19 +22,24 @@ def dataclass_fields(message: Any) -> dict[str, Any]:
     owner = next(one for one in message.__mro__ if "FIELDS" in vars(one))
     notes = vars(owner).get("__annotations__", {})
     fields = [
-        (one.attribute, notes[one.attribute], dataclasses.field(default=one.default))
-        for one in owner.FIELDS
+        (one.attribute, notes[one.attribute], _field(one)) for one in owner.FIELDS
     ]
     made = dataclasses.make_dataclass(owner.__name__, fields, **_KEYWORDS)
     owner.__dataclass_fields__ = found = vars(made)["__dataclass_fields__"]
     return found  # type: ignore[no-any-return]
 
 
+def _field(one: FieldInfo) -> Any:
+    if one.struct is not None:
+        return dataclasses.field(default_factory=lambda: one.fresh)
+    return dataclasses.field(default=one.default)
+
+
 def signature(message: Any) -> Signature:
     """The keywords that a class of messages is made with."""
-    from ._base import Message
+    from ._base import Struct
 
-    if message.__init__ is not Message.__init__:
+    if message.__init__ is not Struct.__init__:
         own = Signature.from_callable(message.__init__)
         return own.replace(parameters=list(own.parameters.values())[1:])
     notes = message.__annotations__
@@ -40,9 +47,7 @@ def signature(message: Any) -> Signature:
     for one in message.FIELDS:
         note = notes.get(one.attribute, Parameter.empty)
         kind = Parameter.KEYWORD_ONLY
-        found.append(
-            Parameter(one.attribute, kind, default=one.default, annotation=note)
-        )
+        found.append(Parameter(one.attribute, kind, default=one.fresh, annotation=note))
         if one.physical:
             type_name = "str" if one.type == "text" else "float"
             type_name = f"tuple[{type_name}, ...]" if one.elements else type_name

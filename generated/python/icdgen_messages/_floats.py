@@ -18,6 +18,11 @@ _BITS32, _BITS64 = struct.Struct("<I"), struct.Struct("<Q")
 isnan = math.isnan
 
 
+def is_special(value: float, special: float) -> bool:
+    """Whether a number is a special value, which no comparison says of NaN: all NaNs are."""
+    return value == special or (isnan(value) and isnan(special))
+
+
 def float32(bits: int) -> float:
     """The number that the bits stand for; NaNs keep sign and payload."""
     if bits & 0x7F800000 == 0x7F800000 and bits & 0x007FFFFF:

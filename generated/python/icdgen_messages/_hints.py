@@ -22,6 +22,7 @@ Frames = Union[Buffer, Iterable[Buffer]]
 """Many frames: one after the other, or a list of them."""
 
 M = TypeVar("M", bound="_lazy.Message")
+S = TypeVar("S", bound="_lazy.Struct")
 T = TypeVar("T")
 M_co = TypeVar("M_co", covariant=True)
 N_contra = TypeVar("N_contra", contravariant=True)

@@ -23,6 +23,8 @@ __all__ = [
     "Messages",
     "OpenEnum",
     "Optional",
+    "S",
+    "Struct",
     "T",
     "attribute",
 ]
@@ -32,10 +34,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
     from typing import Any, Literal, Optional
 
-    from ._base import Message
+    from ._base import Message, Struct
     from ._enumeration import OpenEnum
     from ._fields import FieldInfo
-    from ._hints import Buffer, Frames, M, T
+    from ._hints import Buffer, Frames, M, S, T
 else:
     _NAMED = {
         "Any": "typing",
@@ -50,6 +52,8 @@ else:
         "Message": "._base",
         "OpenEnum": "._enumeration",
         "Optional": "typing",
+        "S": "._hints",
+        "Struct": "._base",
         "T": "._hints",
     }
 

@@ -36,16 +36,37 @@ def _values(message: Message) -> dict[int, _lazy.Any]:
     """The values by the bits at which they begin, each element of an array."""
     found: dict[int, _lazy.Any] = {}
     for info in message.FIELDS:
-        value = getattr(message, info.attribute)
-        for one, raw in zip(info.parts, value if info.elements else (value,)):
-            found[one.at] = raw
+        _collect(info, getattr(message, info.attribute), found)
     return found
+
+
+def _collect(
+    info: _lazy.FieldInfo, value: _lazy.Any, found: dict[int, _lazy.Any]
+) -> None:
+    for one, raw in zip(info.parts, value if info.elements else (value,)):
+        if one.struct is None:
+            found[one.at] = raw
+            continue
+        for inner in one.struct.FIELDS:
+            _collect(inner.within(one), getattr(raw, inner.attribute), found)
 
 
 def _read(kind: type[_lazy.M], values: dict[int, _lazy.Any], begin: int) -> _lazy.M:
     """The message whose values begin so many bits after its own places."""
-    found: dict[str, _lazy.Any] = {}
-    for info in kind.FIELDS:
-        raw = tuple(values[begin + one.at] for one in info.parts)
-        found[info.attribute] = raw if info.elements else raw[0]
-    return kind(**found)
+    return kind(**{info.attribute: _value(info, values, begin) for info in kind.FIELDS})
+
+
+def _value(
+    info: _lazy.FieldInfo, values: dict[int, _lazy.Any], begin: int
+) -> _lazy.Any:
+    found: list[_lazy.Any] = []
+    for one in info.parts:
+        if one.struct is None:
+            found.append(values[begin + one.at])
+            continue
+        held = {
+            inner.attribute: _value(inner.within(one), values, begin)
+            for inner in one.struct.FIELDS
+        }
+        found.append(one.struct(**held))
+    return tuple(found) if info.elements else found[0]

@@ -27,6 +27,20 @@ def decoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
     return from_bytes
 
 
+def filling_decoder(owner: _lazy.Any, whole: _lazy.Any) -> _lazy.Any:
+    """``from_bytes`` of a class whose frames may lack the zeros that they end with; ``whole`` decodes those that do not."""
+
+    def from_bytes(cls: _lazy.Any, data: _lazy.Buffer) -> _lazy.Any:
+        actual = memoryview(data).nbytes
+        if actual == owner.LENGTH:
+            return whole(cls, data)
+        if not actual:
+            raise LengthError(cls.NAME, 1, actual)
+        return whole(cls, padded(cls, data))
+
+    return from_bytes
+
+
 def encoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
     """``to_bytes`` of a class whose longest frames ``longest`` encodes."""
     tail = owner.TAIL

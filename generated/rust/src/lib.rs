@@ -77,6 +77,7 @@ extern crate std;
 
 mod support;
 
+pub use support::is_special;
 pub use support::{Coded, Enumeration, Error, Field, Message, Telecommand, Telemetry};
 
 #[rustfmt::skip] // It is laid out by icdgen.

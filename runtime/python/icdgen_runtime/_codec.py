@@ -138,14 +138,27 @@ def length_error(message: type[_lazy.Message], data: _lazy.Buffer) -> LengthErro
 def range_error(message: _lazy.Message) -> RangeError:
     """What to raise for a message that has a value that does not fit."""
     for info in message.FIELDS:
-        value: _lazy.Any = getattr(message, info.attribute, None)
-        if info.elements and not has_elements(info, value):
-            return RangeError(info.attribute, elements_of(info), value)
-        for one, each in zip(info.parts, value if info.elements else (value,)):
-            allowed, fits = _FITS[info.type](one, each)
-            if not fits:
-                return RangeError(one.attribute, allowed, each)
+        error = _misfit(info, getattr(message, info.attribute, None))
+        if error is not None:
+            return error
     return RangeError("a field", "a value of its type", None)
+
+
+def _misfit(info: _lazy.FieldInfo, value: _lazy.Any) -> _lazy.Optional[RangeError]:
+    if info.elements and not has_elements(info, value):
+        return RangeError(info.attribute, elements_of(info), value)
+    for one, each in zip(info.parts, value if info.elements else (value,)):
+        if one.struct is not None:
+            for inner in one.struct.FIELDS:
+                held = getattr(each, inner.attribute, None)
+                error = _misfit(inner.within(one), held)
+                if error is not None:
+                    return error
+            continue
+        allowed, fits = _FITS[info.type](one, each)
+        if not fits:
+            return RangeError(one.attribute, allowed, each)
+    return None
 
 
 def seen(message: _lazy.Message, attribute: str, kind: _lazy.Any) -> _lazy.Any:

@@ -21,7 +21,7 @@ class FieldInfo:
     __slots__ = (
         "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
         "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
-        "elements", "is_open", "curve", "leads_back",
+        "elements", "is_open", "struct", "curve", "leads_back",
     )  # fmt: skip
 
     def __init__(
@@ -36,7 +36,7 @@ class FieldInfo:
         scale: tuple[int, int, int] = (1, 0, 1),
         enum: _lazy.Optional[type[_lazy.OpenEnum]] = None,
         const: _lazy.Optional[int] = None,
-        special: tuple[tuple[int, str], ...] = (),
+        special: tuple[tuple[float, str], ...] = (),
         minimum: _lazy.Optional[float] = None,
         maximum: _lazy.Optional[float] = None,
         above: _lazy.Optional[float] = None,
@@ -47,6 +47,7 @@ class FieldInfo:
         default: _lazy.Any = None,
         elements: int = 0,
         is_open: bool = False,
+        struct: _lazy.Optional[type[_lazy.Struct]] = None,
         curve: tuple[float, ...] = (),
         leads_back: bool = True,
     ) -> None:
@@ -59,7 +60,7 @@ class FieldInfo:
         self.bits = bits
         """Width in bits."""
         self.type = type
-        """``uint``, ``int``, ``bool``, ``enum``, ``float``, ``bytes`` or ``text``."""
+        """``uint``, ``int``, ``bool``, ``enum``, ``float``, ``bytes``, ``text`` or ``struct``."""
         self.unit = unit
         """Unit of the physical value, or of the raw one if there is no scale."""
         self.physical = physical
@@ -94,6 +95,8 @@ class FieldInfo:
         """
         self.is_open = is_open
         """Whether frames hold up to so many elements, or bytes: see `Message.TAIL`."""
+        self.struct = struct
+        """The class of what stands here, where that is a struct; the offsets in it begin at 0."""
         self.curve = curve
         """Of a polynomial its coefficients, the constant first, and no scale.
 
@@ -137,8 +140,50 @@ class FieldInfo:
         for key in ("attribute", "name"):
             told[key] += f"[{index}]"
         told["at"] += index * self.bits
-        told["default"] = None if self.is_open else self.default[index]
+        if self.is_open or self.default is None:
+            told["default"] = None
+        else:
+            told["default"] = self.default[index]
         return FieldInfo(**{**told, "elements": 0})
+
+    @property
+    def leaves(self) -> tuple[FieldInfo, ...]:
+        """The same, and of a struct the fields in it, called ``satellites[2].gnss``: no arrays, no structs."""
+        if self.struct is None:
+            return self.parts
+        return tuple(leaf for line in self.lines for leaf in line.parts)
+
+    @property
+    def lines(self) -> tuple[FieldInfo, ...]:
+        """The field; of a struct the fields in it, called ``satellites[2].gnss``, arrays as one."""
+        if self.struct is None:
+            return (self,)
+        return tuple(
+            line
+            for part in self.parts
+            for info in self.struct.FIELDS
+            for line in info.within(part).lines
+        )
+
+    def within(self, part: FieldInfo) -> FieldInfo:
+        """This field of a struct, where the struct stands as ``part`` of a message."""
+        told = {name: getattr(self, name) for name in self.__slots__}
+        for key in ("attribute", "name", "physical", "whole"):
+            if told[key]:
+                head = part.name if key == "name" else part.attribute
+                told[key] = f"{head}.{told[key]}"
+        told["at"] += part.at
+        told["byte_order"] = self.byte_order or part.byte_order
+        told["bit_order"] = self.bit_order or part.bit_order
+        return FieldInfo(**told)
+
+    @property
+    def fresh(self) -> _lazy.Any:
+        """The raw value in a new message: of a struct a new one."""
+        if self.struct is None:
+            return self.default
+        made = self.struct
+        return tuple(made() for _ in range(self.elements)) if self.elements else made()
 
     def _values(self) -> tuple[_lazy.Any, ...]:
         return tuple(getattr(self, name) for name in self.__slots__)
@@ -321,6 +366,18 @@ def field(
         one = default[0] if told.get("elements") else default
         told["enum"] = one.__class__
     return FieldInfo("", name, at, bits, type, default=default, **told)
+
+
+def part(
+    name: str,
+    at: int,
+    bits: int,
+    *,
+    factory: _lazy.Any,
+    **told: _lazy.Any,
+) -> _lazy.Any:
+    """A struct, or as many of them as there are elements: the class of one is ``factory``."""
+    return FieldInfo("", name, at, bits, "struct", struct=factory, **told)
 
 
 def scaled(p: int, c: int, q: int, *, default: _lazy.Any) -> _lazy.Any:

@@ -25,4 +25,5 @@ extern crate std;
 mod support;
 pub mod wire;
 
+pub use support::is_special;
 pub use support::{Coded, Enumeration, Error, Field, Message, Telecommand, Telemetry};

@@ -11,6 +11,7 @@ import argparse
 import os
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 from collections import Counter, defaultdict
@@ -42,6 +43,14 @@ _SAYS = (
 _LINE = re.compile(r" *(\d+)\| *(\d+)\|")
 
 Lines = dict[str, Counter[int]]  # by file: how often each line was executed
+
+
+def can_count() -> bool:
+    """Whether rustc has what instrumented programs are linked with; that of Debian 12 has not."""
+    with tempfile.TemporaryDirectory() as folder:
+        (empty := Path(folder) / "empty.rs").write_text("fn main() {}\n", "utf-8")
+        command = ["rustc", *FLAGS, "--out-dir", folder, str(empty)]
+        return subprocess.run(command, capture_output=True).returncode == 0
 
 
 def build(source: Path, out: Path) -> list[str]:
@@ -128,6 +137,8 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     if missing := [tool for tool in ("cargo", "rustc", "cov") if shutil.which(tool) is None]:
         parser.error(f"not installed: {', '.join(missing)} (cov comes with: cargo install llvm_profparser)")
+    if not can_count():
+        parser.error("rustc was built without the profiler's runtime: install it with rustup")
     icd = icd_of(options.icds)
     with tempfile.TemporaryDirectory() as name:
         found, source, wrong = measure(icd, Path(name))

@@ -66,7 +66,11 @@ def constants(front: Front, request: Request) -> dict[str, Any]:
         "ids": [int(id) for id in items(reply.facts["ids"])],
         "length": int(reply.facts["length"]),
         "default": {name: _shown(field, row["raw"]) for name, field, row in rows},
-        "special": {name: [int(one) for one in items(row["special"])] for name, _, row in rows if row.get("special")},
+        "special": {
+            name: [_shown(field, one) for one in items(row["special"])]
+            for name, field, row in rows
+            if row.get("special")
+        },
         "limits": {name: some for name, some in limits.items() if some},
     }
 

@@ -32,6 +32,7 @@ class FieldRow(NamedTuple):
     type: str
     name: str  # in the names of functions
     member: str
+    holder: str  # where its message, or the struct in which it stands, is in the message
     element: str  # the index of an element of an array, and a comma
     size: int
     name_of: str
@@ -42,6 +43,7 @@ class FieldRow(NamedTuple):
     view: str  # the function; its type is ``c_type``
     c_type: str
     special: list[str]
+    float_bits: int
     limits: list[Limit]
 
 
@@ -149,13 +151,15 @@ class _Rows:
         )
 
     def field(self, one: FieldDescription) -> FieldRow:
-        field, stem = one.model, names.stem(one.message)
-        macros = [(constant.key, names.constant(one.message, constant.name)) for constant in one.constants]
+        owner = one.declaration.message
+        field, stem = one.model, names.stem(owner)
+        macros = [(constant.key, names.constant(owner, constant.name)) for constant in one.constants]
         return FieldRow(
             type="TESTEE_SIGNED" if field.signed else TYPES.get(field.type, "TESTEE_UNSIGNED"),
             name=one.name,
             member=one.member,
-            element=f"{field.index}u, " if field.path else "",
+            holder=one.holder,
+            element=f"{field.index}u, " if field.index is not None else "",
             size=field.bits // 8 if field.is_bytes else one.storage.bits // 8,
             name_of=f"{self.node.name}_{names.stem(one.enum)}_testee_name" if one.enum is not None else "",
             get=f"{stem}_{one.physical_name}" if one.is_scaled else "",
@@ -165,6 +169,7 @@ class _Rows:
             view=f"{stem}_{one.name}" if field.view else "",
             c_type=type_of(one) if field.view else "",
             special=[name for key, name in macros if key == "special"],
+            float_bits=field.bits if field.type == "float" else 0,
             limits=[Limit(key, name) for key, name in macros if key not in ("const", "special")],
         )
 

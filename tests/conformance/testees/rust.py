@@ -104,20 +104,27 @@ class NodeEntry:
 
 def _field(field: FieldDescription) -> FieldEntry:
     scale, text, special, limits = "None", "None", "Vec::new", "Vec::new"
+    within = f"m.{names.raw_words(field.holder)}" if field.holder else "m"
     if field.is_text:
-        text = f"Some(Text {{ get: Self::{field.physical_name}, set: Self::set_{field.physical_name} }})"
+        get, set = (f"|m| {within}.{field.physical_name}()", f"|m, text| {within}.set_{field.physical_name}(text)")
+        text = f"Some(Text {{ get: {get}, set: {set} }})"
     if field.is_scaled:
-        get, set = f"Self::{field.physical_name}", f"Self::set_{field.physical_name}"
+        get, set = f"{within}.{field.physical_name}", f"{within}.set_{field.physical_name}"
         index = field.model.index
-        if index is not None:
-            get, set = f"|m| {get}(m, {index}).unwrap_or_default()", f"|m, value| {set}(m, {index}, value)"
+        if index is None:
+            get, set = f"|m| {get}()", f"|m, value| {set}(value)"
+        else:
+            get, set = f"|m| {get}({index}).unwrap_or_default()", f"|m, value| {set}({index}, value)"
         set = set if field.is_set else "|_, _| Ok(())"
         scale = f"Some(Scale {{ get: {get}, set: {set} }})"
-    names = [(one.key, f"Self::{one.name.upper()}") for one in field.constants if one.key != "const"]
+    owner = field.declaration.message
+    type = "Self" if owner is field.message else f"{CRATE}::{owner.node.name}::{names.type_name(owner)}"
+    known = [(one.key, f"{type}::{one.name.upper()}") for one in field.constants if one.key != "const"]
     if field.model.special:
-        special = f"|| vec![{', '.join(f'i128::from({name})' for key, name in names if key == 'special')}]"
+        bits = ".to_bits()" if field.model.type == "float" else ""
+        special = f"|| vec![{', '.join(f'i128::from({name}{bits})' for key, name in known if key == 'special')}]"
     if field.bounds:
-        values = ", ".join(f'("{key}", {name} as f64)' for key, name in names if key != "special")
+        values = ", ".join(f'("{key}", {name} as f64)' for key, name in known if key != "special")
         limits = f"|| vec![{values}]"
     name = field_name(field)
     value = f"View(|m| Box::new(m.{name}()))" if field.model.view else f"Member(|m| &mut m.{name})"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from icdgen.icd.model import Erratum
+from icdgen.icd.erratum import Erratum
 from icdgen.naming import words
 from tests.diff.edits.edit import (
     done,

@@ -7,12 +7,15 @@ from collections.abc import Iterator
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
+from operator import is_
 from typing import Any, NamedTuple, TypeVar
 
 from icdgen import layout
-from icdgen.icd.build import calibration
+from icdgen.icd import floats
+from icdgen.icd.build import calibration, special
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Field, Limits, Message, Node
+from icdgen.icd.model import Enum, Field, Limits, Message, Node, Struct
+from icdgen.icd.paths import members_of
 
 OTHER_TYPES = {
     "uint": ("int", "float", "bytes", "bool"),
@@ -43,7 +46,7 @@ class Change(NamedTuple):
     now: object
 
 
-def of_field(field: Field, message: Message, node: Node) -> Iterator[tuple[Change, Field]]:
+def of_field(field: Field, message: Message | Struct, node: Node) -> Iterator[tuple[Change, Field]]:
     """The changes of a member, and what it would be; none that no field of such a type or no frame of such a length can have."""
     size, count = 8 * message.length, field.count or 1
     source = field.source
@@ -54,7 +57,7 @@ def of_field(field: Field, message: Message, node: Node) -> Iterator[tuple[Chang
         size = 8 * message.least
         if message.tail.counter == field.name:
             return  # it counts the elements: as another field it may count none
-    for step in (-8, 8) if field.is_bytes else (-8, -1, 1, 8):
+    for step in (-8, 8) if field.is_bytes or field.struct is not None else (-8, -1, 1, 8):
         if 0 <= field.at + step <= size - field.width:
             yield _step("offset", source, "at", field.at, step), replace(field, at=field.at + step)
     for step in _WIDER.get(field.type, ()):
@@ -101,17 +104,32 @@ def _formulas(field: Field) -> Iterator[tuple[Change, Field]]:
             yield change, replace(field, scale=scale, curve=curve)
 
 
+def with_struct(fields: tuple[Field, ...], old: Struct, new: Struct) -> tuple[Field, ...]:
+    """The fields of a message, or of a struct, in which a struct is another; the same if it does not stand there."""
+    members, found = members_of(fields), []
+    for one in members:
+        if one.struct is not None:
+            inner = new.fields if one.struct is old else with_struct(one.struct.fields, old, new)
+            one = one if inner is one.struct.fields else replace(one, struct=replace(one.struct, fields=inner))
+        found.append(one)
+    if all(map(is_, members, found)):
+        return fields
+    return tuple(element for one in found for element in one.elements)
+
+
 def _values(field: Field) -> Iterator[tuple[Change, Field]]:
     """Changes of the values that have a meaning."""
     if field.const is not None:
         for step in (-1, 1):
             yield _step("const", field.source, "const", field.const, step), replace(field, const=field.const + step)
-    for index, special in enumerate(field.special):
-        for step in (-1, 1):
-            others = list(field.special)
-            others[index] = replace(special, value=special.value + step)
-            change = _step("special", field.source["special"][index], "value", special.value, step)
-            yield change, replace(field, special=tuple(others))
+    for index, old in enumerate(field.special):
+        source = field.source["special"][index]
+        named = [name for name in floats.NAMED if old.number in floats.NAMED and name != old.number]
+        for now in named or [source["value"] + step for step in (-1, 1)]:
+            new = special(field.type, field.bits, now, old.meaning)
+            if new is not None and new != old:
+                change = Change("special", source, "value", source["value"], now)
+                yield change, replace(field, special=(*field.special[:index], new, *field.special[index + 1 :]))
     held = field.limits or Limits()
     for key in _LIMITS:
         value: Fraction | None = getattr(held, key)
@@ -195,6 +213,8 @@ def _is_plain(field: Field) -> bool:
 
 def _can_be(field: Field, kind: str) -> bool:
     """Whether a field of this width and with what else its line says may be of that type."""
+    if field.type == "float" and field.special:
+        return False
     if kind == "bool":
         return field.bits == 1 and not any(key in field.source for key in _OF_SCALED)
     if kind == "float":

@@ -8,8 +8,9 @@ from icdgen.backends.assurance.paper import Cell, Group, Page, lines_of
 from icdgen.backends.assurance.places import Files
 from icdgen.backends.assurance.trace import Element
 from icdgen.icd.errata import section
+from icdgen.icd.erratum import Erratum
 from icdgen.icd.located import Map, Seq
-from icdgen.icd.model import Erratum, Icd, Node
+from icdgen.icd.model import Icd, Node
 
 ERRATA = (
     "id", "kind", "node", "title", "confidence", "tables", "decided in", "touches", "printed", "held", "why", "evidence",

@@ -39,10 +39,19 @@ class MessageWatch:
 
     def member(self, place: int, old: Field, now: Field) -> list[int]:
         """Lines that notice that a member is another; it begins with the field at ``place``, and an array has more of them."""
-        if old.count and _place(old) != _place(now):
+        if (old.count or old.struct) and _place(old) != _place(now):
             fields = self.message.fields
-            return self.places((*fields[:place], *now.elements, *fields[place + old.count :]), self.node)
+            return self.places((*fields[:place], *now.elements, *fields[place + len(old.elements) :]), self.node)
         return [line for index, one in enumerate(now.elements, place) for line in self.field(index, one)]
+
+    def struct(self, fields: tuple[Field, ...]) -> list[int]:
+        """Lines that notice that fields of a struct are others; ``fields``: all of the message then."""
+        olds = self.message.fields
+        if [one.name for one in olds] != [one.name for one in fields]:
+            return self.places(fields, self.node)
+        both = [replace(now, path=old.path) for old, now in zip(olds, fields, strict=True)]
+        changed = [(index, now) for index, (old, now) in enumerate(zip(olds, both, strict=True)) if old != now]
+        return [line for index, now in changed for line in self.field(index, now)]
 
     def places(self, fields: Iterable[Field], node: Node) -> list[int]:
         """Lines that notice that fields lie elsewhere, or that those of another node do."""

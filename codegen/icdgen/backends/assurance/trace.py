@@ -9,8 +9,9 @@ from functools import cached_property
 from icdgen.backends.assurance import changes
 from icdgen.backends.assurance.changes import Change
 from icdgen.backends.assurance.noticing import MessageWatch
+from icdgen.icd.erratum import Erratum
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Erratum, Field, Icd, Member, Message, Node
+from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node, Struct
 from icdgen.vectors.lines import NodeLines, lines
 from icdgen.vectors.make import NodeVectors, make
 from icdgen.vectors.write import text
@@ -31,10 +32,10 @@ class Traced:
 class Element:
     """Something that a line of the ICD describes. ``row`` counts the members of its message or enumeration from 1."""
 
-    kind: str  # "node" | "message" | "field" | "enumeration" | "member"
+    kind: str  # "node" | "message" | "struct" | "field" | "enumeration" | "member"
     node: Node
-    owner: Message | Enum | None  # of a field, its message; of a member, its enumeration
-    model: Node | Message | Field | Enum | Member
+    owner: Message | Struct | Enum | None  # of a field, its message; of a member, its enumeration
+    model: Node | Message | Struct | Field | Enum | Member
     row: int | None
     changes: tuple[Traced, ...]
 
@@ -57,7 +58,7 @@ class Element:
     def table(self) -> int | None:
         """The manual's table that has it."""
         thing = self.owner or self.model
-        return thing.table if isinstance(thing, Message | Enum) else None
+        return thing.table if isinstance(thing, Message | Struct | Enum) else None
 
     @property
     def page(self) -> int | None:
@@ -95,6 +96,10 @@ class Trace:
             for row, member in enumerate(enum.members, 1):
                 own = tuple(one for one in traced if one.change.source is member.source)
                 yield Element("member", node, enum, member, row, own)
+        for struct in node.structs:
+            yield Element("struct", node, None, struct, None, ())
+            for row, field in enumerate(struct.members, 1):
+                yield Element("field", node, struct, field, row, tuple(self._of_struct(struct, field, node)))
         for message in node.messages:
             yield Element("message", node, None, message, None, tuple(self._of_message(message, node)))
             watch = self._watches[node.name, message.name]
@@ -106,6 +111,17 @@ class Trace:
                 own = tuple(Traced(change, _noticed(node, watch.member(place, field, now))) for change, now in found)
                 yield Element("field", node, message, field, row, own)
                 place += len(field.elements)
+
+    def _of_struct(self, struct: Struct, field: Field, node: Node) -> Iterator[Traced]:
+        """The changes of a member of a struct, noticed wherever the struct stands."""
+        for change, now in changes.of_field(field, struct, node):
+            others = tuple(one for member in struct.members for one in (now if member == field else member).elements)
+            changed, found = replace(struct, fields=others), []
+            for watch in self._watches.values():
+                fields = changes.with_struct(watch.message.fields, struct, changed)
+                if fields is not watch.message.fields:
+                    found.append(_noticed(watch.node, watch.struct(fields)))
+            yield Traced(change, together(found))
 
     def _of_node(self, node: Node) -> Iterator[Traced]:
         for change, now in changes.of_node(node):

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import accessors, bits, constants, decoding, encoding, fields, names, parts, types
 from icdgen.backends.c.declared_names import declared_names
+from icdgen.backends.c.member_groups import in_groups
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
 from icdgen.backends.c.statement import call, head
@@ -16,8 +17,8 @@ from icdgen.backends.c.text import FILE, comment, described, literal, noted, pro
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, text_comment, words
-from icdgen.describe.description import TailDescription
-from icdgen.describe.numbers import byte_count
+from icdgen.describe.description import Composite, TailDescription
+from icdgen.describe.numbers import byte_count, length_text
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from icdgen.render import Renderer
 
 _SPELLING = (
-    byte_count, call, comment, described, head, literal, prose, names.constant, names.enumerator, names.stem,
+    byte_count, call, comment, described, head, length_text, literal, prose, names.constant, names.enumerator, names.stem,
     sentence, text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}
@@ -58,6 +59,8 @@ class CBackend:
             if node.enums:
                 enums = [(enum, *constants.of_enum(enum)) for enum in node.enums]
                 yield folder / "enums.h", render("enums.h.j2", node=node.name, enums=enums, **shared)
+            for struct in node.structs:
+                yield folder / f"{struct.name}.h", render("struct.h.j2", m=struct, **_composite(struct), **shared)
             for message in node.messages:
                 yield folder / f"{message.name}.h", render("message.h.j2", m=message, **_message(message), **shared)
             if node.name in links:
@@ -74,25 +77,35 @@ class CBackend:
         return declared_names(describe(icd))
 
 
-def _message(message: MessageDescription) -> dict[str, object]:
-    folders = sorted({field.enum.node.name for field in message.all_fields if field.enum is not None})
-    enums = ("enums.h" if folder == message.node.name else f"../{folder}/enums.h" for folder in folders)
-    about = message.comment
+def _composite(one: Composite[Any], more: Iterable[str] = ()) -> dict[str, object]:
+    """What is said of a struct, and of a message, which needs ``more`` headers."""
+    folders = sorted({enum.node.name for enum in one.enums})
+    used = [(folder, "enums") for folder in folders] + [(struct.node.name, struct.name) for struct in one.structs]
+    headers = (f"{name}.h" if folder == one.node.name else f"../{folder}/{name}.h" for folder, name in used)
+    about = one.comment
     return {
         "about": comment([FILE, about.head, *about.rest, *noted(about)]),
-        "includes": ["../icdgen_wide.h" if message.has_wide_steps else "../icdgen.h", *enums, *parts.headers(message)],
-        "constants": constants.of_fields(message),
-        "initial": constants.initial(message),
+        "includes": ["../icdgen_wide.h" if one.has_wide_steps else "../icdgen.h", *dict.fromkeys((*headers, *more))],
+        "constants": constants.of_fields(one),
+        "initial": constants.initial(one),
         "declaration": types.declaration,
+        "whole_accessors": accessors.whole_accessors(one),
+        "accessors": accessors.accessors(one),
+    }
+
+
+def _message(message: MessageDescription) -> dict[str, object]:
+    groups = in_groups(message.sent_fields)
+    return {
+        **_composite(message, parts.headers(message)),
         "empty": decoding.EMPTY,
-        "decode": decoding.statements(message),
+        "decode": decoding.statements(message, groups),
         "excess": bits.excess,
+        "narrow": [(field, bits.excess(field)) for field in message.fields if field.is_narrow and not field.is_open],
         "excess_type": bits.excess_type(message),
-        "encode": encoding.statements(message),
+        "encode": encoding.statements(message, groups),
         **(_tail(message, message.tail) if message.tail else {}),
         "views": [accessors.view(field) for field in message.views],
-        "whole_accessors": accessors.whole_accessors(message),
-        "accessors": accessors.accessors(message),
         "parts": parts.parts(message),
         "known": fields.fields(message),
     }
@@ -109,7 +122,7 @@ def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, objec
 
 def _is_wide(description: Description) -> bool:
     """Whether a formula needs more than the support header computes with."""
-    return any(message.has_wide_steps for node in description.nodes for message in node.messages)
+    return any(one.has_wide_steps for node in description.nodes for one in node.composites)
 
 
 def _links(description: Description) -> dict[str, LinkDescription]:
@@ -149,7 +162,7 @@ def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
 def _node(node: NodeDescription) -> dict[str, object]:
     headers = [f"{name}.h" for name in node.model.includes]
     headers += [f"{node.name}/enums.h"] if node.enums else []
-    headers += [f"{node.name}/{message.name}.h" for message in node.messages]
+    headers += [f"{node.name}/{one.name}.h" for one in node.composites]
     headers += [f"{node.name}/link.h"] if node.is_linked else []
     headers += [f"{node.name}/client.h"] if node.has_client else []
     return {

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from icdgen.backends.c import decoding, physical
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import call
 from icdgen.backends.c.text import described
 from icdgen.backends.c.types import type_of
-from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe import FieldDescription
 from icdgen.describe.comments import physical_comment, physical_name
+from icdgen.describe.description import Composite
 
 ELEMENT = "element"
 """What accessors call the index of an array's element."""
@@ -33,7 +34,7 @@ class Accessor(NamedTuple):
     elements: int = 0  # of an array: both take which of so many is meant
 
 
-def accessors(message: MessageDescription) -> list[Accessor]:
+def accessors(message: Composite[Any]) -> list[Accessor]:
     """In double precision."""
     return [_double(field) for field in message.all_members if field.is_scaled]
 
@@ -79,7 +80,7 @@ def _member(field: FieldDescription) -> str:
     return f"message->{field.name}{f'[{ELEMENT}]' if field.count else ''}"
 
 
-def whole_accessors(message: MessageDescription) -> list[Accessor]:
+def whole_accessors(message: Composite[Any]) -> list[Accessor]:
     """In whole thousandths or millionths of the unit."""
     wholes = ((field, physical.scaled(field).whole) for field in message.all_members if field.steps is not None)
     return [_whole(field, whole) for field, whole in wholes if whole is not None]

@@ -4,23 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 from icdgen.backends.c import names
 from icdgen.backends.c.types import mask
-from icdgen.describe import EnumDescription, FieldDescription, MessageDescription
+from icdgen.describe import EnumDescription, FieldDescription
 from icdgen.describe.constants import Constant
+from icdgen.describe.description import Composite
 from icdgen.describe.numbers import exact_text
+from icdgen.icd import floats
 
 _MAX_ENUMERATOR = 32767
 """What every `int` can hold."""
 
 
-def of_fields(message: MessageDescription) -> list[tuple[Constant, str]]:
+def of_fields(message: Composite[Any]) -> list[tuple[Constant, str]]:
     """The constants of a message's fields, and their values."""
     return [(one, _value(one, field)) for field in message.all_members for one in field.constants]
 
 
 def _value(one: Constant, field: FieldDescription) -> str:
+    if one.number:
+        return _float(one, field.model.bits)
     if isinstance(one.value, int) and one.key in ("const", "special") and not field.storage.signed:
         return mask(one.value, field.storage.bits)
     text = exact_text(one.value)
@@ -29,15 +34,23 @@ def _value(one: Constant, field: FieldDescription) -> str:
     return f"({text})" if one.value < 0 and one.key not in ("const", "special") else text
 
 
-def initial(message: MessageDescription) -> list[str]:
+def _float(one: Constant, bits: int) -> str:
+    """A special value of a float; what is no number by its bits, for not every target has a name for it."""
+    assert isinstance(one.value, int)
+    if one.number in floats.NAMED:
+        return f"icd_f{bits}_of({mask(one.value, bits)})"
+    text = f"{one.number}{'f' if bits == 32 else ''}"
+    return f"({text})" if text.startswith("-") else text
+
+
+def initial(message: Composite[Any]) -> list[str]:
     """Statements that give fields with only one valid value that value."""
     return [
-        f"message->{element.member} = {names.constant(message, one.name)};"
-        for field in message.members
+        f"message->{field.member} = {names.constant(field.declaration.message, one.name)};"
+        for field in message.fields
         if not field.is_open
         for one in field.constants
         if one.key == "const"
-        for element in field.elements or (field,)
     ]
 
 

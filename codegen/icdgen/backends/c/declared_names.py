@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import names, physical
 from icdgen.backends.c.parts import part_name
-from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription
+from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription, StructDescription
+from icdgen.describe.description import Composite
 from icdgen.describe.parts import parts_of
 
 FILE = "C names at file scope"
@@ -31,6 +33,8 @@ def declared_names(description: Description) -> Iterator[Identifier]:
         yield from _node(node)
         if node.is_linked:
             yield from _link(node)
+        for struct in node.structs:
+            yield from _struct(struct)
         for message in node.messages:
             yield from _message(message)
 
@@ -69,6 +73,15 @@ def _link(node: NodeDescription) -> Iterator[Identifier]:
         yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source)
 
 
+def _struct(struct: StructDescription) -> Iterator[Identifier]:
+    stem = names.stem(struct)
+    yield struct.identifier(FILES, f"{struct.node.name}/{struct.name}.h")
+    yield struct.identifier(FILE, names.constant(struct, "h"))
+    for end in ("t", "init"):
+        yield struct.identifier(FILE, f"{stem}_{end}")
+    yield from _fields(struct)
+
+
 def _message(message: MessageDescription) -> Iterator[Identifier]:
     stem = names.stem(message)
     yield message.identifier(FILES, f"{message.node.name}/{message.name}.h")
@@ -79,6 +92,11 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
         yield message.identifier(FILE, f"{stem}_{end}")
     for part in parts_of(message):
         yield message.identifier(FILE, f"{stem}_{part_name(part.message)}")
+    yield from _fields(message)
+
+
+def _fields(message: Composite[Any]) -> Iterator[Identifier]:
+    stem = names.stem(message)
     members = f"members of {stem}_t"
     for field in message.all_members:
         is_view = field.model.view

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.member_groups import Flags, Row, in_groups
+from icdgen.backends.c.member_groups import Flags, Groups, Row
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import call
 from icdgen.backends.c.text import WIDTH
@@ -16,14 +16,11 @@ EMPTY = "empty"
 """Member of the struct of a message without fields: C has no empty structs."""
 
 
-def statements(message: MessageDescription) -> list[str]:
+def statements(message: MessageDescription, groups: Groups) -> list[str]:
     """One statement a field or a group, in the order of the struct."""
     if not message.fields:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
-    found = [
-        _one(one) if isinstance(one, FieldDescription) else _group(one, message)
-        for one in in_groups(message.sent_fields)
-    ]
+    found = [_one(one) if isinstance(one, FieldDescription) else _group(one, message) for one in groups]
     if message.tail is not None and message.tail.counter.model.implied:
         found.append(
             f"message->{message.tail.counter.name} = {cast(_count(message.tail), message.tail.counter.storage.bits)};"
@@ -79,7 +76,7 @@ def view(field: FieldDescription) -> str:
 def _one(field: FieldDescription) -> str:
     one = field.model
     if one.is_bytes:
-        return f"(void)memcpy(message->{field.name}, &buffer[{one.at // 8}], {one.bits // 8}u);"
+        return f"(void)memcpy(message->{field.member}, &buffer[{one.at // 8}], {one.bits // 8}u);"
     return _number(field, f"message->{field.member}")
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.member_groups import Flags, Row, in_groups
+from icdgen.backends.c.member_groups import Flags, Groups, Row
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import assigned_byte, call
 from icdgen.describe import FieldDescription, MessageDescription
@@ -19,9 +19,9 @@ def size(message: MessageDescription) -> str:
     return f"{tail.least}u + ({count} * {tail.step}u)" if tail.least else f"{count} * {tail.step}u"
 
 
-def statements(message: MessageDescription) -> list[str]:
+def statements(message: MessageDescription, groups: Groups) -> list[str]:
     """Statements that write every byte of the frame once, in order."""
-    frame = _Frame(message)
+    frame = _Frame(message, groups)
     unused = [] if message.fields else ["(void)message;"]
     if not message.fields and not message.model.length:
         unused.append("(void)buffer;")
@@ -31,12 +31,12 @@ def statements(message: MessageDescription) -> list[str]:
 class _Frame:
     """What goes where: whole bytes by a statement, others as terms that are or-ed together."""
 
-    def __init__(self, message: MessageDescription) -> None:
+    def __init__(self, message: MessageDescription, groups: Groups) -> None:
         self.message = message
         self.whole: dict[int, tuple[int, str]] = {}  # first byte -> number of bytes, statement
         self.parts: dict[int, list[tuple[int, str]]] = {}  # byte -> (shift, term)
         self.joined: dict[int, list[str]] = {}  # byte -> statements that its terms need
-        for one in in_groups(message.sent_fields):
+        for one in groups:
             if isinstance(one, FieldDescription):
                 self._one(one)
             else:
@@ -49,7 +49,7 @@ class _Frame:
         one = field.model
         first, size = one.at // 8, one.bits // 8
         if one.is_bytes:
-            self.whole[first] = size, f"(void)memcpy(&buffer[{first}], message->{field.name}, {size}u);"
+            self.whole[first] = size, f"(void)memcpy(&buffer[{first}], message->{field.member}, {size}u);"
         elif bits.is_word(field):
             self.whole[first] = size, bits.store(field)
         else:

@@ -16,9 +16,9 @@ class Fields(NamedTuple):
 
 
 def fields(message: MessageDescription) -> Fields:
-    """Those of a message, in the order of the ICD, an array as one."""
+    """Those of a message, in the order of the ICD, an array as one, of structs each field."""
     found = Fields([], [])
-    for field in message.members:
+    for field in message.leaves:
         one, bounds = field.model, field.bounds
         limits = f"&limits[{len(found.limits)}]" if bounds else "NULL"
         unit = literal(one.unit.symbol if one.unit else "")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from icdgen.backends.c.bits import is_word, order
 from icdgen.describe import FieldDescription
@@ -51,14 +51,19 @@ class Row:
         return f"ROW_{order(self.members[0]).upper()}"
 
 
-def in_groups(fields: Members) -> Iterator[Flags | Row | FieldDescription]:
+Groups = list[Flags | Row | FieldDescription]
+
+
+def in_groups(fields: Members) -> Groups:
     """The fields of a message in order, those of a group as one."""
     positions = [_position(field) for field in fields]
+    found: Groups = []
     index = 0
     while index < len(fields):
-        group = _flags(fields, positions, index) or _row(fields[index:])
-        yield group or fields[index]
+        group = _flags(fields, positions, index) or _row(fields, index)
+        found.append(group or fields[index])
         index += len(group.members) if group else 1
+    return found
 
 
 def _position(field: FieldDescription) -> tuple[int, int] | None:
@@ -82,13 +87,18 @@ def _flags(fields: Members, positions: Sequence[tuple[int, int] | None], first: 
     return None
 
 
-def _row(fields: Members) -> Row | None:
-    first, count = fields[0], 0
-    bits = first.model.bits
-    for field in fields:
-        is_next = field.model.bits == bits and field.model.at == first.model.at + count * bits
+def _row(fields: Members, begin: int) -> Row | None:
+    first, end = fields[begin], begin + 1
+    bits, at = first.model.bits, first.model.at
+    if not is_word(first) or first.storage.bits != bits:
+        return None
+    for field in fields[end:]:
+        at += bits
+        is_next = field.model.bits == bits and field.model.at == at
+        is_next = is_next and field.holder == first.holder  # a struct may end with padding
         if not (is_next and is_word(field) and field.storage.bits == bits and field.byte_order == first.byte_order):
             break
-        count += 1
-    elements = sum(bool(field.model.path) for field in fields[:count])
-    return Row(fields[:count]) if count >= LONG_ENOUGH or elements == count > 1 else None
+        end += 1
+    row = fields[begin:end]
+    is_array = len(row) > 1 and all(field.model.index is not None for field in row)
+    return Row(row) if len(row) >= LONG_ENOUGH or is_array else None

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from icdgen.describe import EnumDescription, MessageDescription
+from typing import Any
+
+from icdgen.describe import EnumDescription
+from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 
 
-def stem(one: MessageDescription | EnumDescription) -> str:
+def stem(one: Composite[Any] | EnumDescription) -> str:
     """``demo_estimated_roll``: stem of the functions and the type."""
     return f"{one.node.name}_{one.name}"
 
@@ -16,6 +19,6 @@ def enumerator(enum: EnumDescription, member: MemberDescription) -> str:
     return f"{stem(enum)}_{member.name}".upper()
 
 
-def constant(message: MessageDescription, name: str) -> str:
+def constant(message: Composite[Any], name: str) -> str:
     """``DEMO_RESET_MAGIC_NUMBER_CONST``; ``DEMO_RESET_ID``"""
     return f"{stem(message)}_{name}".upper()

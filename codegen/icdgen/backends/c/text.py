@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 from icdgen.backends.lines import commented, tamed
-from icdgen.describe.comments import Comment
+from icdgen.describe.comments import Comment, one_line
 
 WIDTH = 120
 
@@ -33,8 +33,8 @@ FILE = _Command("@file")
 @lru_cache(maxsize=8192)
 def plain(text: str) -> str:
     """One line that is safe within a block comment: no comment delimiters, trigraphs or control characters."""
-    text = " ".join(text.split())
-    if not (text.isascii() and text.isprintable()):
+    text = one_line(text)
+    if not text.isprintable():
         text = "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in text)
     for unsafe, safe in (("*/", "* /"), ("/*", "/ *"), ("??", "? ?")):
         while unsafe in text:
@@ -45,7 +45,11 @@ def plain(text: str) -> str:
 @lru_cache(maxsize=8192)
 def prose(text: str) -> str:
     """`plain` text for a documentation comment: only backticks are markup, nothing is a command or HTML to Doxygen or clang."""
-    return _MARKUP.sub(r"\\\g<0>", plain(text))
+    return _MARKUP.sub(_escaped, plain(text))
+
+
+def _escaped(found: re.Match[str]) -> str:  # a template in the place of it is read anew for each text
+    return f"\\{found[0]}"
 
 
 def _spelled(paragraph: str) -> str:

@@ -24,7 +24,8 @@ def declaration(field: FieldDescription) -> str:
     """The member of a message's struct."""
     if field.model.is_bytes:
         return f"uint8_t {field.name}[{field.model.bits // 8}]"
-    return f"{type_of(field)} {field.name}{f'[{field.count}]' if field.count else ''}"
+    kind = f"{stem(field.struct)}_t" if field.struct is not None else type_of(field)
+    return f"{kind} {field.name}{f'[{field.count}]' if field.count else ''}"
 
 
 @cache

@@ -12,7 +12,7 @@ from icdgen.backends.c.types import type_of
 from icdgen.backends.lines import in_rows
 from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
-from icdgen.describe.description import Direction
+from icdgen.describe.nodes import Direction
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from icdgen.vectors.ids import worth_asking
@@ -40,6 +40,7 @@ class FieldRow(NamedTuple):
     stem: str
     tables: str  # of the names of its tables: elements of an array have the same
     has_tables: bool
+    holder: str  # where the struct in which it stands is in the message
     element: str  # the index of an element of an array, and a comma
     size: int  # bytes of the member
     packed: int  # bytes in a vector
@@ -58,7 +59,6 @@ class TailRow(NamedTuple):
     least: int
     counter: int
     most: int
-    lengths: list[str]
     frames: list[str]
     frame_lengths: list[int]
 
@@ -74,6 +74,7 @@ class MessageRow(NamedTuple):
     doubles: list[str]
     texts: list[str]
     fields: list[FieldRow]
+    lengths: list[str]  # of the frames; none where all have one
     refused_lengths: list[int]
     tail: TailRow | None
 
@@ -130,7 +131,8 @@ class _Rows:
         kept = bytes(message.model.length)
         for row in vectors.rows:  # reserved bits are those that no vector keeps
             kept = bytes(a | b for a, b in zip(kept, row.encoded.ljust(len(kept), b"\0"), strict=True))
-        fields = [self.field(field, vectors) for field in message.all_fields]
+        tables: dict[str, str] = {}
+        fields = [self.field(field, vectors, tables) for field in message.all_fields]
         size = message.model.length + sum(field.packed for field in fields)
         doubles = (f"UINT64_C(0x{double})" for row in vectors.rows for double in row.doubles.values())
         return MessageRow(
@@ -142,6 +144,11 @@ class _Rows:
             doubles=in_rows(doubles, NUMBERS_IN_ROW),
             texts=[f"{_text(text)}," for row in vectors.rows for text in row.texts.values()],
             fields=fields,
+            lengths=(
+                in_rows((str(len(row.frame)) for row in vectors.rows), BYTES_IN_ROW)
+                if len(message.model.lengths) > 1
+                else []
+            ),
             refused_lengths=list(vectors.lengths),
             tail=_tail(message, vectors) if message.tail is not None else None,
         )
@@ -156,16 +163,19 @@ class _Rows:
                 data += (value & ((1 << 8 * field.packed) - 1)).to_bytes(field.packed, "little")
         return _bytes(data)
 
-    def field(self, one: FieldDescription, vectors: MessageVectors) -> FieldRow:
+    def field(self, one: FieldDescription, vectors: MessageVectors, known: dict[str, str]) -> FieldRow:
+        """``known``: of each line of the ICD the field that has its tables."""
         field, storage = one.model, one.storage
         is_bytes, index = field.is_bytes, field.index
-        stem = f"{names.stem(one.message)}_selftest"
+        stem = f"{names.stem(one.message)}_selftest_{one.name}"
+        tables = known.setdefault(".".join(step.name for step in field.path) if field.path else stem, stem)
         unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
         return FieldRow(
             field=one,
-            stem=f"{stem}_{one.name}",
-            tables=f"{stem}_{one.name if index is None else f'{one.declared}_0'}",
-            has_tables=not index,
+            stem=stem,
+            tables=tables,
+            has_tables=tables == stem,
+            holder=one.holder,
             element="" if index is None else f"{index}u, ",
             size=field.bits // 8 if is_bytes else storage.bits // 8,
             packed=(field.bits + 7) // 8,
@@ -187,14 +197,13 @@ def _tail(message: MessageDescription, vectors: MessageVectors) -> TailRow:
         least=tail.least,
         counter=next(place for place, one in enumerate(message.all_fields) if one.model == tail.counter.model),
         most=tail.most,
-        lengths=in_rows((str(len(row.frame)) for row in vectors.rows), BYTES_IN_ROW),
         frames=_bytes(frames),
         frame_lengths=[len(frame) for frame in vectors.miscounted],
     )
 
 
 def _accessors(field: FieldDescription, end: str, type: str, rows: list[str]) -> Accessors:
-    stem = names.stem(field.message)
+    stem = names.stem(field.declaration.message)
     return Accessors(f"{stem}_{end}", f"{stem}_set_{end}", type, rows)
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from icdgen.backends.html.relations import Place, Relations
-from icdgen.icd.model import Erratum, Node
+from icdgen.icd.erratum import Erratum
+from icdgen.icd.model import Node
 
 _FEW = 6
 _LEVELS = ("certain", "likely", "open")

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from icdgen import codec, layout
 from icdgen.backends.html.texts import MINUS, number
+from icdgen.icd import floats
 from icdgen.icd.model import Field, Message, Node
 from icdgen.tables import clean
-from icdgen.values.numbers import float_text
 from icdgen.vectors import patterns
 
 _MOST = 60  # fields of a message whose values are written out for each example
@@ -76,7 +76,7 @@ def _cell(field: Field, raw: int | bytes) -> Cell:
         said = codec.text(raw) if field.type == "text" else ""
         return Cell(shown if len(raw) <= 16 else f"{shown[:47]} …", clean(said))
     if field.type == "float":
-        value = float_text(codec.float_value(field, raw), field.bits)
+        value = floats.text_of(codec.float_value(field, raw), field.bits)
         return Cell(f"0x{raw:0{field.bits // 4}X}", value.replace("-", MINUS))
     if field.enum is not None:
         name = next((member.name for member in field.enum.members if member.value == raw), "no member")

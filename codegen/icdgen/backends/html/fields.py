@@ -9,7 +9,8 @@ from icdgen import layout
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.sections import Section
-from icdgen.icd.model import Enum, Erratum, Field, Member, Message, Node
+from icdgen.icd.erratum import Erratum
+from icdgen.icd.model import Enum, Field, Member, Message, Node
 from icdgen.show.fields import remarks
 
 

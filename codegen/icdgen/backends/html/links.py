@@ -9,7 +9,8 @@ from __future__ import annotations
 from functools import lru_cache
 from zlib import crc32
 
-from icdgen.icd.model import Enum, Erratum, Field, Icd, Message, Node
+from icdgen.icd.erratum import Erratum
+from icdgen.icd.model import Enum, Field, Icd, Message, Node
 from icdgen.icd.units import Unit
 from icdgen.naming import snake, words
 

@@ -62,6 +62,8 @@ def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str
         until = "up to the end" if counter.implied else f"as many as {counter.name} says"
         what = "element" if tail.step > 1 or any(one.path for one in message.fields) else "byte"
         facts.append(("Open end", f"{tail.name}: up to {texts.count(tail.most, what)}, {until}", ""))
+    if message.may_end_early:
+        facts.append(("End", "may be left out as far as it is zeros", ""))
     if message.reserved:
         facts.append(("Reserved", f"last {texts.count(message.reserved, 'byte')}", ""))
     if message.group:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from icdgen.backends.html import examples, protocol, texts, wire
 from icdgen.backends.html.relations import Place, Relations, document, manual
 from icdgen.describe.errata import errata_of_message
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Erratum, Loggable, Message, Node
+from icdgen.icd.annex import Loggable
+from icdgen.icd.erratum import Erratum
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
 from icdgen.icd.wire_ids import DEFAULT_BITS
 
 _KINDS = {TELECOMMAND: "Telecommands", TELEMETRY: "Telemetry", CONFIGURATION: "Configuration"}
@@ -131,7 +133,7 @@ def _row(relations: Relations, node: Node, message: Message) -> dict[str, object
         "kind": message.kind,
         "group": message.group,
         "length": message.length,
-        "bytes": message.length if message.tail is None else f"{message.least}\u2013{message.length}",
+        "bytes": message.length if len(message.lengths) == 1 else f"{message.least}\u2013{message.length}",
         "fields": len(message.fields),
         "mask": mask,
         "of": "" if own else relations.icd.node(message.node).title,

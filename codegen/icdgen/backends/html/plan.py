@@ -18,6 +18,8 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
         "length": message.length,
         "fields": [_field(field, node) for field in message.fields],
     }
+    if message.may_end_early:
+        plan["endsEarly"] = True
     if message.tail is not None:
         tail = message.tail
         plan["tail"] = {
@@ -66,7 +68,7 @@ def _field(field: Field, node: Node) -> dict[str, object]:
     if field.const is not None:
         plan["const"] = integer(field.const)
     if field.special:
-        plan["special"] = [[integer(one.value), one.meaning] for one in field.special]
+        plan["special"] = [[integer(one.value), one.meaning] for one in field.special]  # bits of floats
     limits = bounds(field.limits)
     if limits:  # numerator and denominator of each
         plan["limits"] = {one.key: [integer(one.value.numerator), integer(one.value.denominator)] for one in limits}

@@ -26,6 +26,8 @@ def index(relations: Relations) -> dict[str, Any]:
 def _tail(relations: Relations, message: Message) -> list[dict[str, Any]]:
     """Where frames differ in length: what these are, and the bits that count the elements."""
     tail, counter = message.tail, message.counter
+    if message.may_end_early:
+        return [{"least": message.least, "step": 1, "pieces": []}]
     if tail is None or counter is None:
         return []
     pieces = () if counter.implied else layout.pieces(counter, relations.icd.node(message.node))

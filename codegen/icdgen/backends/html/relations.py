@@ -9,7 +9,9 @@ from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.wire import Speaker, Wire
 from icdgen.backends.python.objects.links import link_of
-from icdgen.icd.model import Enum, Erratum, Field, Icd, Loggable, Message, Node
+from icdgen.icd.annex import Loggable
+from icdgen.icd.erratum import Erratum
+from icdgen.icd.model import Enum, Field, Icd, Message, Node
 from icdgen.icd.units import Unit
 from icdgen.protocol import facts
 

@@ -75,8 +75,8 @@ def page_facts(message: Message, wire: Wire) -> dict[str, object]:
         "telemetry": message.telemetry_id,
         "crc": [crc_facts(one.facts) for one in wire.checked],
     }
-    if message.tail is not None:
-        facts["lengths"] = [message.least, message.tail.step]
+    if len(message.lengths) > 1:
+        facts["lengths"] = [message.least, message.lengths.step]
     facts |= framing_facts(wire.facts)
     if wire.facts.can:
         facts["can"] = can_facts(wire.facts.can)

@@ -67,6 +67,9 @@ class PythonBackend:
             yield folder / "__init__.py", render("types.py.j2", **nodes.spoken(node, description), **shared)
             for enum in node.enums:
                 yield folder / f"{names.module_name(enum)}.py", render("enum.py.j2", enum=enum, **shared)
+            for struct in node.structs:
+                path = folder / f"{names.module_name(struct)}.py"
+                yield path, render("struct.py.j2", m=struct, **messages.shared(struct), **shared)
             for message in node.messages:
                 path = folder / f"{names.module_name(message)}.py"
                 yield path, render("message.py.j2", m=message, **shared, **messages.values(message))

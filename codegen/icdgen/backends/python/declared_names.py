@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.python import names
 from icdgen.backends.python.fields import whole
-from icdgen.describe import Description, FieldDescription, MessageDescription
+from icdgen.describe import Description, FieldDescription
+from icdgen.describe.description import Composite
 from icdgen.naming import DEVICES
 
 
@@ -25,12 +27,17 @@ def declared_names(description: Description, package: str) -> Iterator[Identifie
                 yield one.identifier(f"module {within}", names.class_name(one))
             for enum in owner.enums:
                 yield enum.identifier(f"module {within}", names.class_name(enum))
+            for struct in owner.structs:
+                yield struct.identifier(f"module {within}", names.class_name(struct))
+        for struct in node.structs:
+            yield struct.identifier(f"files of {within}", names.module_name(struct))
+            yield from _fields(struct, f"members of {within}.{names.class_name(struct)}")
         for enum in node.enums:  # messages have files in every language
             yield enum.identifier(f"files of {within}", names.module_name(enum))
             for member in enum.members:
                 yield member.identifier(f"members of {within}.{names.class_name(enum)}", member.name.upper())
         for one in node.messages:
-            yield from _message(one, f"members of {within}.{names.class_name(one)}")
+            yield from _fields(one, f"members of {within}.{names.class_name(one)}")
 
 
 def _of_field(field: FieldDescription) -> Iterator[str]:
@@ -42,9 +49,11 @@ def _of_field(field: FieldDescription) -> Iterator[str]:
         yield field.whole_name(found.per)
 
 
-def _message(message: MessageDescription, scope: str) -> Iterator[Identifier]:
-    for field in (*message.sent, *message.views):
-        for name in (*_of_field(field), *(one.name.upper() for one in field.constants)):
+def _fields(one: Composite[Any], scope: str) -> Iterator[Identifier]:
+    for field in one.all_members:
+        if field.model.implied:
+            continue
+        for name in (*_of_field(field), *(constant.name.upper() for constant in field.constants)):
             yield field.identifier(scope, name)
             if name in names.IN_MESSAGE:
                 yield Identifier(scope, name, names.IN_MESSAGE[name].format(name), None)

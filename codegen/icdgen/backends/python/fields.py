@@ -8,7 +8,10 @@ from icdgen.backends.lines import STEP, exploded
 from icdgen.backends.python.names import class_name
 from icdgen.backends.python.text import literal
 from icdgen.describe import FieldDescription, MessageDescription, wholes
+from icdgen.describe.constants import Constant
 from icdgen.describe.wholes import Whole
+from icdgen.icd import floats
+from icdgen.icd.model import Special
 
 _WIDTH = 120  # columns of a declaration
 _KEYWORDS = {"min": "minimum", "max": "maximum"}
@@ -20,6 +23,8 @@ def annotation(field: FieldDescription) -> str:
 
 
 def _annotation(field: FieldDescription) -> str:
+    if field.struct is not None:
+        return class_name(field.struct)
     if field.is_text:
         return "bytes"
     return class_name(field.enum) if field.enum else "int" if field.model.type == "uint" else field.model.type
@@ -56,16 +61,31 @@ def _told(field: FieldDescription) -> list[str]:
     if one.const is not None:
         items.append(f"const={one.const}")
     if one.special:
-        pairs = [f"({special.value}, {literal(special.meaning)})" for special in one.special]
+        pairs = [f"({special_value(special, one.bits)}, {literal(special.meaning)})" for special in one.special]
         items.append(exploded("special=(", pairs, ")", " " * 8))
     items += (f'{key}="{value}"' for key in ("byte_order", "bit_order") if (value := getattr(one, key)))
     items += (f"{_KEYWORDS.get(bound.key, bound.key)}={number(bound.value)}" for bound in field.bounds)
     return items
 
 
+def constant(one: Constant, field: FieldDescription) -> str:
+    """A literal of a constant of the field."""
+    return special_value(one, field.model.bits) if one.number else number(one.value)
+
+
+def special_value(one: Special | Constant, bits: int) -> str:
+    """A literal of the raw value; of one of a float as the attribute has it."""
+    if one.number in floats.NAMED:
+        return f'float("{one.number}")'
+    return repr(floats.value_of(int(one.value), bits)) if one.number else str(one.value)
+
+
 def declaration(field: FieldDescription) -> str:
     """``control_mode: ConModeSelect = _base.field(...)``: its place, its first value, and what is told of it."""
     one = field.model
+    if field.struct is not None:
+        items = [literal(one.name), str(one.at), str(one.bits), f"factory={class_name(field.struct)}", *_told(field)]
+        return _statement(field.name, annotation(field), "part", items)
     items = [literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', f"default={default(field)}", *_told(field)]
     return _statement(field.name, annotation(field), "field", items)
 

@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from icdgen.backends.python import names
-from icdgen.backends.python.fields import number
-from icdgen.describe import EnumDescription, MessageDescription
+from icdgen.backends.python.fields import constant
+from icdgen.describe import EnumDescription, MessageDescription, StructDescription
+from icdgen.describe.description import Composite
 from icdgen.describe.parts import parts_of
 
 
 def values(message: MessageDescription) -> dict[str, object]:
-    """The enumerations that are imported for it, the constants of its fields, and what it repeats in the order of the frame."""
-    enums = {field.enum for field in message.all_fields if field.enum is not None}
+    """What is said of it, and what it repeats in the order of the frame."""
     parts = [(begin, part.message) for part in parts_of(message) for begin in part.begins]
+    return {**shared(message), "parts": sorted(parts, key=lambda one: one[0])}
+
+
+def shared(composite: Composite[Any]) -> dict[str, object]:
+    """The enumerations and structs that are imported for a message or a struct, and the constants of its fields."""
+    used_by: tuple[EnumDescription | StructDescription, ...] = (*composite.enums, *composite.structs)
     return {
-        "imports": sorted(_import(enum, message) for enum in enums),
-        "constants": [(one, number(one.value)) for field in message.all_members for one in field.constants],
-        "parts": sorted(parts, key=lambda one: one[0]),
+        "imports": sorted(_import(used, composite) for used in used_by),
+        "constants": [(one, constant(one, field)) for field in composite.all_members for one in field.constants],
     }
 
 
-def _import(enum: EnumDescription, message: MessageDescription) -> str:
-    module = names.module_name(enum)
-    if enum.node is not message.node:
-        module = f"..{enum.node.name}.{names.TYPES}.{module}"
-    return f"from .{module} import {names.class_name(enum)}"
+def _import(used: EnumDescription | StructDescription, by: Composite[Any]) -> str:
+    module = names.module_name(used)
+    if used.node is not by.node:
+        module = f"..{used.node.name}.{names.TYPES}.{module}"
+    return f"from .{module} import {names.class_name(used)}"

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import keyword
+from typing import Any
 from zlib import crc32
 
-from icdgen.describe import EnumDescription, MessageDescription
+from icdgen.describe import EnumDescription
+from icdgen.describe.description import Composite
 from icdgen.naming import camel
 
 RESERVED = frozenset(keyword.kwlist)
@@ -31,19 +33,19 @@ TYPES = "_types"  # the subpackage of a node that holds its messages and enumera
 _LONGEST = 200  # characters of a module's name, for the sake of file systems
 
 
-def class_name(one: MessageDescription | EnumDescription) -> str:
+def class_name(one: Composite[Any] | EnumDescription) -> str:
     """``EstimatedAttitudeAngles``"""
     return camel(one.words)
 
 
-def module_name(one: MessageDescription | EnumDescription) -> str:
+def module_name(one: Composite[Any] | EnumDescription) -> str:
     """``estimated_attitude_angles``; it never stands in a user's program."""
     if len(one.name) > _LONGEST:
         return f"{one.name[:_LONGEST]}_{crc32(one.name.encode()):08x}"
     return f"{one.name}_" if one.name in RESERVED else one.name
 
 
-def home(one: MessageDescription | EnumDescription, node: str, up: str) -> str:
+def home(one: Composite[Any] | EnumDescription, node: str, up: str) -> str:
     """The module, as one that stands ``up`` dots below the package imports it; ``node`` is that one's node."""
     start = "." if one.node.name == node else f"{up}{one.node.name}."
     return f"{start}{TYPES}.{module_name(one)}"

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 from icdgen.backends.lines import exploded
 from icdgen.backends.python import names
 from icdgen.backends.python.text import docstring, literal, paragraph
-from icdgen.describe import Description, EnumDescription, MessageDescription, NodeDescription
+from icdgen.describe import Description, EnumDescription, NodeDescription
 from icdgen.describe.comments import sentence
+from icdgen.describe.description import Composite
 from icdgen.icd.model import Node
 
 _OF_NODE = (
     "DIGEST", "ENUMS", "NAME", "TELECOMMANDS", "TELEMETRY", "TITLE", "decode_telecommand", "decode_telemetry",
 )  # fmt: skip
 _OF_PACKAGE = (
-    "NODES", "FieldInfo", "IcdError", "LengthError", "Message", "OpenEnum", "RangeError", "UnknownIdError",
+    "NODES", "FieldInfo", "IcdError", "LengthError", "Message", "OpenEnum", "RangeError", "Struct", "UnknownIdError",
+    "is_special",
 )  # fmt: skip
 
 
@@ -23,8 +26,8 @@ def values(node: NodeDescription, description: Description) -> dict[str, object]
     """What can be imported from a node: modules and names; and what is told of it."""
     declared: list[tuple[str, str]] = []
     for owner in map(description.node, (*description.icd.included(node.model), node.model)):
-        both: tuple[MessageDescription | EnumDescription, ...] = (*owner.messages, *owner.enums)
-        declared += ((names.home(one, node.name, ".."), names.class_name(one)) for one in both)
+        every: tuple[Composite[Any] | EnumDescription, ...] = (*owner.messages, *owner.enums, *owner.structs)
+        declared += ((names.home(one, node.name, ".."), names.class_name(one)) for one in every)
     declared += [("._link", "LINK")] if node.is_linked else []
     return {
         "doc": docstring(0, _documentation(node.model)),

@@ -61,6 +61,9 @@ class RustBackend:
             shared = {**common, "origin": origin(node.model), "wired": wired}
             if node.enums:
                 yield folder / "enums.rs", render("enums.rs.j2", enums=node.enums, **shared)
+            for struct in node.structs:
+                text = render("struct.rs.j2", m=struct, **messages.of_struct(struct), **shared)
+                yield folder / f"{struct.name}.rs", text
             for message in node.messages:
                 text = render("message.rs.j2", m=message, **messages.values(message), **shared)
                 yield folder / f"{message.name}.rs", text

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from icdgen.backends.lines import STEP
-from icdgen.backends.rust.names import field_name
+from icdgen.backends.rust.names import field_name, struct_path
 from icdgen.backends.rust.physical import curve_name, curve_value, physical, raw_value, single
 from icdgen.backends.rust.text import WIDTH, assigned, double, integer, string
 from icdgen.describe import FieldDescription
@@ -123,6 +123,8 @@ def field_row(field: FieldDescription) -> str:
     chain = [f"({string(one.name)}, {integer(one.at)}, {integer(one.bits)})"]
     if field.count:
         chain.append(f".array({field.count})")
+    if field.struct is not None:
+        chain.append(f".fields({struct_path(field.struct, field.message.node)}::FIELDS)")
     if one.unit is not None:
         chain.append(f".unit({string(one.unit.symbol)})")
     if field.bounds:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from icdgen.backends.lines import STEP, bracketed
-from icdgen.backends.rust.names import field_name
+from icdgen.backends.rust.names import field_name, own_name, struct_path
 from icdgen.backends.rust.text import WIDTH, mask
-from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe import FieldDescription, MessageDescription, StructDescription
 from icdgen.describe.storage import holding
 from icdgen.layout import Piece, is_whole_bytes
 
@@ -18,10 +18,12 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3) -> str:
 
     It stands in a line indented by ``depth`` steps.
     """
+    if field.struct is not None:
+        return _structs(field, field.struct, tables, depth)
     if field.model.implied:
         return "0"
     if field.count:
-        return _array(field) if _is_run(field) else _listed(field, tables, depth)
+        return _array(field, depth) if _is_run(field) else _listed(field, tables, depth)
     one, row = field.model, field.pieces
     if one.is_bytes:
         return f"array(bytes, {one.at // 8})"
@@ -40,13 +42,27 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3) -> str:
     return f"{{{body}\n{STEP * depth}}}"
 
 
+def _structs(field: FieldDescription, struct: StructDescription, tables: set[int], depth: int) -> str:
+    """A struct, or an array of them."""
+    path, inner = struct_path(struct, field.message.node), depth + bool(field.count)
+    pad = STEP * inner
+    found = []
+    for row in field.instances:
+        lines = "".join(f"{pad}{STEP}{own_name(one)}: {reading(one, tables, inner + 1)},\n" for one in row)
+        found.append(f"{path} {{\n{lines}{pad}}}")
+    if not field.count:
+        return found[0]
+    rows = "".join(f"{pad}{one},\n" for one in found)
+    return f"[\n{rows}{STEP * depth}]"
+
+
 def _is_run(field: FieldDescription) -> bool:
     """Whether the elements of an array are words that lie in the frame as they do in memory, but for their byte order."""
     one = field.model
     return is_whole_bytes(one) and one.bits == field.storage.bits and one.type != "bool"
 
 
-def _array(field: FieldDescription) -> str:
+def _array(field: FieldDescription, depth: int) -> str:
     """The words of an array, read one after the other."""
     one, size = field.model, field.model.bits
     first = one.at // 8
@@ -58,9 +74,9 @@ def _array(field: FieldDescription) -> str:
         return f"words(bytes, {first}, {word})"
     value = f"Coded::from_raw({word}(word))"
     line = f"words(bytes, {first}, |word| {value})"
-    if len(f"{STEP * 3}{field_name(field)}: {line},") <= WIDTH:
+    if len(f"{STEP * depth}{own_name(field)}: {line},") <= WIDTH:
         return line
-    return f"words(bytes, {first}, |word| {{\n{STEP * 4}{value}\n{STEP * 3}}})"
+    return f"words(bytes, {first}, |word| {{\n{STEP * (depth + 1)}{value}\n{STEP * depth}}})"
 
 
 def _listed(field: FieldDescription, tables: set[int], depth: int) -> str:
@@ -144,6 +160,10 @@ def _placed(piece: Piece, size: int) -> str:
 
 def fitting(field: FieldDescription) -> list[str]:
     """The statements that return with an error if the raw value of a narrow field does not fit its bits."""
+    if field.struct is not None:
+        if not field.count:
+            return [f"self.{field_name(field)}.fit()?;"]
+        return [f"for part in &self.{field_name(field)} {{", f"{STEP}part.fit()?;", "}"]
     raw = ".raw()" if field.enum is not None else ""
     if field.count:
         values = f"self.{field_name(field)}"

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.rust import names
 from icdgen.backends.rust.accessors import single_name, whole_of
-from icdgen.describe import Description, MessageDescription, NodeDescription
+from icdgen.describe import Description, NodeDescription
+from icdgen.describe.description import Composite
 from icdgen.naming import DEVICES
 
 _METHODS = ("from_bytes", "from_array", "to_bytes", "default")
 _OPEN_METHODS = ("from_longest", "size")
 _CONSTANTS = ("NAME", "LENGTH", "ID", "SET_ID", "GET_ID")
+_METHODS_OF_STRUCTS = ("fit", "rows", "default")
+_CONSTANTS_OF_STRUCTS = ("NAME", "FIELDS")
 _ENUM_USES = ("Option", "From", "Enumeration")
 _OURS = "a name of the generated code"
 
@@ -50,20 +54,26 @@ def _node(node: NodeDescription) -> Iterator[Identifier]:
         yield from _ours(variants, (names.catch_all(enum),))
         for member in enum.members:
             yield member.identifier(variants, names.type_name(member))
+    for struct in node.structs:
+        yield struct.identifier(modules, struct.name)
+        yield struct.identifier(types, names.type_name(struct))
+        yield from _members(struct, _METHODS_OF_STRUCTS, _CONSTANTS_OF_STRUCTS)
     for one in node.messages:
         yield one.identifier(modules, one.name)
         yield one.identifier(types, names.type_name(one))
-        yield from _message(one)
+        yield from _members(one, _METHODS, _CONSTANTS)
     for direction in node.directions:
         for one, _ in direction.messages:
             yield one.identifier(f"variants of {node.name}::{direction.kind.capitalize()}", names.type_name(one))
 
 
-def _message(message: MessageDescription) -> Iterator[Identifier]:
+def _members(
+    message: Composite[Any], used_methods: tuple[str, ...], used_constants: tuple[str, ...]
+) -> Iterator[Identifier]:
     where = f"{message.node.name}::{message.model.name}"
     fields, methods, associated = f"fields of {where}", f"methods of {where}", f"constants of {where}"
-    yield from _ours(methods, (*_METHODS, *(_OPEN_METHODS if message.tail is not None else ())))
-    yield from _ours(associated, _CONSTANTS)
+    yield from _ours(methods, (*used_methods, *(_OPEN_METHODS if message.tail is not None else ())))
+    yield from _ours(associated, used_constants)
     for field in message.all_members:
         is_view = field.model.view
         if message.tail is not None and field.is_open:

@@ -9,9 +9,9 @@ from icdgen.backends.rust.accessors import accessors
 from icdgen.backends.rust.names import ENUMS_MODULE, field_name, type_name
 from icdgen.backends.rust.text import double, integer, mask
 from icdgen.describe import EnumDescription, MessageDescription, NodeDescription
-from icdgen.describe.description import Direction
 from icdgen.describe.examples import Example, Shown, example
 from icdgen.describe.links import LinkDescription
+from icdgen.describe.nodes import Direction
 
 _WHOLE = 8  # bytes of a frame that is written out; of a longer one, those that are not 0
 

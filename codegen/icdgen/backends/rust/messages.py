@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from icdgen.backends.rust import bits, constants, parts
-from icdgen.backends.rust.names import field_name
+from icdgen.backends.rust.names import field_name, struct_path
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
-from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.description import TailDescription
+from icdgen.describe import FieldDescription, MessageDescription, StructDescription
+from icdgen.describe.description import Composite, TailDescription
 
 DERIVES_DEFAULT = 32  # elements of an array; longer ones do not
 
@@ -17,60 +19,77 @@ def values(message: MessageDescription) -> dict[str, object]:
     fields, tables, tail = message.members, bits.flag_tables(message), message.tail
     readings = [bits.reading(field, tables) for field in fields]
     views = [(field, bits.reading(field, set(), depth=2)) for field in message.views]
-    writings = [line for field in fields for line in bits.writing(field)]
-    has_default = all((field.fresh == 0 or field.is_open) and not _is_long(field) for field in fields)
-    derived = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
-    narrow = [field for field in fields if field.is_narrow]
-    scales = [field for field in message.all_members if has_constant(field)]
-    has_text = any(field.is_text for field in fields)
-    has_elements = any(field.count and field.is_scaled for field in fields)
-    curves = [field for field in message.all_members if field.curve is not None]
-    is_usual = any(field.steps is None or not field.steps.is_wide for field in scales)
+    writings = [line for field in message.leaves for line in bits.writing(field)]
     imported = {
         "array": any("array(" in reading for reading in readings),
-        "element_of": has_elements,
         "flags": bool(tables),
         "message": True,
         "put": any("put!(" in line for line in writings),
         "put_array": any("put_array(" in line for line in writings),
-        "put_element": has_elements,
         "put_words": any("put_words(" in line for line in writings),
         "take": any("take!(" in reading for reading in (*readings, *(reading for _, reading in views))),
-        "text": has_text,
-        "text_array": has_text,
         "counted": tail is not None and not tail.counter.model.implied,
         "elements": tail is not None,
-        "longest": tail is not None,
+        "longest": tail is not None or bool(message.model.may_end_early),
         "present": tail is not None,
         "words": any("words(" in reading for reading in readings),
-        "Big": message.has_wide_steps,
-        "Curve": bool(curves),
         "Coded": any(field.enum for field in message.all_fields),
         "Error": True,
         "Frame": tail is not None,
-        "Scale": is_usual,
-        "Wide": message.has_wide_steps,
     }
-    imported = dict(sorted(imported.items(), key=lambda item: (item[0][0].isupper(), item[0])))
-    names = [name for name, is_used in imported.items() if is_used]
-    bound = tail is not None and tail.is_bound
     return {
-        "refused": bound or bool(narrow),
+        **_shared(message, imported),
+        "refused": message.is_narrow,
         "tail": tail,
         "length_of_frame": "" if tail is None else _length_of_frame(tail),
-        "constants": constants.of_fields(message),
         "tables": sorted(tables),
         "literal": _literal(fields, readings),
         "views": views,
         "writings": writings,
+        "parts": parts.parts(message),
+    }
+
+
+def of_struct(struct: StructDescription) -> dict[str, object]:
+    """What is derived and imported for a struct: messages read and write it."""
+    imported = {
+        "structure": True,
+        "Coded": any(field.enum for field in struct.members),
+        "Error": struct.is_narrow or any(field.has_physical for field in struct.members),
+    }
+    return _shared(struct, imported)
+
+
+def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]:
+    """What is said of a message and of a struct."""
+    fields = one.members
+    has_default = all((field.fresh == 0 or field.is_open) and not _is_long(field) for field in fields)
+    derived = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
+    narrow = [field for field in fields if (field.struct or field).is_narrow]
+    scales = [field for field in one.all_members if has_constant(field)]
+    has_text = any(field.is_text for field in fields)
+    has_elements = any(field.count and field.is_scaled for field in fields)
+    curves = [field for field in one.all_members if field.curve is not None]
+    imported |= {
+        "element_of": has_elements,
+        "put_element": has_elements,
+        "text": has_text,
+        "text_array": has_text,
+        "Big": one.has_wide_steps,
+        "Curve": bool(curves),
+        "Scale": any(field.steps is None or not field.steps.is_wide for field in scales),
+        "Wide": one.has_wide_steps,
+    }
+    names = sorted((name for name, is_used in imported.items() if is_used), key=lambda name: (name[0].isupper(), name))
+    return {
+        "constants": constants.of_fields(one),
         "fits": [line for field in narrow for line in bits.fitting(field)],
         "scales": scales,
         "curves": curves,
-        "parts": parts.parts(message),
         "default": None if has_default else _literal(fields, [_fresh(field) for field in fields]),
-        "derives": ", ".join(derived + ([] if message.has_floats else ["Eq", "Hash"])),
+        "derives": ", ".join(derived + ([] if one.has_floats else ["Eq", "Hash"])),
         "imports": f"{{{', '.join(names)}}}" if len(names) > 1 else names[0],
-        "uses_enums": any(field.enum is not None and field.enum.node is message.node for field in message.all_fields),
+        "uses_enums": any(enum.node is one.node for enum in one.enums),
     }
 
 
@@ -104,6 +123,8 @@ def _zero(field: FieldDescription) -> str:
 
 def _valued(field: FieldDescription, raw: int) -> str:
     kind = field.model.type
+    if field.struct is not None:
+        return f"{struct_path(field.struct, field.message.node)}::default()"
     if field.model.is_bytes:
         return f"[0; {field.model.bits // 8}]"
     if kind == "enum":

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from icdgen.describe import EnumDescription, FieldDescription, MessageDescription
+from typing import Any
+
+from icdgen.describe import EnumDescription, FieldDescription, MessageDescription, StructDescription
+from icdgen.describe.description import Composite
 from icdgen.describe.enums import MemberDescription
 from icdgen.icd.model import Node
 from icdgen.naming import camel
@@ -31,14 +34,24 @@ USED_IN_NODES = (ENUMS_MODULE, "u8", "u16", "u32", "u64", "usize", "str", "serde
 CATCH_ALL = ("Unknown", "Unlisted", "Unnamed", "AnyOther")
 
 
-def type_name(one: MessageDescription | EnumDescription | MemberDescription) -> str:
+def type_name(one: Composite[Any] | EnumDescription | MemberDescription) -> str:
     """``EstimatedAttitudeAngles``; of a member, the name of its variant: ``NoControl``."""
     return camel(one.words)
 
 
 def field_name(field: FieldDescription) -> str:
-    """``estimated_roll_angle``; ``r#type`` where the name is a keyword; of an element of an array ``temperatures[3]``."""
-    return f"r#{field.member}" if field.member.partition("[")[0] in _RAW else field.member
+    """``estimated_roll_angle``; ``r#type`` where the name is a keyword; ``temperatures[3]``; ``satellites[2].gnss``."""
+    return raw_words(field.member)
+
+
+def raw_words(expression: str) -> str:
+    """An expression of members, keywords among them as names."""
+    return ".".join(f"r#{part}" if part.partition("[")[0] in _RAW else part for part in expression.split("."))
+
+
+def own_name(field: FieldDescription) -> str:
+    """What it is called in the message, or in the struct, that declares it."""
+    return f"r#{field.declared}" if field.declared in _RAW else field.declared
 
 
 def catch_all(enum: EnumDescription) -> str:
@@ -58,6 +71,11 @@ def message_path(message: MessageDescription, node: Node) -> str:
     return type_name(message) if message.node.name == node.name else f"crate::{message.node.name}::{type_name(message)}"
 
 
+def struct_path(struct: StructDescription, node: Node) -> str:
+    """The type as the messages of ``node`` write it."""
+    return f"{'super' if struct.node.name == node.name else f'crate::{struct.node.name}'}::{type_name(struct)}"
+
+
 def integer_type(field: FieldDescription) -> str:
     """The integer that holds the raw value."""
     return f"{'i' if field.storage.signed else 'u'}{field.storage.bits}"
@@ -75,6 +93,8 @@ def open_type(field: FieldDescription) -> str:
 
 def _one_type(field: FieldDescription) -> str:
     one = field.model
+    if field.struct is not None:
+        return struct_path(field.struct, field.message.node)
     if field.enum is not None:
         return f"Coded<{enum_path(field.enum, field.message.node)}>"
     if one.is_bytes:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 from icdgen.backends.lines import STEP, bracketed, commented
-from icdgen.describe.comments import Comment
+from icdgen.describe.comments import Comment, one_line
 
 WIDTH = 100
 
@@ -21,8 +21,8 @@ def _character(char: str) -> str:
 @lru_cache(maxsize=8192)
 def plain(text: str) -> str:
     """One line without control, invisible or direction-changing characters."""
-    text = " ".join(text.split())
-    return text if text.isascii() and text.isprintable() else "".join(map(_character, text))
+    text = one_line(text)
+    return text if text.isprintable() else "".join(map(_character, text))
 
 
 @lru_cache(maxsize=8192)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import NodePair, differing
 from icdgen.diff.rule import Found, rule
-from icdgen.icd.model import Erratum
+from icdgen.icd.erratum import Erratum
 from icdgen.icd.rules.wording import listing
 
 _PARTS = ("title", "why", "evidence", "confidence", "tables", "printed", "held", "is_note")

@@ -107,7 +107,8 @@ def length_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     else:
         what = f"lost {some(tail, 'field')} at its end" if tail else f"shrank by {by}"
     text = f"{quote(new.name)} has {count(new.length, 'byte')}, had {old.length}: it {what}"
-    details = [f"Decoders of the other release refuse the frame: they take exactly {old.length} bytes."]
+    taken = length_text(old) if old.may_end_early else f"exactly {old.length} bytes"
+    details = [f"Decoders of the other release refuse the frame: they take {taken}."]
     if tail and not ctx.is_touched_before(pair, shorter * 8):
         details.append(f"The first {shorter} bytes are as they were.")
     yield Found(text, ("length",), f"{old.length} bytes", f"{new.length} bytes", tuple(details))
@@ -133,6 +134,21 @@ def _open_end(message: Message) -> str:
         return "of fixed size"
     counted = "as many as come" if counter.implied else f"counted by {quote(counter.name)}"
     return f"up to {tail.most} of {quote(tail.name)}, {counted}"
+
+
+@rule("DIF125", "message")
+@rule("DIF126", "message", severity="note")
+def end_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old, pair.new
+    if old.may_end_early == new.may_end_early:
+        return
+    if new.may_end_early:
+        details = "Decoders of the other release take whole frames only."
+        code, text = "DIF125", f"{quote(new.name)} may be sent without the zeros that it ends with"
+    else:
+        code, text = "DIF126", f"{quote(new.name)} is always sent with the zeros that it ends with"
+        details = "Decoders of the other release take such frames, too."
+    yield Found(text, ("may_end_early", "length"), length_text(old), length_text(new), (details,), code=code)
 
 
 @rule("DIF130", "node", when="gone")

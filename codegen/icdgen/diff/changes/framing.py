@@ -8,7 +8,7 @@ from icdgen.diff.context import Context
 from icdgen.diff.facts import facts, shown
 from icdgen.diff.pairs import NodePair, differing, place_of
 from icdgen.diff.rule import Found, rule
-from icdgen.icd.model import Loggable
+from icdgen.icd.annex import Loggable
 from icdgen.icd.rules.wording import quote
 
 LONGEST = 80

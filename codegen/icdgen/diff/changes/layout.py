@@ -78,10 +78,15 @@ def width_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 @rule("DIF118", "field")
 def count_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    if old.count != new.count and not pair.is_open:  # see DIF119
+    if old.count != new.count and not pair.is_open and not _is_of_structs(pair):  # see DIF119, DIF127
         was, now = (count(one.count, "element") if one.count else "one value" for one in (old, new))
         text = f"{quote(new.name)} is {_an_array(new)}, was {_an_array(old)}"
         yield Found(text, ("count", "bits"), was, now)
+
+
+def _is_of_structs(pair: FieldPair) -> bool:
+    """Whether what repeats it are structs, on both sides, and it is no array itself."""
+    return all(one.path and not one.path[-1].count for one in (pair.old, pair.new)) and pair.is_of_struct
 
 
 def _an_array(field: Field) -> str:

@@ -85,6 +85,8 @@ def node_renamed(pair: NodePair, ctx: Context) -> Iterator[Found]:
 
 @rule("DIF306", "message", "field", "enum", "member", "node", when="gone")
 def names_gone(pair: Pair, ctx: Context) -> Iterator[Found]:
+    if _is_of_struct(pair):
+        return
     names = ctx.generated.old.get(id(pair), ()) if not isinstance(pair, NodePair) else ()
     gone: Renamed = [(name, None) for name in names]
     text = f"the generated names of {_WHAT[type(pair)]} {quote(pair.old.name)} are gone"
@@ -149,10 +151,16 @@ def declared_elsewhere(pair: MessagePair | EnumPair, ctx: Context) -> Iterator[F
 
 @rule("DIF311", "message", "field", "enum", "member", "node", when="come", severity="note", addition=True)
 def names_come(pair: Pair, ctx: Context) -> Iterator[Found]:
+    if _is_of_struct(pair):
+        return
     names = ctx.generated.new.get(id(pair), ()) if not isinstance(pair, NodePair) else ()
     come: Renamed = [(None, name) for name in names]
     text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} has generated names now"
     yield Found(text, ("name", "identifier"), "", pair.new.name, lines(come))
+
+
+def _is_of_struct(pair: Pair) -> bool:
+    return isinstance(pair, FieldPair) and pair.is_of_struct  # see DIF313
 
 
 @rule("DIF312", "field")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import lru_cache
 
 from icdgen.describe.bounds import KEYS, bounds
@@ -13,7 +14,7 @@ from icdgen.diff.similar import same_sense
 from icdgen.diff.wording import formula, number
 from icdgen.icd.curve import Curve
 from icdgen.icd.formula import RAW, Scale
-from icdgen.icd.model import Field, Limits
+from icdgen.icd.model import Field, Limits, Special
 from icdgen.icd.rules.wording import quote
 
 
@@ -64,10 +65,17 @@ def const_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     yield Found(text, ("const",), was, now, severity=severity)
 
 
+def _specials(field: Field) -> list[Special]:
+    """The values that have a meaning; of floats as numbers, for their bits are others where the width is."""
+    return [replace(one, value=0) if one.number else one for one in field.special]
+
+
 @rule("DIF210", "field", severity="warning")
 @rule("DIF412", "field", severity="note")
 def special_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    for value, old, new in differing(pair.old.special, pair.new.special, lambda one: one.value):
+    old_ones, new_ones = _specials(pair.old), _specials(pair.new)
+    for (named, raw), old, new in differing(old_ones, new_ones, lambda one: (one.number, one.value)):
+        value = named or raw
         was, now = old.meaning if old else "", new.meaning if new else ""
         code, text = "DIF210", f"the raw value {value} of {quote(pair.new.name)}"
         if not was:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import (
     EnumPair,
+    FieldPair,
     IdentifiedPair,
     MessagePair,
     NodePair,
@@ -49,8 +50,9 @@ def _reference(side: object) -> str:
 @rule("DIF406", "message", "field", "enum", "member", severity="note")
 def respelled(pair: IdentifiedPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    if (old.name, old.identifier) == (new.name, new.identifier):
-        return
+    is_of_struct = isinstance(pair, FieldPair) and pair.is_of_struct
+    if is_of_struct or (old.name, old.identifier) == (new.name, new.identifier):
+        return  # see DIF313
     if is_of_another_node(pair) or not ctx.generated.renamed(pair):
         was, now = (f"{side.name} ({side.identifier})" if side.identifier else side.name for side in (old, new))
         text = f"{quote(new.name)} is spelled otherwise, its generated names are the same"

@@ -12,9 +12,10 @@ from typing import Any, TypeVar
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError
-from icdgen.icd import model, schema, source
+from icdgen.icd import annex, model, schema, source
 from icdgen.icd.curve import Curve
 from icdgen.icd.formula import Scale
+from icdgen.icd.implied import implied_count
 from icdgen.icd.located import Map, Seq, plain
 from icdgen.icd.units import STANDARD, Unit
 from icdgen.show import machine
@@ -117,6 +118,7 @@ class _Reader:
     def __init__(self, before: list[model.Node]) -> None:
         self.before = before
         self.enums: dict[str, model.Enum] = {}
+        self.structs: dict[str, model.Struct] = {}
         self.units: dict[str, Unit] = dict(STANDARD)
         self.errata: dict[str, model.Erratum] = {}
 
@@ -124,23 +126,29 @@ class _Reader:
         get = item.get
         for node in model.closure(self.before, item["includes"]):
             self.enums.update((enum.name, enum) for enum in node.enums)
+            self.structs.update((one.name, one) for one in node.structs)
             self.units.update((unit.symbol, unit) for unit in node.units)
         units = tuple(Unit(u["symbol"], u["identifier"], u["quantity"], u.get("summary", "")) for u in get("units", ()))
         self.units.update((unit.symbol, unit) for unit in units)
         self.errata = {entry["id"]: _erratum(entry) for key in ("errata", "notes") for entry in get(key, ())}
         enums = tuple(self.enum(enum, item["name"]) for enum in item["enums"])
         self.enums.update((enum.name, enum) for enum in enums)
+        structs = []
+        for one in get("structs", ()):  # each stands after those that it has in it
+            structs.append(self.struct(one, item["name"]))
+            self.structs[structs[-1].name] = structs[-1]
         return model.Node(
             **{"summary": "", **_as_it_is(model.Node, item)},
             messages=tuple(self.message(m, item["name"]) for m in item["messages"]),
             enums=enums,
+            structs=tuple(structs),
             document=tuple(get("document", {}).items()),
             includes=tuple(item["includes"]),
             vocabulary=tuple(get("vocabulary", ())),
             units=units,
             protocol=plain(get("protocol", {})),
-            loggable=tuple(self.row(model.Loggable, row) for row in item["loggable"]),
-            missing=tuple(model.Missing(**_as_it_is(model.Missing, one)) for one in get("missing", ())),
+            loggable=tuple(self.row(annex.Loggable, row) for row in item["loggable"]),
+            missing=tuple(annex.Missing(**_as_it_is(annex.Missing, one)) for one in get("missing", ())),
             errata=tuple(self.errata.values()),
             file=item.place.file,
             source=item,
@@ -167,7 +175,7 @@ class _Reader:
         counter = told.get("counter")
         if counter is None:
             end = next(one for one in members if one.name == told["part"])
-            implied = model.implied_count(end, item["length"])
+            implied = implied_count(end, item["length"])
             counter, fields = implied.name, (*fields, implied)
         return {"fields": fields, "tail": model.Tail(told["part"], counter, told["step"], told["most"])}
 
@@ -182,6 +190,12 @@ class _Reader:
             node=node,
         )
 
+    def struct(self, item: Map, node: str) -> model.Struct:
+        return self.row(model.Struct, item, fields=self.fields(item), node=node)
+
+    def fields(self, item: Map) -> tuple[model.Field, ...]:
+        return tuple(element for field in item["fields"] for element in self.field(field).elements)
+
     def field(self, item: Map) -> model.Field:
         limits = {key: Fraction(value) for key, value in item.get("limits", {}).items()}
         return self.row(
@@ -189,6 +203,7 @@ class _Reader:
             item,
             at=item["offset"],
             enum=self.enums.get(item.get("enum", "")),
+            struct=self.structs.get(item.get("struct", "")),
             unit=self.units.get(item.get("unit", "")),
             formula=item.get("formula", ""),
             scale=_scale(item),

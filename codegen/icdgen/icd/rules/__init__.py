@@ -31,6 +31,7 @@ from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its r
     protocol_sizes,
     reading,
     references,
+    structs,
     tails,
     values,
 )
@@ -59,13 +60,12 @@ def check(
     """
     context = Context(icd, applied, complete, languages)
     findings: list[Finding] = []
-    accepted = {(code, id(owner)) for one in context.applied for code, _, owner, _, _ in one.accepts}
     for rule in _RUN:
         if rule.whole and not complete:
             continue
         for fault in rule.check(context) if rule.check else ():
             context.raised.append((rule.code, fault))
-            if (rule.code, id(fault.owner)) not in accepted:
+            if not context.accepts(rule.code, fault):
                 findings.append(Finding(rule.code, fault.message, fault.place, fault.help, rule.severity))
     return in_order(findings)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from icdgen.icd.errata import Applied
 from icdgen.icd.located import Map
-from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.model import Field, Icd, Message, Node, Struct
 from icdgen.icd.rules.fault import Fault
 
 if TYPE_CHECKING:
@@ -18,7 +18,8 @@ RARE = ("enum", "unit", "formula", "formula_for", "const", "special", "min", "ma
     "byte_order", "bit_order", "count", "view", "up_to",
 )  # fmt: skip
 
-Row = tuple[Field, Message, Node]
+Owner = Message | Struct
+Row = tuple[Field, Owner, Node]
 
 
 def section_of(node: Node, *path: str) -> Map | None:
@@ -47,12 +48,16 @@ class Context:
         self.icd = icd
         self.languages = languages  # that names must do for
         self.applied = tuple(applied)
+        self._accepted = {(code, id(owner)) for one in self.applied for code, _, owner, _, _ in one.accepts}
         self.complete = complete
         self.raised: list[tuple[str, Fault]] = []  # code and fault, of the rules that ran already
         self.messages: list[tuple[Message, Node]] = [(m, n) for n in icd.nodes for m in n.messages]
-        self.fields: list[Row] = [
-            (f, m, n) for m, n in self.messages for f in m.members if not f.implied
+        self.structs: list[tuple[Struct, Node]] = [(one, n) for n in icd.nodes for one in n.structs]
+        self.owners: list[tuple[Owner, Node]] = [*self.messages, *self.structs]  # of fields
+        self.members: list[Row] = [
+            (f, m, n) for m, n in self.owners for f in m.members if not f.implied
         ]  # an array once
+        self.fields: list[Row] = [row for row in self.members if row[0].struct is None]
         self.having: dict[str, list[Row]] = {key: [] for key in RARE}  # fields that have the key
         having = self.having
         for row in self.fields:
@@ -70,6 +75,10 @@ class Context:
             found = (*(n for n in self.icd.nodes if by_name.get(n.name) is n), node)
             self._scopes[id(node)] = found
         return found
+
+    def accepts(self, code: str, fault: Fault) -> bool:
+        """Whether an erratum says that the fault is to be."""
+        return (code, id(fault.owner)) in self._accepted
 
     def sections(self, *path: str) -> Iterator[Map]:
         """The sections of that path, of each node that has one of its own."""

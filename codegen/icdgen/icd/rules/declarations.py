@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Set
+from collections.abc import Iterable, Set
 from dataclasses import replace
 from operator import attrgetter, is_
 from typing import NamedTuple
 
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED
 
 TWINS = frozenset(
-    {"ICD050", "ICD051", "ICD052", "ICD053", "ICD054", "ICD057"}
+    {"ICD050", "ICD051", "ICD052", "ICD053", "ICD054", "ICD057", "ICD049"}
 )  # rules about names that are there twice
 
 _TEXT = attrgetter("text")
@@ -48,20 +48,33 @@ def declared(ctx: Context) -> list[Declared]:
 
 def _sound(ctx: Context) -> Icd:
     """The model without fields that have errors, and without the second of two equal names."""
-    bad = {id(f.owner) for code, f in ctx.raised if REGISTERED[code].severity == "error"}
+    errors = ((code, f) for code, f in ctx.raised if REGISTERED[code].severity == "error")
+    bad = {id(f.owner) for code, f in errors if not ctx.accepts(code, f)}
     twins = {id(f.owner) for code, f in ctx.raised if code in TWINS}
 
+    def has_faults(fields: Iterable[Field]) -> bool:
+        return not all(id(f.source) not in bad and (f.enum or f.type != "enum") for f in fields)
+
+    wrong = {id(s) for s, _ in ctx.structs if id(s.source) in bad | twins or has_faults((*s.fields, *s.members))}
+
     def sound(message: Message) -> Message:
-        kept = tuple(f for f in message.fields if id(f.source) not in bad and (f.enum or f.type != "enum"))
+        members = {id(m.source) for m in message.members if m.struct is not None and id(m.source) in bad}
+        kept = tuple(
+            f
+            for f in message.fields
+            if not has_faults((f,))
+            and not any(id(s.struct) in wrong or (s.member and id(s.member.source) in members) for s in f.path)
+        )
         return message if len(kept) == len(message.fields) else message.with_fields(kept)
 
     def sound_node(node: Node) -> Node:
         messages = tuple(sound(m) for m in node.messages if id(m.source) not in twins)
+        structs = tuple(one for one in node.structs if id(one) not in wrong)
         enums = tuple({e.name: e for e in node.enums}.values())  # fields refer to the last of a name
         includes = tuple(name for name in node.includes if name != node.name)
-        if (messages, enums, includes) == (node.messages, node.enums, node.includes):
+        if (messages, structs, enums, includes) == (node.messages, node.structs, node.enums, node.includes):
             return node
-        return replace(node, messages=messages, enums=enums, includes=includes)
+        return replace(node, messages=messages, structs=structs, enums=enums, includes=includes)
 
     first = {n.name: n for n in reversed(ctx.icd.nodes)}
     nodes = tuple(sound_node(node) for node in ctx.icd.nodes if first[node.name] is node)

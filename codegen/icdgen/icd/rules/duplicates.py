@@ -6,7 +6,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import TypeVar
 
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Message, Node
+from icdgen.icd.model import Enum, Message, Node, Struct
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
@@ -42,8 +42,8 @@ def together(node: Node, second: Node) -> str:
     return "" if second is node else f", and `{node.name}` includes both"
 
 
-def _names_twice(
-    ctx: Context, what: str, items: Callable[[Node], Iterable[Message | Enum]], help: str
+def names_twice(
+    ctx: Context, what: str, items: Callable[[Node], Iterable[Message | Enum | Struct]], help: str
 ) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for (n1, first), (n2, second) in _twice(in_scope(ctx, node, items), lambda pair: pair[1].name):
@@ -57,15 +57,18 @@ def _names_twice(
 @rule("ICD050")
 def message_names(ctx: Context) -> Iterator[Fault]:
     help = "if the manual prints the name twice, an erratum holds another"
-    yield from _names_twice(ctx, "a message", lambda n: n.messages, help)
+    yield from names_twice(ctx, "a message", lambda n: n.messages, help)
 
 
 @rule("ICD051")
 def field_names(ctx: Context) -> Iterator[Fault]:
-    for message, _ in ctx.messages:
+    for message, _ in ctx.owners:
         fields = message.fields
         if len({f.name for f in fields}) == len(fields):
             continue
+        # What is twice as a whole is not told for each of its fields.
+        places = tuple(place for one in message.members for place in one.places)
+        fields = fields if len({f.name for f in places}) == len(places) else places
         told = set()
         for first, second in _twice(fields, lambda f: f.name):
             if id(second.source) in told:
@@ -79,7 +82,7 @@ def field_names(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD052")
 def enum_names(ctx: Context) -> Iterator[Fault]:
-    yield from _names_twice(ctx, "an enumeration", lambda n: n.enums, "rename one, or use the other")
+    yield from names_twice(ctx, "an enumeration", lambda n: n.enums, "rename one, or use the other")
 
 
 @rule("ICD053")

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from icdgen.icd import curve, exact, formula
 from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Node
+from icdgen.icd.paths import has_struct
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
@@ -110,8 +111,12 @@ def formula_computable(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD066", severity="warning")
 def formula_leads_back(ctx: Context) -> Iterator[Fault]:
-    for field, message, _ in ctx.having["formula"]:
-        if message.telecommand_id is None or field.view or not field.has_formula or field.leads_back:
+    sent = [message for message, _ in ctx.messages if message.telecommand_id is not None]
+    for field, owner, _ in ctx.having["formula"]:
+        if field.view or not field.has_formula or field.leads_back:
+            continue
+        message = next((one for one in sent if one is owner or has_struct(one.fields, owner)), None)
+        if message is None:
             continue
         if field.type == "float":
             why = "of a float only a line leads back"

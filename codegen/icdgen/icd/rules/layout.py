@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 
 from icdgen.icd.division import obstacles
 from icdgen.icd.model import Field, Message, Node
-from icdgen.icd.rules.context import Context
+from icdgen.icd.paths import placed
+from icdgen.icd.rules.context import Context, Owner
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, quote
@@ -27,11 +29,12 @@ _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 @rule("ICD020")
 def past_the_end(ctx: Context) -> Iterator[Fault]:
-    for field, message, _ in ctx.fields:
+    for field, message, _ in ctx.members:
         end, room = field.at + field.width, message.length * 8
         if end > room:
             source = field.source
-            key = "at" if field.at >= room else "count" if field.count else "bits"
+            whole = "struct" if field.struct else "bits"
+            key = "at" if field.at >= room else "count" if field.count else whole
             place = source.at(key)
             has = f"{quote(message.name)} has {count(room, 'bit')} ({count(message.length, 'byte')})"
             length = line_of(message.source.at("length"), place)
@@ -39,24 +42,24 @@ def past_the_end(ctx: Context) -> Iterator[Fault]:
                 source,
                 place,
                 f"{quote(field.name)} ends at bit {end:,}, but {has}",
-                f"correct `at`{', `count`' if field.count else ''} or `bits`, or the `length` in {length}",
+                f"correct `at`{', `count`' if field.count else ''} or `{whole}`, or the `length` in {length}",
             )
 
 
 @rule("ICD021")
 def overlap(ctx: Context) -> Iterator[Fault]:
     told = set()
-    for fault, pair in _overlaps(ctx):
+    for fault, pair in chain(_overlaps(ctx), _overlaps_within(ctx)):
         if pair not in told:  # of arrays, each element may overlap
             told.add(pair)
             yield fault
 
 
 def _overlaps(ctx: Context) -> Iterator[Overlap]:
-    for message, node in ctx.messages:
-        fields = message.owners
+    for message, node in ctx.owners:
+        fields = _standing(message)
         if any(field.bit_order not in ("", node.bit_order) for field in fields):
-            yield from _overlaps_among(message, node)
+            yield from _overlaps_among(message, node, fields)
             continue
         reached, widest = -1, -1
         for index in sorted(range(len(fields)), key=lambda i: fields[i].at):
@@ -67,10 +70,28 @@ def _overlaps(ctx: Context) -> Iterator[Overlap]:
                 reached, widest = field.at + field.bits, index
 
 
-def _overlaps_among(message: Message, node: Node) -> Iterator[Overlap]:
+def _overlaps_within(ctx: Context) -> Iterator[Overlap]:
+    """Those within structs that stand where bits are counted in another way than where they are declared."""
+    homes = {id(struct): node for struct, node in ctx.structs}
+    for member, owner, node in ctx.members:
+        if member.struct is None or id(member.struct) not in homes:
+            continue
+        if member.orders(node)[1] != homes[id(member.struct)].bit_order:
+            yield from _overlaps_among(owner, node, placed(member, member.places[0], member.struct.fields))
+
+
+def _standing(owner: Owner) -> tuple[Field, ...]:
+    """What has bits: fields, elements of arrays, structs as wholes."""
+    members = owner.members
+    if members is owner.fields:
+        return owner.owners
+    return tuple(place for member in members if not member.view for place in member.places)
+
+
+def _overlaps_among(message: Owner, node: Node, fields: tuple[Field, ...]) -> Iterator[Overlap]:
     """`_overlaps` where fields count bits in different ways."""
     seen: list[tuple[Field, int]] = []
-    for field in message.owners:
+    for field in fields:
         if field.at + field.bits > message.length * 8:
             continue  # a finding already
         mask = _mask(field, node)
@@ -104,7 +125,7 @@ def _overlap(first: Field, second: Field, bits: str = "") -> Overlap:
         second.source,
         place,
         f"{quote(second.name)} overlaps {other} in {bits}",
-        _OVERLAPPING if second.path else _VIEW,
+        "correct `at`, or the `length` of the struct" if second.struct else _OVERLAPPING if second.path else _VIEW,
     )
     return fault, (id(first.source), id(second.source))
 
@@ -157,6 +178,8 @@ def array_of_numbers(ctx: Context) -> Iterator[Fault]:
 @rule("ICD029")
 def view_of_fields(ctx: Context) -> Iterator[Fault]:
     for field, message, node in ctx.having["view"]:
+        if not isinstance(message, Message):
+            continue  # a struct has none
         if not field.view or "bitfields" in field.source or field.at + field.bits > message.length * 8:
             continue  # no view, or a finding already
         source, name = field.source, quote(field.name)
@@ -180,13 +203,13 @@ def view_of_fields(ctx: Context) -> Iterator[Fault]:
 
 def _is_read(message: Message) -> bool:
     """Whether no field was left out for a finding of its own; it may have the bits that others seem to lack."""
-    read = {id(field.source) for field in message.fields}
+    read = {id(field.source) for field in (*message.fields, *message.members)}
     return all(id(entry) in read or "bitfields" in entry for entry in message.source.get("fields", ()))
 
 
 def covered_bytes(message: Message) -> int:
     """Bytes up to the end of the last field."""
-    return max((field.at + field.bits + 7 for field in message.fields), default=0) // 8
+    return max((field.at + field.width + 7 for field in message.members), default=0) // 8
 
 
 @rule("ICD027", whole=True)
@@ -203,7 +226,7 @@ def reserved_end(ctx: Context) -> Iterator[Fault]:
 def undescribed_end(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         covered = covered_bytes(message)
-        if covered + message.reserved < message.length:
+        if covered + message.reserved < message.length and _is_read(message):
             left = message.length - covered - message.reserved
             what = "the fields describe" if message.fields else "there are no fields:"
             rest = f"{what} {covered:,}" if message.fields else f"{what} what stands in them is unknown"

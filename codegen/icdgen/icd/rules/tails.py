@@ -1,4 +1,4 @@
-"""Messages of variable length: what counts their open end, where it stands, and what carries it."""
+"""Messages of variable length: what counts their open end, where it stands, and what carries them; frames that may end early."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.icd import tails
 from icdgen.icd.located import Map
+from icdgen.icd.model import Message
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
@@ -57,6 +58,28 @@ def carried(ctx: Context) -> Iterator[Fault]:
             if known is not None and known in ctx.messages_of(node):
                 text = f"{quote(known.name)} has no fixed length, so {quote(message.name)} cannot repeat it"
                 yield Fault(message.source, part.at("message"), text, "remove it from `contains`")
+
+
+@rule("ICD150")
+def ends_early(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        linked = bool(ctx.protocol_of(node))
+        for message in ctx.messages_of(node):
+            why = _never_early(message, linked) if message.may_end_early else ""
+            if why:
+                place = message.source.at("may_end_early")
+                yield Fault(message.source, place, f"{quote(message.name)} {why}", "remove `may_end_early`")
+
+
+def _never_early(message: Message, linked: bool) -> str:
+    """Why no frame of a message can lack its zeros; empty if one can."""
+    if tails.open_parts(message.source):
+        return "has an open end: how much of it there is says the length of a frame, and zeros are part of it"
+    if message.length < 2:
+        return f"has {count(message.length, 'byte')}, and one is always sent"
+    if linked:
+        return "may end early, and the links of `protocol` carry messages of one length each"
+    return ""
 
 
 def _fault(one: tails.Obstacle) -> Fault:

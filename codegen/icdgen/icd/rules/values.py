@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.icd import floats
+from icdgen.icd.build import float_bits
 from icdgen.icd.model import Field
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.fault import Fault
@@ -44,16 +46,33 @@ def special_fits(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.having["special"]:
         seen = set()
         for item in mappings(field.source["special"]):
-            value = item.get("value")
-            if not isinstance(value, int):
+            given = item.get("value")
+            if not isinstance(given, (int, float, str)) or isinstance(given, bool):
                 continue
-            problem = _misfit(field, value)
+            problem = _not_special(field, given)
+            value = given if problem or field.type != "float" else float_bits(given, field.bits)
             if problem:
                 yield Fault(field.source, item.at("value"), f"the special value {problem[0]}", problem[1])
-            elif value in seen:
-                message = f"{value} has two meanings in {quote(field.name)}"
+            elif value is not None and value in seen:
+                message = f"{given} has two meanings in {quote(field.name)}"
                 yield Fault(field.source, item.at("value"), message, "join them into one entry")
             seen.add(value)
+
+
+def _not_special(field: Field, given: int | float | str) -> tuple[str, str] | None:
+    """What keeps a value from having a meaning in the field, and what to do; None if it can."""
+    if field.type == "float":
+        if isinstance(given, str) and given not in floats.NAMED:
+            return f"{quote(given)} is no number", "a float has numbers, and nan, inf and -inf"
+        if field.bits in floats.WIDTHS and float_bits(given, field.bits) is None:
+            return f"{given} does not fit {quote(field.name)}", f"it is beyond what a {field.bits}-bit float holds"
+        return None
+    if field.type not in NUMBERS:
+        what = f"of {quote(field.name)} has no meaning for type `{field.type}`"
+        return what, "only uint, int, enum and float fields have it"
+    if isinstance(given, int):
+        return _misfit(field, given)
+    return f"{quote(given)} of {quote(field.name)} is no whole number", f"`{field.type}` has whole raw values"
 
 
 def _misfit(field: Field, value: int | None) -> tuple[str, str] | None:

@@ -119,6 +119,51 @@ macro_rules! message {
 }
 pub(crate) use message;
 
+/// What each struct has beside its own.
+macro_rules! structure {
+    ($type:ident {
+        $($member:ident: ($($place:tt)*) $(.$what:ident($($how:tt)*))*,)*
+    }) => {
+        impl $type {
+            /// Its fields, in the order of the ICD; their places are those in the struct.
+            #[allow(clippy::large_stack_arrays)] // a constant is on no stack
+            pub const FIELDS: &'static [$crate::Field] = &[$(
+                $crate::Field::new($($place)*)$(.$what($($how)*))*
+            ),*];
+
+            fn rows(
+                &self,
+                out: &mut ::core::fmt::Formatter<'_>,
+                mark: &'static str,
+            ) -> ::core::fmt::Result {
+                let mut row = $crate::support::Row::of(Self::FIELDS, mark);
+                $(row.show(out, &self.$member)?;)*
+                Ok(())
+            }
+        }
+
+        /// Its name and the values of its fields: physical ones, with their units.
+        impl ::core::fmt::Display for $type {
+            fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+                out.write_str(Self::NAME)?;
+                self.rows(out, ": ")
+            }
+        }
+
+        impl $crate::support::Value for $type {
+            fn show(
+                &self,
+                out: &mut ::core::fmt::Formatter<'_>,
+                _: &$crate::Field,
+            ) -> ::core::fmt::Result {
+                self.rows(out, "{")?;
+                out.write_str("}")
+            }
+        }
+    };
+}
+pub(crate) use structure;
+
 /// What is shown of a member: of the end of a message the elements that are there.
 macro_rules! shown {
     ($message:ident, $member:ident) => {

@@ -29,6 +29,8 @@ pub struct Field {
     pub unit: &'static str,
     /// Limits of the physical value (of the raw value where there is no scale): `min`, `above`, `max`, `below`.
     pub limits: &'static [(&'static str, f64)],
+    /// What a struct is made of, with places in it; empty of what is none.
+    pub fields: &'static [Field],
     scale: Option<Formula>,
 }
 
@@ -37,6 +39,14 @@ enum Formula {
     Usual(&'static Scale),
     Wide(&'static Wide),
     Curve(&'static Curve),
+}
+
+/// Whether a float is a special value, which no comparison says of NaN: all NaNs are the same here, and both zeros.
+#[must_use]
+#[allow(clippy::float_cmp)] // special values are exact
+pub fn is_special<T: Into<f64>>(value: T, special: T) -> bool {
+    let (value, special) = (value.into(), special.into());
+    value == special || (value.is_nan() && special.is_nan())
 }
 
 impl Field {
@@ -48,12 +58,18 @@ impl Field {
             count: 1,
             unit: "",
             limits: &[],
+            fields: &[],
             scale: None,
         }
     }
 
     pub(crate) const fn array(mut self, count: usize) -> Self {
         self.count = count;
+        self
+    }
+
+    pub(crate) const fn fields(mut self, fields: &'static [Self]) -> Self {
+        self.fields = fields;
         self
     }
 
@@ -130,7 +146,7 @@ impl Field {
     }
 }
 
-/// The fields of a message that are yet to be shown.
+/// The fields of a message, or of a struct, that are yet to be shown.
 pub(crate) struct Row {
     rest: core::slice::Iter<'static, Field>,
     mark: &'static str,
@@ -141,6 +157,11 @@ impl Row {
         out.write_str(M::NAME)?;
         let (rest, mark) = (M::FIELDS.iter(), ": ");
         Ok(Self { rest, mark })
+    }
+
+    pub(crate) fn of(fields: &'static [Field], mark: &'static str) -> Self {
+        let rest = fields.iter();
+        Self { rest, mark }
     }
 
     pub(crate) fn show(&mut self, out: &mut Formatter<'_>, value: &(impl Value + ?Sized)) -> Shown {
@@ -159,7 +180,7 @@ impl Row {
     }
 }
 
-/// What a member of a message may be.
+/// What a member of a message, or of a struct, may be.
 pub(crate) trait Value {
     fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown;
 }

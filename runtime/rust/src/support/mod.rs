@@ -20,9 +20,9 @@ pub(crate) use self::bytes::{
     array, element_of, flags, put, put_array, put_element, put_words, take, words, write_to,
 };
 pub(crate) use self::curve::Curve;
-pub use self::field::Field;
-pub(crate) use self::field::Row;
-pub(crate) use self::message::{enumeration, message, shown};
+pub use self::field::{is_special, Field};
+pub(crate) use self::field::{Row, Value};
+pub(crate) use self::message::{enumeration, message, shown, structure};
 pub use self::message::{Message, Telecommand, Telemetry};
 pub(crate) use self::scale::Scale;
 pub use self::tail::Frame;

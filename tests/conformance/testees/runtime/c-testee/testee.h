@@ -24,6 +24,7 @@ typedef struct {
     icd_status_t (*set_text)(void *message, const char *text);
     const int64_t *special;                           /* raw values with a meaning of their own, as bits */
     size_t special_count;
+    uint64_t (*special_of)(size_t index); /* of floats, whose special values are not constant expressions */
     const testee_limit_t *limits;
     size_t limit_count;
 } testee_field_t;

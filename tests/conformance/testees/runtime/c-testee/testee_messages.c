@@ -323,6 +323,8 @@ static void constants(void)
         for (k = 0; k < field->special_count; k++) {
             if (field->type == TESTEE_SIGNED) {
                 put_signed_item(field->special[k]);
+            } else if (field->special_of != NULL) {
+                put_item(field->special_of(k));
             } else {
                 put_item((uint64_t)field->special[k]);
             }

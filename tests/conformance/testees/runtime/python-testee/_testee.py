@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
-from typing import Any, Optional
+from typing import Any, Iterator, NamedTuple, Optional
 
 from . import _floats
 from ._base import FieldInfo, Message
@@ -64,43 +64,78 @@ def _decode(node: Any, words: Words) -> str:
 
 def _encode(node: Any, words: Words) -> str:
     message = _message(node, words)()
+    names = {
+        one.attribute: one.name
+        for info in message.FIELDS
+        for line in (info, *info.lines)
+        for one in (line, *line.parts)
+    }
     try:
-        for info in message.FIELDS:
-            if info.elements:
-                _set_elements(message, info, words)
-                continue
-            word = next(words)
-            if word[0] == "p" and info.type == "text":
-                setattr(message, info.physical, bytes.fromhex(word[1:]).decode())
-            elif word[0] == "p":
-                setattr(message, info.physical, _floats.float64(int(word[1:])))
-            elif info.is_open and len(word) != 1 + info.bits // 4:
-                raise Refusal(f"range field={_hex(info.name)}")
-            else:
-                setattr(message, info.attribute, _raw(info, word[1:]))
+        for held in _held(message):
+            _set(held, words)
         if message.TAIL is not None:
             _cut(message, words)
         return _described(message)
     except RangeError as error:
-        named = {info.attribute: info.name for info in message.FIELDS}
-        name, bracket, index = error.field.partition("[")
-        raise Refusal(f"range field={_hex(named[name] + bracket + index)}") from None
+        raise Refusal(f"range field={_hex(names[error.field])}") from None
 
 
-def _set_elements(message: Message, info: FieldInfo, words: Words) -> None:
+def _set(held: Held, words: Words) -> None:
+    """Sets a field, or an array, as it is given: by its raw or its physical value."""
+    info, owner = held.info, held.owner
+    if info.elements:
+        _set_elements(held, words)
+        return
+    word = next(words)
+    try:
+        if word[0] == "p" and info.type == "text":
+            setattr(owner, info.physical, bytes.fromhex(word[1:]).decode())
+        elif word[0] == "p":
+            setattr(owner, info.physical, _floats.float64(int(word[1:])))
+        elif info.is_open and len(word) != 1 + info.bits // 4:
+            raise Refusal(f"range field={_hex(held.name)}")
+        else:
+            setattr(owner, info.attribute, _raw(info, word[1:]))
+    except RangeError:
+        raise Refusal(f"range field={_hex(held.name)}") from None
+
+
+def _set_elements(held: Held, words: Words) -> None:
     """Sets an array, each element as it is given: by its raw or its physical value."""
     raw: list[Any] = []
+    info, owner = held.info, held.owner
     for index, word in zip(range(info.elements), words):
         if word[0] == "p":
             given = (_floats.float64(int(word[1:])),) * info.elements
             try:
-                setattr(message, info.physical, given)
+                setattr(owner, info.physical, given)
             except RangeError:
-                raise Refusal(f"range field={_hex(f'{info.name}[{index}]')}") from None
-            raw.append(getattr(message, info.attribute)[index])
+                raise Refusal(f"range field={_hex(f'{held.name}[{index}]')}") from None
+            raw.append(getattr(owner, info.attribute)[index])
         else:
             raw.append(_raw(info, word[1:]))
-    setattr(message, info.attribute, tuple(raw))
+    setattr(owner, info.attribute, tuple(raw))
+
+
+class Held(NamedTuple):
+    """A field, and what has it: a message, or a struct in one. ``name`` is the whole one."""
+
+    owner: Any
+    info: FieldInfo
+    name: str
+
+
+def _held(owner: Any, head: str = "") -> Iterator[Held]:
+    """The fields of a message, those of structs among them."""
+    for info in owner.FIELDS:
+        name = f"{head}{info.name}"
+        if info.struct is None:
+            yield Held(owner, info, name)
+            continue
+        value = getattr(owner, info.attribute)
+        for index in range(info.elements or 1):
+            one = value[index] if info.elements else value
+            yield from _held(one, f"{name}[{index}]." if info.elements else f"{name}.")
 
 
 def _cut(message: Message, words: Words) -> None:
@@ -129,16 +164,16 @@ def _implied(message: Message) -> FieldInfo:
 class Element:
     """A field, or an element of an array."""
 
-    def __init__(self, info: FieldInfo, index: int) -> None:
-        self.info, self.index = info, index
-        self.name = f"{info.name}[{index}]" if info.elements else info.name
+    def __init__(self, held: Held, index: int) -> None:
+        self.owner, self.info, self.index = held.owner, held.info, index
+        self.name = f"{held.name}[{index}]" if self.info.elements else held.name
 
-    def get(self, message: Message, attribute: str) -> Any:
+    def get(self, attribute: str) -> Any:
         """Its value."""
-        info = self.info
+        info, owner = self.info, self.owner
         if not attribute:
-            return len(getattr(message, message.TAIL.part))  # type: ignore[union-attr]
-        value = getattr(message, attribute)
+            return len(getattr(owner, owner.TAIL.part))
+        value = getattr(owner, attribute)
         if not info.elements:
             is_cut = info.is_open and attribute == info.attribute
             return value.ljust(info.bits // 8, b"\0") if is_cut else value
@@ -149,25 +184,27 @@ class Element:
             return c / q
         return info.enum(0) if info.enum else 0.0 if info.type == "float" else 0
 
-    def set(self, message: Message, attribute: str, value: Any) -> None:
+    def set(self, attribute: str, value: Any) -> None:
         """Sets it, and leaves the other elements as they are."""
         if self.info.elements:
-            given = list(getattr(message, attribute))
+            given = list(getattr(self.owner, attribute))
             values = [given[i] if i < len(given) else 0 for i in range(self.index + 1)]
             values += given[self.index + 1 :]
             values[self.index] = value
             value = tuple(values)
-        setattr(message, attribute, value)
+        setattr(self.owner, attribute, value)
 
 
 def _elements(message: Message) -> list[Element]:
-    infos = list(message.FIELDS)
+    found = list(_held(message))
     if message.TAIL is not None and not message.TAIL.counter:
-        infos.append(_implied(message))
+        info = _implied(message)
+        found.append(Held(message, info, info.name))
+    found += (Held(message, info, info.name) for info in message.VIEWS)
     return [
-        Element(info, index)
-        for info in (*infos, *message.VIEWS)
-        for index in range(info.elements or 1)
+        Element(held, index)
+        for held in found
+        for index in range(held.info.elements or 1)
     ]
 
 
@@ -191,8 +228,8 @@ def _hex(text: str) -> str:
     return text.encode("utf-8", "surrogatepass").hex()
 
 
-def _field(message: Message, one: Element) -> str:
-    value = _shown(one.info, one.get(message, one.info.attribute))
+def _field(one: Element) -> str:
+    value = _shown(one.info, one.get(one.info.attribute))
     return f" field field={_hex(one.name)} raw={value}"
 
 
@@ -200,15 +237,15 @@ def _described(message: Message, names: bool = False) -> str:
     said = [f" bytes={message.to_bytes().hex()}"]
     for one in _elements(message):
         info = one.info
-        said.append(_field(message, one))
+        said.append(_field(one))
         if info.type == "text":
-            text = getattr(message, info.physical)
+            text = one.get(info.physical)
             said.append("" if "\ufffd" in text else f" physical={_hex(text)}")
         elif info.physical:
-            bits = _floats.float64_bits(one.get(message, info.physical))
+            bits = _floats.float64_bits(one.get(info.physical))
             said.append(f" physical={bits}")
         if names and info.enum:
-            label = one.get(message, info.attribute).label
+            label = one.get(info.attribute).label
             said.append(f" name={_hex(label)}" if label else "")
     return "".join(said)
 
@@ -219,8 +256,8 @@ def _constants(node: Any, words: Words) -> str:
     said = [f" name={_hex(message.NAME)} length={message.LENGTH} ids={ids}"]
     for one in _elements(message):
         info = one.info
-        special = ",".join(str(value) for value, _ in info.special)
-        said.append(f"{_field(message, one)} special={special}")
+        special = ",".join(str(_shown(info, value)) for value, _ in info.special)
+        said.append(f"{_field(one)} special={special}")
         for key, name in _LIMITS.items():
             bound = getattr(info, name)
             if bound is not None:
@@ -252,12 +289,12 @@ def _sweep(node: Any, words: Words) -> str:
     for raw in map(int, words):
         if not low <= raw <= high:
             raise Refusal(f"range field={_hex(one.name)}")
-        one.set(message, info.attribute, _raw(info, str(raw)))
-        physical = one.get(message, info.physical)
+        one.set(info.attribute, _raw(info, str(raw)))
+        physical = one.get(info.physical)
         back: Optional[int] = None
         try:
-            one.set(message, info.physical, physical)
-            back = _shown(info, one.get(message, info.attribute))
+            one.set(info.physical, physical)
+            back = _shown(info, one.get(info.attribute))
         except RangeError:
             pass
         said.append(f"{_floats.float64_bits(physical)},{'' if back is None else back},")

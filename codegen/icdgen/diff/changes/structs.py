@@ -1,0 +1,166 @@
+"""Names and types that generated code has for structs. What their bytes mean is said of the messages in which they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import chain
+from typing import NamedTuple
+
+from icdgen import backends
+from icdgen.backends.c.types import declaration
+from icdgen.describe import describe
+from icdgen.diagnostics import Place
+from icdgen.diff.changes.names import lines
+from icdgen.diff.context import Context
+from icdgen.diff.generated import LANGUAGES, Name
+from icdgen.diff.pairs import MessagePair, NodePair
+from icdgen.diff.rule import Found, rule
+from icdgen.diff.wording import bits
+from icdgen.icd.located import Map
+from icdgen.icd.model import Field, Icd, Message, Node, Struct
+from icdgen.icd.rules.wording import count, quote
+
+
+class _Declared(NamedTuple):
+    """What generated code declares for a struct."""
+
+    names: dict[int, list[Name]]  # of the member that begins at the bit; of the struct itself at -1
+    members: dict[str, str]  # name -> declaration in C
+
+
+_NOTHING = _Declared({}, {})
+
+
+@rule("DIF127", "message")
+def structs_repeated_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    said = set()
+    for part in pair.kept:
+        was, now = (_repeated(one) for one in (part.old, part.new))
+        name = ".".join(step.name for step in part.new.path[:-1])
+        if was is None or now is None or was == now or name in said:
+            continue
+        said.add(name)
+        before, after = _in_words(was), _in_words(now)
+        members = (one.path[-2].member for one in (part.old, part.new))
+        places = [one.source.at("struct") if one is not None else None for one in members]
+        text = f"{quote(name)} is {after}, was {before}"
+        yield Found(text, (), before, after, where=part.where(), places=(places[0], places[1]))
+
+
+def _repeated(line: Field) -> tuple[tuple[int, int], ...] | None:
+    """How often the structs stand in which a field is, and from which bit to which; None of what is in none."""
+    return tuple((step.count, step.stride) for step in line.path[:-1]) if len(line.path) > 1 else None
+
+
+def _in_words(repeated: tuple[tuple[int, int], ...]) -> str:
+    """``4 structs, one every 3 bytes``"""
+    said = [
+        f"{count(times, 'struct')}, one every {bits(stride)}" if times else "a struct" for times, stride in repeated
+    ]
+    return ", in each of them ".join(said)
+
+
+@rule("DIF313", "node")
+def struct_declared_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
+    if not pair.old.structs and not pair.new.structs:
+        return
+    old, new = ({one.name: one for one in node.structs} for node in (pair.old, pair.new))
+    was, now = _declared(ctx.match.old, pair.old), _declared(ctx.match.new, pair.new)
+    for name in dict.fromkeys((*new, *old)):
+        before, after = was.get(name, _NOTHING), now.get(name, _NOTHING)
+        renamed = list(_renamed(before.names, after.names))
+        both = before.members.keys() & after.members.keys()
+        retyped = [(before.members[one], after.members[one]) for one in before.members if one in both]
+        retyped = [(one, other) for one, other in retyped if one != other]
+        if not renamed and not retyped:
+            continue
+        what = "is gone" if name not in new else "is new" if name not in old else "has other generated names or types"
+        breaks = retyped or any(one for one, _ in renamed)
+        places = old[name].source.at("name") if name in old else None, (
+            new[name].source.at("name") if name in new else None
+        )
+        yield Found(
+            f"the struct {quote(name)} {what}",
+            ("name", "identifier"),
+            name if name in old else "",
+            name if name in new else "",
+            (*lines(renamed), *(f"C: `{one}` -> `{other}`" for one, other in retyped)),
+            severity=None if breaks else "note",
+            addition=None if breaks else True,
+            places=places,
+        )
+
+
+def _renamed(before: dict[int, list[Name]], after: dict[int, list[Name]]) -> Iterator[tuple[Name | None, Name | None]]:
+    """Names that are gone, each with the one that has come in its place, and new ones."""
+    kept = set(chain(*before.values())) & set(chain(*after.values()))
+    for at in sorted(before.keys() | after.keys()):
+        gone, come = ([one for one in names.get(at, ()) if one not in kept] for names in (before, after))
+        if len(gone) == len(come):
+            yield from zip(gone, come, strict=True)
+        else:
+            yield from ((one, None) for one in gone)
+            yield from ((None, one) for one in come)
+
+
+def _declared(icd: Icd, node: Node) -> dict[str, _Declared]:
+    """By the name of each struct of a node."""
+    made: dict[int, Struct] = {}  # id(struct) -> the same with sources of its own: an ICD from elsewhere has none
+    marks: dict[int, tuple[str, int]] = {}  # id(source) -> name of the struct, and bit of the member
+    alive: list[Map] = []
+
+    def mark(name: str, at: int = -1) -> Map:
+        alive.append(Map(Place("")))
+        marks[id(alive[-1])] = name, at
+        return alive[-1]
+
+    for struct in node.structs:  # each stands after those that it has in it
+        members = [
+            replace(one, source=mark(struct.name, one.at), struct=made.get(id(one.struct), one.struct))
+            for one in struct.members
+        ]
+        fields = tuple(chain.from_iterable(one.elements for one in members))
+        made[id(struct)] = replace(struct, fields=fields, source=mark(struct.name))
+    alone = replace(node, structs=tuple(made.values()), messages=())
+    around = Icd((*(replace(one, messages=()) for one in icd.included(node)), alone))
+    found = {struct.name: _Declared({}, {}) for struct in alone.structs}
+    for language in LANGUAGES:
+        for one in backends.get(language).identifiers(around):
+            owner = marks.get(id(one.source)) if one.source is not None else None
+            if owner is not None and one.text.isidentifier() and not one.text.endswith("_H"):
+                name, at = owner
+                found[name].names.setdefault(at, []).append(Name(language, one.text))
+    description = describe(around)
+    for struct in alone.structs:
+        members_of = description.struct(struct).members
+        found[struct.name].members.update((one.name, declaration(one)) for one in members_of)
+    return found
+
+
+@rule("DIF314", "message")
+def struct_stands_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    was, now = (list(map(_standing, _structs(side))) for side in (pair.old, pair.new))
+    if was == now:
+        return
+    gone, come = [one for one in was if one not in now], [one for one in now if one not in was]
+    if not gone and not come:
+        return
+    text = (
+        f"{count(len(gone or come), 'struct')} in {quote(pair.new.name)} {'is' if len(gone or come) == 1 else 'are'} "
+    )
+    text += "declared otherwise" if gone else "new"
+    details = [f"`{one}` is gone" for one in gone] + [f"`{one}` is new" for one in come]
+    severity, addition = (None, None) if gone else ("note", True)
+    yield Found(text, ("fields",), ", ".join(gone), ", ".join(come), tuple(details), severity, addition)
+
+
+def _structs(message: Message) -> list[Field]:
+    return [one for one in message.members if one.struct is not None]
+
+
+def _standing(member: Field) -> str:
+    """``Satellites: 4 x Satellite``"""
+    assert member.struct is not None
+    times = f"{member.count} x " if member.count else ""
+    return f"{member.identifier or member.name}: {times}{member.struct.name}"

@@ -1,0 +1,151 @@
+"""Structs: what messages and other structs name, and what may stand in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.icd import division, tails
+from icdgen.icd.located import Map
+from icdgen.icd.model import Node
+from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.duplicates import names_twice
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import rule
+from icdgen.icd.rules.wording import line_of, quote
+from icdgen.suggest import close_to
+
+_OF_MEMBERS = frozenset({"at", "name", "identifier", "struct", "count", "summary"})
+"""Keys of a struct where it stands."""
+
+
+def _uses(ctx: Context) -> Iterator[tuple[Map, Map, Node]]:
+    """The entries that name a struct, each with the message or struct that it stands in."""
+    for node in ctx.icd.nodes:
+        for key in ("structs", "messages"):
+            for owner in mappings(node.source.get(key)):
+                for row in mappings(owner.get("fields")):
+                    if isinstance(row.get("struct"), str) and isinstance(row.get("name"), str):
+                        yield row, owner, node
+
+
+@rule("ICD140")
+def struct_known(ctx: Context) -> Iterator[Fault]:
+    for row, _, node in _uses(ctx) if ctx.complete else ():
+        name = row["struct"]
+        known = [one.name for n in ctx.scope(node) for one in n.structs]
+        if name in known:
+            continue
+        elsewhere = next((n for n in ctx.icd.nodes for one in n.structs if one.name == name), None)
+        close = close_to(name, known)
+        help = f"did you mean {quote(close)}?" if close else "declare it in `structs:`"
+        if elsewhere is not None:
+            help = f"`{elsewhere.name}` declares it: include {elsewhere.file}"
+        yield Fault(row, row.at("struct"), f"there is no struct {quote(name)}", help)
+
+
+@rule("ICD141")
+def struct_in_itself(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        within = {
+            one["name"]: [row for row in mappings(one.get("fields")) if isinstance(row.get("struct"), str)]
+            for one in mappings(node.source.get("structs"))
+            if isinstance(one.get("name"), str)
+        }
+        for name, rows in within.items():
+            for row in rows:
+                way = _way(row["struct"], name, within)
+                if way is not None:
+                    there = " -> ".join((name, *way))
+                    message = f"the struct {quote(name)} would have itself in it: {there}"
+                    yield Fault(
+                        row, row.at("struct"), message, "a struct has an end: write what it holds in fields of its own"
+                    )
+
+
+def _way(first: str, last: str, within: dict[str, list[Map]]) -> list[str] | None:
+    """The structs from one to another, each of which has the next in it; None if there is no such way."""
+    ways, seen = [[first]], {first}
+    while ways:
+        way = ways.pop(0)
+        if way[-1] == last:
+            return way
+        for row in within.get(way[-1], ()):
+            if row["struct"] not in seen:
+                seen.add(row["struct"])
+                ways.append([*way, row["struct"]])
+    return None
+
+
+@rule("ICD142")
+def struct_at_byte(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.members:
+        if field.struct is not None and field.at % 8:
+            message = f"{quote(field.name)} is a struct, but bit {field.at:,} is not the beginning of a byte"
+            help = f"structs begin at bits {field.at // 8 * 8:,} and {field.at // 8 * 8 + 8:,}"
+            yield Fault(field.source, field.source.at("at"), message, help)
+
+
+@rule("ICD143")
+def struct_says(ctx: Context) -> Iterator[Fault]:
+    for row, _, _ in _uses(ctx):
+        for key in row:
+            if key not in _OF_MEMBERS:
+                message = f"{quote(row['name'])} is a struct, which has no `{key}`: its fields have"
+                yield Fault(row, row.at(key), message, f"move it to the fields of {quote(row['struct'])}, or remove it")
+        if tails.is_open(row):
+            message = f"{quote(row['name'])} has no fixed `count`, and the elements of an open end are numbers"
+            yield Fault(row, row.at("count"), message, "write how many there are, or describe an element as numbers")
+    for struct, _ in ctx.structs:
+        for row in mappings(struct.source.get("fields")):
+            if tails.is_open(row) and isinstance(row.get("name"), str) and "struct" not in row:
+                message = f"{quote(row['name'])} has no fixed size, and a struct has no open end"
+                key = "size" if "size" in row else "count"
+                yield Fault(row, row.at(key), message, "only the last part of a message may be open")
+        for field in struct.lines:
+            if field.view:
+                message = f"{quote(field.name)} is a view, and a struct has none: there is no frame that it would read"
+                yield Fault(field.source, field.source.at("view"), message, "write the view in the message")
+
+
+@rule("ICD049")
+def struct_names(ctx: Context) -> Iterator[Fault]:
+    yield from names_twice(ctx, "a struct", lambda n: n.structs, "rename one, or use the other")
+
+
+@rule("ICD144", severity="warning", whole=True)
+def struct_used(ctx: Context) -> Iterator[Fault]:
+    used, names = {id(field.struct) for field, _, _ in ctx.members}, [struct.name for struct, _ in ctx.structs]
+    meant = set()
+    for row, _, node in _uses(ctx):  # of a slip of the pen; the one that is meant is used
+        known = [struct.name for n in ctx.scope(node) for struct in n.structs]
+        meant |= set() if row["struct"] in known else {close_to(row["struct"], known)}
+    for struct, _ in ctx.structs:
+        if id(struct) not in used and names.count(struct.name) == 1 and struct.name not in meant:
+            message = f"no message uses the struct {quote(struct.name)}"
+            yield Fault(struct.source, struct.source.at("name"), message, "use or remove it")
+
+
+@rule("ICD145")
+def struct_divided(ctx: Context) -> Iterator[Fault]:
+    homes = {id(struct): node for struct, node in ctx.structs}
+    for member, _, node in ctx.members:
+        if member.struct is None or id(member.struct) not in homes:
+            continue
+        own = homes[id(member.struct)]
+        if member.orders(node) == (own.byte_order, own.bit_order):
+            continue
+        for whole in _divided(member.struct.source):
+            if "byte_order" not in whole or "bit_order" not in whole:
+                there = line_of(whole.at("bitfields"), member.source.place)
+                message = (
+                    f"{quote(member.name)} has other orders than `{own.name}`, so the bits of {quote(whole['name'])} "
+                    f"({there}), which is divided, would lie elsewhere"
+                )
+                help = f"give {quote(whole['name'])} a `byte_order` and a `bit_order`, or make its parts fields"
+                yield Fault(member.source, member.source.at("struct"), message, help)
+
+
+def _divided(struct: Map) -> Iterator[Map]:
+    return (
+        row for row in mappings(struct.get("fields")) if division.parts_of(row) and isinstance(row.get("name"), str)
+    )
