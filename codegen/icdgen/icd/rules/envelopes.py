@@ -18,7 +18,7 @@ MOST_SEQUENCE_BITS = 31
 MOST_SPAN = 4  # bytes that a field may have part in
 DATA = "data"
 ONLY_WITH = {"counts": "length", "plus": "length", "per": "sequence", "checksum": "checksum"}  # keys of one role
-OTHERS = ("message_id", "uart", "i2c", "can", "crc8", "client", "file_transfer", "unsolicited_log", "errors")
+BESIDE = ("stream", "checksums", "uart", "boot")  # what else may be said of such a link
 BITS_OF = {"fletcher": 16, "fletcher_255": 16, "xor": 8}
 
 
@@ -55,9 +55,9 @@ def _is_sound(row: Map) -> bool:
 def described_once(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         protocol = link.node.source["protocol"]
-        for key in OTHERS:
-            if key in protocol and key != "uart":
-                message = f"`{key}` describes a link, too, which `stream` does not have"
+        for key in protocol:
+            if key not in BESIDE:
+                message = f"`{key}` is of another kind of link than `stream`, and nothing would heed it"
                 yield Fault(protocol, protocol.key_at(key), message, f"remove `{key}` or `stream`")
         uart = protocol.get("uart")
         for key in ("framing", "acknowledge"):
@@ -101,7 +101,7 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
             help = "add one, or say what else delimits messages in `delimited_by`"
             yield Fault(section, place, "no field has the role `length`, which delimits messages", help)
         elif link.rows and any(part == "trailer" for part, row in link.rows if row["role"] == "length"):
-            (row,) = link.of("length")[:1]
+            row = link.of("length")[0]
             message = "the length that delimits messages stands behind their data"
             yield Fault(row, row.at("role"), message, "it stands in `header`")
     for direction in ("telecommand", "telemetry"):
@@ -126,14 +126,8 @@ def fields_that_fit(ctx: Context) -> Iterator[Fault]:
 
 
 def _places(link: Link) -> Iterator[Fault]:
-    taken: dict[tuple[str, int], Map] = {}
-    for part, row in link.rows:
+    for _, row in link.rows:  # ICD092 sees to overlaps
         bits = range(row["at"], row["at"] + row["bits"])
-        other = next((taken[part, bit] for bit in bits if (part, bit) in taken), None)
-        if other is not None:
-            message = f"the {row['role']} overlaps the {other['role']} at bit {other['at']}"
-            yield Fault(row, row.at("at"), message, "correct `at` or `bits`")
-        taken.update({(part, bit): row for bit in bits})
         size = bits[-1] // 8 - bits[0] // 8 + 1
         if size > MOST_SPAN:
             message = f"the {row['role']} has part in {count(size, 'byte')}, more than {MOST_SPAN}"
@@ -166,6 +160,10 @@ def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
     around = sum(
         -(-max((row["at"] + row["bits"] for where, row in link.rows if where == part), default=0) // 8) for part in PARTS
     )
+    empty = next((one for _, one in messages if one.least == 0 and around == 0), None)
+    if empty is not None:
+        message = f"nothing is sent of {quote(empty.name)}, which can have no data"
+        yield Fault(link.section, link.section.at("delimited_by"), message, "add a field to `header`, such as an id")
     for row in link.of("length"):
         plus = row.get("plus", 0) + (around if row.get("counts") == "message" else 0)
         for least, most, one in ((one.least, one.length, one) for _, one in messages):
