@@ -60,9 +60,7 @@ class PythonBackend:
             digested = {**shared, "origin": origin(node.model, with_digest=True)}
             yield folder / "__init__.py", render("node.py.j2", **digested, **nodes.values(node, description))
             if node.name in linked:
-                link = linked[node.name]
-                text = render("link.py.j2", **shared, link=links.literal(link), streamed=link.facts.stream is not None)
-                yield folder / "_link.py", text
+                yield folder / "_link.py", render("link.py.j2", **shared, link=links.literal(linked[node.name]))
             folder /= names.TYPES
             yield folder / "__init__.py", render("types.py.j2", **nodes.spoken(node, description), **shared)
             for enum in node.enums:

@@ -28,14 +28,14 @@ def stream_call(form: Stream) -> Call:
         known = {key: value for key, value in crc.items() if value is not None}
         values = (check.kind, Call("link.CrcForm", (), known, is_flat=True))
         values += (check.covered_from, check.covered_trailer, check.is_seeded)  # type: ignore[assignment]
-        parts["check"] = Call("envelope.CheckForm", values, {}, is_flat=True)
-    return Call("envelope.Stream", (), parts)
+        parts["check"] = Call("link.CheckForm", values, {}, is_flat=True)
+    return Call("link.Stream", (), parts)
 
 
 def _field(one: EnvelopeField) -> Call:
     values = (one.role, one.in_trailer, one.at, one.size, one.shift, one.bits, one.little, one.values)
-    return Call("envelope.EnvelopeField", values, {}, is_flat=True)
+    return Call("link.EnvelopeField", values, {}, is_flat=True)
 
 
 def _rows(rows: Iterable[StreamRow]) -> tuple[Call, ...]:
-    return tuple(Call("envelope.StreamRow", (row.id, row.least, row.most, row.seed), {}, is_flat=True) for row in rows)
+    return tuple(Call("link.StreamRow", (row.id, row.least, row.most, row.seed), {}, is_flat=True) for row in rows)
