@@ -13,5 +13,7 @@ class UserError(Exception):
 
 def no_talk(node: str) -> UserError:
     """What is said where a link that is an envelope would have to be talked over."""
-    text = f"messages of {node} travel in an envelope (`protocol: stream`), over which icdgen does not talk by itself yet"
+    text = (
+        f"messages of {node} travel in an envelope (`protocol: stream`), over which icdgen does not talk by itself yet"
+    )
     return UserError(text, "generated code sends and finds them: see docs/wire.md, Envelopes")

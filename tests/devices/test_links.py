@@ -207,7 +207,9 @@ def test_the_library_takes_what_is_sent(name, direction, testee, links):
         values = {peer.sequence: number} if peer.sequence else {}
         about = {"node": peer.node, "direction": direction, "id": id, "bytes": data.hex(), "values": values}
         made = bytes.fromhex(answer(testee, op="stream_encode", **about)["bytes"])
-        assert made.strip(b"\xc0") == peer.made(direction, id, data, number).strip(b"\xc0")  # SLIP may begin with its end
+        assert made.strip(b"\xc0") == peer.made(direction, id, data, number).strip(
+            b"\xc0"
+        )  # SLIP may begin with its end
         line += made
     assert peer.read(direction, line) == sent
 
@@ -240,9 +242,7 @@ def test_a_message_that_was_damaged_on_the_way_is_told_of_and_the_others_are_fou
     damaged = bytearray(lines[4])
     damaged[-3 if peer.node != "probe" else -4] ^= 0x01 if damaged[-3 if peer.node != "probe" else -4] > 1 else 0x02
     lines[4] = bytes(damaged)
-    found = answer(
-        testee, op="stream_events", node=peer.node, direction="telemetry", chunks=[b"".join(lines).hex()]
-    )
+    found = answer(testee, op="stream_events", node=peer.node, direction="telemetry", chunks=[b"".join(lines).hex()])
     events = [(one["id"], bytes.fromhex(one["bytes"])) for one in found["events"] if one["event"] == "message"]
     assert events == [*sent[:4], *sent[5:]]
     dropped = {one["event"] for one in found["events"]} - {"message", "gap"}

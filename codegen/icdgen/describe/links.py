@@ -103,7 +103,9 @@ class LinkDescription:
     @property
     def telecommands(self) -> list[SentMessage]:
         """By rising id; none where the envelope of the link tells them."""
-        return [] if self.facts.stream else [SentMessage(id, one) for id, one in sorted(self.facts.telecommands.items())]
+        return (
+            [] if self.facts.stream else [SentMessage(id, one) for id, one in sorted(self.facts.telecommands.items())]
+        )
 
     @property
     def telemetry(self) -> list[SentMessage]:

@@ -61,7 +61,11 @@ def check_of(section: Section, checksums: Section) -> Check | None:
     kind = given["kind"]
     codes = [given.get(key, 0) for key in ("width", "polynomial", "init", "xor_out")]
     reflect_in, reflect_out = given.get("reflect_in", False), given.get("reflect_out", False)
-    crc = Crc(*codes[:3], reflect_in, reflect_out, codes[3]) if kind == CRC else Crc(codes[0], 0, codes[2], False, False, codes[3])
+    crc = (
+        Crc(*codes[:3], reflect_in, reflect_out, codes[3])
+        if kind == CRC
+        else Crc(codes[0], 0, codes[2], False, False, codes[3])
+    )
     first = place_of(header, given["covers"]["from"], False)
     last = place_of(trailer, given["covers"]["to"], True)
     return Check(
@@ -74,7 +78,11 @@ def check_of(section: Section, checksums: Section) -> Check | None:
 
 
 def stream_of(
-    node: Node, section: Section, checksums: Section, telecommands: Mapping[int, Message], telemetry: Mapping[int, Message]
+    node: Node,
+    section: Section,
+    checksums: Section,
+    telecommands: Mapping[int, Message],
+    telemetry: Mapping[int, Message],
 ) -> dict[str, object]:
     """What code makes of the section, beside its declared facts."""
     header, trailer = section.get("header", ()), section.get("trailer", ())

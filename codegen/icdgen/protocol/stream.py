@@ -191,5 +191,3 @@ class Decoder:
         fields = {field.role: field for field in form.fields}
         values = tuple((role, _get(form, fields[role], frame)) for role in GIVEN if role in fields)
         return Verdict(Event(MESSAGE, id, data, values), True, number or 0)
-
-

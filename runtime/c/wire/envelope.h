@@ -11,8 +11,7 @@ static inline uint32_t icdgen_envelope_mask(const icd_envelope_field_t *field)
 }
 
 /* The field of a role; NULL if there is none. */
-static inline const icd_envelope_field_t *
-icdgen_envelope_field(const icd_stream_form_t *form, icd_envelope_role_t role)
+static inline const icd_envelope_field_t *icdgen_envelope_field(const icd_stream_form_t *form, icd_envelope_role_t role)
 {
     for (size_t i = 0; i < form->field_count; ++i) {
         if (form->fields[i].role == role) {
@@ -117,8 +116,8 @@ static inline uint32_t icdgen_envelope_check(
 }
 
 /* The message of an id; NULL if there is none. */
-static inline const icd_stream_row_t *
-icdgen_stream_row(const icd_stream_form_t *form, icd_direction_t direction, uint32_t id)
+static inline const icd_stream_row_t *icdgen_stream_row(
+    const icd_stream_form_t *form, icd_direction_t direction, uint32_t id)
 {
     size_t low = 0;
     size_t high = form->row_counts[direction];

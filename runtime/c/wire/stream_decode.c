@@ -128,8 +128,7 @@ static inline void icdgen_stream_message(
     for (size_t i = 0; i < form->field_count; ++i) {
         const icd_envelope_field_t *const field = &form->fields[i];
         if (field->role < ICD_ENVELOPE_CONSTANT) {
-            event.values.of[field->role] =
-                icdgen_envelope_get(field, field->in_trailer ? event.data + length : frame);
+            event.values.of[field->role] = icdgen_envelope_get(field, field->in_trailer ? event.data + length : frame);
         }
     }
     icdgen_stream_count(decoder, row, event.values.of[ICD_ENVELOPE_SEQUENCE], listener);
@@ -216,8 +215,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
 }
 
 /* What the buffer has from `at` on: bytes to go on, 0 while that is not decided. */
-static inline size_t
-icdgen_stream_front(icd_stream_decoder_t *decoder, size_t at, const icdgen_listener_t *listener)
+static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t at, const icdgen_listener_t *listener)
 {
     const icd_stream_form_t *const form = decoder->form;
     const size_t left = decoder->length - at;
@@ -249,8 +247,7 @@ icdgen_stream_front(icd_stream_decoder_t *decoder, size_t at, const icdgen_liste
 }
 
 /* A byte where a field of the length delimits messages. There is room: a whole buffer is always decided. */
-static inline void
-icdgen_stream_append(icd_stream_decoder_t *decoder, uint8_t byte, const icdgen_listener_t *listener)
+static inline void icdgen_stream_append(icd_stream_decoder_t *decoder, uint8_t byte, const icdgen_listener_t *listener)
 {
     size_t at = 0;
     size_t count;

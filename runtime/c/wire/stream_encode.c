@@ -67,8 +67,7 @@ static inline void icdgen_line_put(icdgen_line_t *line, uint8_t byte)
     } else if (line->delimiter == ICD_DELIMITED_BY_SLIP && byte == ICDGEN_SLIP_ESCAPE) {
         icdgen_line_byte(line, ICDGEN_SLIP_ESCAPE);
         icdgen_line_byte(line, ICDGEN_SLIP_ESCAPED_ESCAPE);
-    } else if (
-        line->delimiter == ICD_DELIMITED_BY_HDLC && (byte == ICDGEN_HDLC_FLAG || byte == ICDGEN_HDLC_ESCAPE)) {
+    } else if (line->delimiter == ICD_DELIMITED_BY_HDLC && (byte == ICDGEN_HDLC_FLAG || byte == ICDGEN_HDLC_ESCAPE)) {
         icdgen_line_byte(line, ICDGEN_HDLC_ESCAPE);
         icdgen_line_byte(line, byte ^ ICDGEN_HDLC_FLIP);
     } else {

@@ -280,14 +280,21 @@ class _Tables:
             row = Row(f"ICD_CHECK_{form.check.kind.upper()}, {{{crc}}}")
             check = self.add("check", "icd_check_form_t", [row, Row(streams.covered(form.check), "covered")])
         rows = [
-            self.array(name, "icd_stream_row_t", [Row(f"{{{row.id:#x}u, {row.least}u, {row.most}u, {row.seed}u}}", plain(row.name)) for row in found])
+            self.array(
+                name,
+                "icd_stream_row_t",
+                [Row(f"{{{row.id:#x}u, {row.least}u, {row.most}u, {row.seed}u}}", plain(row.name)) for row in found],
+            )
             for name, found in (("sent", form.telecommands), ("received", form.telemetry))
         ]
         return self.part(
             "stream",
             form,
             "stream",
-            Row(f"{streams.DELIMITERS[form.delimited_by]}, {form.header_bytes}u, {form.trailer_bytes}u", "bytes of header, trailer"),
+            Row(
+                f"{streams.DELIMITERS[form.delimited_by]}, {form.header_bytes}u, {form.trailer_bytes}u",
+                "bytes of header, trailer",
+            ),
             Row(f"{form.length_plus}, {boolean(form.per_id)}", "length beside the data, a sequence for each id"),
             Row(f"{fields}, {len(form.fields)}u", "fields"),
             Row(check, "checksum"),

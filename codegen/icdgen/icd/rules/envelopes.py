@@ -69,7 +69,9 @@ def described_once(ctx: Context) -> Iterator[Fault]:
         if checksums is not None and "stream" not in ctx.protocol_of(node):
             protocol = node.source["protocol"]
             message = "there is no `stream` whose messages these checksums could be of"
-            yield Fault(protocol, protocol.key_at("checksums"), message, "describe the link as a `stream`, or remove them")
+            yield Fault(
+                protocol, protocol.key_at("checksums"), message, "describe the link as a `stream`, or remove them"
+            )
 
 
 @rule("ICD171")
@@ -158,7 +160,8 @@ def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
             message = f"an id of {count(row['bits'], 'bit')} does not hold 0x{id:X}, that of {quote(one.name)}"
             yield Fault(row, row.at("bits"), message, "make the field wider, or correct the id")
     around = sum(
-        -(-max((row["at"] + row["bits"] for where, row in link.rows if where == part), default=0) // 8) for part in PARTS
+        -(-max((row["at"] + row["bits"] for where, row in link.rows if where == part), default=0) // 8)
+        for part in PARTS
     )
     empty = next((one for _, one in messages if one.least == 0 and around == 0), None)
     if empty is not None:
@@ -168,7 +171,9 @@ def _contents(ctx: Context, link: Link) -> Iterator[Fault]:
         plus = row.get("plus", 0) + (around if row.get("counts") == "message" else 0)
         for least, most, one in ((one.least, one.length, one) for _, one in messages):
             if most + plus >= 1 << row["bits"]:
-                message = f"a length of {count(row['bits'], 'bit')} does not hold {most + plus}, that of {quote(one.name)}"
+                message = (
+                    f"a length of {count(row['bits'], 'bit')} does not hold {most + plus}, that of {quote(one.name)}"
+                )
                 yield Fault(row, row.at("bits"), message, "make the field wider, or the message shorter")
                 break
             if least + plus < 0:
@@ -203,7 +208,9 @@ def checksums_of_links(ctx: Context) -> Iterator[Fault]:
         for name in checksums:
             if name not in used:
                 message = f"no field of the envelope holds the checksum {quote(name)}"
-                yield Fault(protocol, checksums.key_at(name), message, "add a field of the role `checksum`, or remove it")
+                yield Fault(
+                    protocol, checksums.key_at(name), message, "add a field of the role `checksum`, or remove it"
+                )
 
 
 def _is_known(known: object) -> bool:
@@ -226,7 +233,9 @@ def _checksum(ctx: Context, link: Link, part: str, row: Map, known: Map) -> Iter
         yield Fault(row, row.at("bits"), message, "make them agree")
     for key in ("polynomial", "init", "xor_out"):
         if isinstance(known.get(key), int) and known[key] >> width > 0:
-            yield Fault(known, known.at(key), f"`{key}` does not fit {count(width, 'bit')}", f"correct `{key}` or `width`")
+            yield Fault(
+                known, known.at(key), f"`{key}` does not fit {count(width, 'bit')}", f"correct `{key}` or `width`"
+            )
     if known["kind"] != "crc":
         for key in ("polynomial", "reflect_in", "reflect_out", "empty"):
             if key in known:

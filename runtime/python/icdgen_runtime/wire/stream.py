@@ -248,9 +248,7 @@ class StreamDecoder:
         values = {one.role: _get(form, one, frame, size) for one in self._values}
         self._count(id, values, events)
         data = data.ljust(row.least, b"\0")
-        events.append(
-            StreamEvent("message", id, data, values, 0, self._types[id])
-        )
+        events.append(StreamEvent("message", id, data, values, 0, self._types[id]))
         return "message"
 
     def _doubtful(

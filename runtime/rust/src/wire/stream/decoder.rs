@@ -365,7 +365,8 @@ impl Judge {
     /// Whether the constants of the header are right, as far as it came.
     fn header_is_right(self, frame: &[u8]) -> bool {
         let fields = self.form.fields.iter();
-        let mut came = fields.filter(|field| !field.in_trailer && field.at + field.size <= frame.len());
+        let mut came =
+            fields.filter(|field| !field.in_trailer && field.at + field.size <= frame.len());
         came.all(|field| self.is_right(field, frame))
     }
 
@@ -382,7 +383,12 @@ impl Judge {
 
     fn id(self, frame: &[u8]) -> u32 {
         self.form.field(EnvelopeRole::Id).map_or_else(
-            || self.form.rows(self.direction).first().map_or(0, |row| row.id),
+            || {
+                self.form
+                    .rows(self.direction)
+                    .first()
+                    .map_or(0, |row| row.id)
+            },
             |field| field.get(self.form, frame),
         )
     }

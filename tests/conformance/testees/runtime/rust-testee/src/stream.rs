@@ -37,7 +37,9 @@ pub fn stream_encode(link: &'static Link, words: &mut Words) -> Answer {
     encode(link, direction, id, &data, &values, &mut exact)?;
     let short = exact.get_mut(1..).unwrap_or(&mut []);
     match encode(link, direction, id, &data, &values, short) {
-        Err(Error::Length { expected, .. }) if expected == size => Ok(format!(" bytes={}", hex(&out[..size]))),
+        Err(Error::Length { expected, .. }) if expected == size => {
+            Ok(format!(" bytes={}", hex(&out[..size])))
+        }
         _ => Ok(" room=0".into()),
     }
 }
@@ -51,12 +53,16 @@ pub fn stream_events(link: &'static Link, words: &mut Words) -> Answer {
         decoder.feed(&words.octets(), |event| answer += &shown(form, &event));
     }
     let (discarded, pending) = (decoder.discarded(), decoder.pending());
-    Ok(format!("{answer} ok discarded={discarded} pending={pending}"))
+    Ok(format!(
+        "{answer} ok discarded={discarded} pending={pending}"
+    ))
 }
 
 fn shown(form: &Stream, event: &Event<'_>) -> String {
     match *event {
-        Event::Message { id, whole, values, .. } => {
+        Event::Message {
+            id, whole, values, ..
+        } => {
             let mut data = vec![0; whole];
             let size = event.copy_to(&mut data).unwrap_or(0);
             let mut row = format!(" message id={id} bytes={}", hex(&data[..size]));
