@@ -269,9 +269,14 @@ const icdgenCodec = (() => {
     return BigInt(scratch.getUint32(0));
   }
 
+  /** The name of a value; undefined for what is no member. Each has a value and a name, a range its last value, too. */
+  function memberName(members, value) {
+    return members.find(([first, , last = first]) => BigInt(first) <= value && value <= BigInt(last))?.[1];
+  }
+
   return {
     CodecError, decode, encode, isIn, sizeOf, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf, text,
-    rawFromText, floatValue, floatBits,
+    rawFromText, floatValue, floatBits, memberName,
   };
 })();
 if (typeof module !== "undefined") module.exports = icdgenCodec;

@@ -81,7 +81,7 @@
     const attributes = { id: `value-${key}`, "aria-label": `${field.name}, value` };
     if (field.type === "bool") return make("input", { ...attributes, type: "checkbox" });
     if (field.type === "enum") {
-      const members = plan.enums[field.enum].map(([value, name]) => make("option", { value: String(value) }, `${value} · ${name}`));
+      const members = plan.enums[field.enum].map(([value, name, last]) => make("option", { value: String(value) }, `${value}${last === undefined ? "" : ` to ${last}`} · ${name}`));
       return make("select", attributes, ...members, make("option", { value: "" }, "no member"));
     }
     if (field.scale || field.curve || field.text || field.type === "float") return make("input", { ...attributes, ...(field.oneWay ? { readonly: "" } : {}), type: "text", class: "n", autocomplete: "off", spellcheck: "false" });

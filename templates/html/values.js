@@ -34,15 +34,10 @@ const icdgenValues = ((codec, frames) => {
 
   /** What people want to see of a value: its name, its physical value with unit, or the raw one. */
   function shortText(field, value, enums) {
-    if (field.type === "enum") return memberName(enums[field.enum], value) ?? `${value}?`;
+    if (field.type === "enum") return codec.memberName(enums[field.enum], value) ?? `${value}?`;
     if (field.text) return codec.text(value);
     if (field.type === "float" || field.scale || field.curve) return `${physicalText(field, value)}${field.unit ? ` ${field.unit}` : ""}`;
     return `${rawText(field, value)}${field.unit ? ` ${field.unit}` : ""}`;
-  }
-
-  /** The name of a value; undefined for what is no member. */
-  function memberName(members, value) {
-    return members.find(([one]) => BigInt(one) === value)?.[1];
   }
 
   /** The exact decimal, if it ends soon enough, else the nearest double. */
@@ -75,7 +70,7 @@ const icdgenValues = ((codec, frames) => {
     const special = field.special?.find(([one]) => isSame(field, BigInt(one), value));
     if (special) return { text: special[1], wrong: false };
     if (field.const !== undefined && BigInt(field.const) !== value) return { text: `must be ${field.const}`, wrong: true };
-    if (field.type === "enum" && memberName(enums[field.enum], value) === undefined) return { text: "no such member", wrong: true };
+    if (field.type === "enum" && codec.memberName(enums[field.enum], value) === undefined) return { text: "no such member", wrong: true };
     return { text: isOutside(field, value) ? "outside the limits" : "", wrong: isOutside(field, value) };
   }
 

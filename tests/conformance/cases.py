@@ -25,15 +25,20 @@ class Case(NamedTuple):
     answer: dict
 
 
-def member_names(files: dict[str, dict]) -> dict[str, dict[int, str]]:
-    """Name of each member of each enumeration, by the name of the enumeration; nodes that include others know theirs."""
-    return {e["name"]: dict(map(tuple, e["members"])) for data in files.values() for e in data["enums"]}
+def member_names(files: dict[str, dict]) -> dict[str, list[list]]:
+    """The members of each enumeration, by the name of the enumeration; nodes that include others know theirs."""
+    return {e["name"]: e["members"] for data in files.values() for e in data["enums"]}
+
+
+def name_of(members: list[list], value: int) -> str | None:
+    """The name of a value: each member has a value and a name, and a range its last value."""
+    return next((name for first, name, *last in members if first <= value <= (last or [first])[0]), None)
 
 
 class MessageCases:
     """The cases of one message, as spoken by ``node`` (the one that declares it or one that includes that)."""
 
-    def __init__(self, node: str, message: dict, enums: dict[str, dict[int, str]], never_set: list[str]) -> None:
+    def __init__(self, node: str, message: dict, enums: dict[str, list[list]], never_set: list[str]) -> None:
         self.node, self.message, self.enums, self.never_set = node, message, enums, never_set
         self.fields: list[dict] = message["fields"]
         self.views = {field["name"] for field in self.fields if "view" in field}
@@ -102,7 +107,7 @@ class MessageCases:
 
     def names(self, raw: dict) -> dict[str, str | None]:
         """Name of each enum field's member."""
-        return {f["name"]: self.enums.get(f["enum"], {}).get(raw[f["name"]]) for f in self.fields if "enum" in f}
+        return {f["name"]: name_of(self.enums.get(f["enum"], []), raw[f["name"]]) for f in self.fields if "enum" in f}
 
     def from_physical(self, raw: dict, physical: dict, answer: dict) -> dict:
         """The answer, unless some raw value is too wide to come back from a double."""
@@ -225,9 +230,12 @@ def enum_cases(data: dict) -> Iterator[Case]:
     """The names of the members of the enumerations that a node declares."""
     node = data["node"]
     for enum in data["enums"]:
-        for value, name in [*enum["members"], (enum["unknown"], None)]:
+        ends = [(first, last) for first, _, last in (one for one in enum["members"] if len(one) == 3)]
+        near = [value for first, last in ends for value in (first - 1, first + 1, last, last + 1) if value < 1 << 64]
+        values = [*(first for first, *_ in enum["members"]), *near]
+        for value in [*values, enum["unknown"]]:
             request = {"op": "enum", "node": node, "enum": enum["name"], "value": value}
-            yield Case(f"{enum['name']} {value}", request, {"ok": True, "name": name})
+            yield Case(f"{enum['name']} {value}", request, {"ok": True, "name": name_of(enum["members"], value)})
 
 
 def shown(field: dict, value: object) -> object:

@@ -101,6 +101,8 @@ messages:
     id: 7
     kind: telecommand
     length: 18
+    byte_order: big
+    bit_order: msb0
     fields:
       - {at: 5, bits: 11, name: Eleven, type: uint, formula: raw/4}
       - {at: 16, bits: 64, name: Eight Bytes, type: float}
@@ -142,7 +144,8 @@ icdgen: 1
 node: {name: wide, title: Wide ids, byte_order: little, bit_order: lsb0, id_bits: 32}
 enums:
   - name: Turn
-    members: [{value: -5, name: Left}, {value: 100, name: Right}]
+    members: [{value: -5, name: Left}, {value: 100, name: Right}, {value: -100, to: -50, name: Away},
+              {value: 10, to: 12, name: Near}]
 structs:
   - name: Odd
     length: 9
@@ -313,7 +316,8 @@ icdgen: 1
 node: {name: open, title: Messages of variable length, byte_order: big, bit_order: msb0}
 enums:
   - name: Gauge
-    members: [{value: 1, name: First}, {value: 300, name: Last}]
+    members: [{value: 1, name: First}, {value: 300, name: Last},
+              {value: 2, to: 255, name: "Between \\" */"}, {value: 400, to: 401, name: Two}]
   - name: Narrow Gauge
     members: [{value: -1, name: Before}, {value: 1, name: After}]
 messages:

@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 from icdgen import codec
-from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.model import Enum, Field, Icd, Message, Node
 from icdgen.protocol import ops
 from icdgen.vectors.make import known_text
 from icdgen.vectors.settings import bits_of
@@ -139,7 +139,7 @@ class Reference:
         name, wanted, value = key(request, "node", str), key(request, "enum", str), key(request, "value", int)
         for enum in self.node(name).enums:
             if enum.name == wanted:
-                return {"name": {member.value: member.name for member in enum.members}.get(value)}
+                return {"name": named(enum, value)}
         raise Refusal("unknown-enum")
 
     def about_node(self, request: dict) -> dict:
@@ -239,6 +239,12 @@ def physical_value(field: Field, raw: int | bytes) -> str | None:
     return None if text is None else text.encode().hex()
 
 
+def named(enum: Enum, value: int) -> str | None:
+    """The name of a value."""
+    member = enum.member_of(value)
+    return member.name if member else None
+
+
 def described(node: Node, message: Message, raw: dict, names: bool = False) -> dict:
     """The answer to decode and encode."""
     answer: dict = {
@@ -249,8 +255,7 @@ def described(node: Node, message: Message, raw: dict, names: bool = False) -> d
         "bytes": codec.encode(node, message, raw).hex(),
     }
     if names:
-        members = {f.name: {m.value: m.name for m in f.enum.members} for f in message.fields if f.enum}
-        answer["names"] = {name: known.get(raw[name]) for name, known in members.items()}
+        answer["names"] = {f.name: named(f.enum, raw[f.name]) for f in message.fields if f.enum}
     return answer
 
 

@@ -146,7 +146,7 @@ def _uses_all(names: dict, enums: list[dict], structs: list[dict], id: int | lis
 
 def _needed(enum: dict) -> int:
     """Bits of the narrowest field that holds every member; a negative one makes all of them signed."""
-    values = [member["value"] for member in enum["members"]]
+    values = [value for member in enum["members"] for value in (member["value"], member.get("to", 0))]
     signed = min(values) < 0
     return max((~value if value < 0 else value).bit_length() + signed for value in values) or 1
 
@@ -159,7 +159,15 @@ def _enum(draw, names: Names, name: str) -> dict:
     )
     near = st.integers(max(low, -5), min(5, high))
     values = draw(st.lists(st.integers(low, high) | near, min_size=1, max_size=6, unique=True))
-    return {"name": name, "members": [{"value": value, **names.one("member")} for value in values]}
+    members: list[dict] = []
+    after = dict(zip(ordered := sorted(values), ordered[1:], strict=False))
+    for value in values:
+        room = after.get(value, high + 1) - value - 1
+        reach = (
+            {"to": value + draw(st.integers(1, min(room, 300)))} if room > 0 and draw(st.integers(0, 4)) == 0 else {}
+        )
+        members.append({"value": value, **reach, **names.one("member")})
+    return {"name": name, "members": members}
 
 
 @st.composite
@@ -247,7 +255,7 @@ def _open_end(draw, fields: list[dict], length: int, enums: list[dict]) -> dict:
 def _counts(field: dict) -> bool:
     """Whether a field can say how many elements there are."""
     others = ("formula", "const", "count", "view", "bitfields")
-    return field["type"] == "uint" and not any(key in field for key in others)
+    return field.get("type") == "uint" and not any(key in field for key in others)
 
 
 @st.composite
@@ -260,7 +268,8 @@ def _views(draw, fields: list[dict], used: int, names: Names, enums: list[dict],
         field = {**draw(_field(enums)), **draw(_own_orders())}
         if field["type"] in ("bytes", "text"):
             continue
-        if field["type"] in ("uint", "int") and "special" not in field and draw(st.booleans()):
+        bounded = field.keys() & {"special", "min", "max", "above", "below"}
+        if field["type"] in ("uint", "int") and not bounded and draw(st.booleans()):
             field["bits"] = min(field["bits"], place["bits"])
         for key in ("const", "count", *(("byte_order", "bit_order") if field["type"] == "bool" else ())):
             field.pop(key, None)
@@ -312,6 +321,10 @@ def _field(draw, enums: list[dict]) -> dict:
     elif draw(st.integers(0, 5)) == 0:
         values = draw(st.lists(raw, min_size=1, max_size=2, unique=True))
         field["special"] = [_meaning(value, index) for index, value in enumerate(values)]
+    elif draw(st.integers(0, 5)) == 0 and "formula" not in field:
+        values = draw(st.lists(raw, min_size=2, max_size=2, unique=True))
+        low_key, high_key = draw(st.sampled_from((("min", "max"), ("above", "max"), ("min", "below"))))
+        field |= {low_key: min(values), high_key: max(values)}
     return field
 
 

@@ -15,7 +15,7 @@ def _facts(node: Node, message: Message) -> tuple:
     fields = [
         (
             f.name, f.type, f.bits, f.view, _place(node, f), f.scale, f.curve, f.const,
-            f.special, f.limits, tuple((m.value, m.name) for m in f.enum.members) if f.enum else None,
+            f.special, f.limits, tuple((m.value, m.to, m.name) for m in f.enum.members) if f.enum else None,
         )
         for f in message.fields
     ]  # fmt: skip

@@ -8,10 +8,11 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import product
 
 from icdgen.backends.assurance.changes import OTHER_TYPES, formulas
 from icdgen.icd.build import plain
-from icdgen.icd.model import Enum, Icd, Message, Node
+from icdgen.icd.model import Enum, Field, Icd, Message, Node
 from icdgen.icd.tails import is_open
 
 Change = Callable[[dict], object]
@@ -61,6 +62,7 @@ class _Home:
         self.node = node
         scope = (*icd.included(node), node)
         self.enums = {enum.name: enum for one in scope for enum in one.enums}
+        self.structs = {struct.name: plain(struct.source) for one in scope for struct in one.structs}
         self.units = {unit["symbol"]: unit for one in scope for unit in plain(one.source.get("units") or [])}
 
     def tree(self, message: Message | None, enums: list[str]) -> dict:
@@ -76,17 +78,28 @@ class _Home:
             one.pop("contains", None)
             one.pop("listed", None)
             if message.fields:  # what the manual divides in words is its parts
-                one["fields"] = [
-                    {"type": "uint", **plain(field.source), "at": field.at}
-                    for field in message.members
-                    if not field.implied
-                ]
+                one["fields"] = [_line(field) for field in message.members if not field.implied]
             tree["messages"] = [one]
-            used = {field.get("unit") for field in one.get("fields") or ()}
+            tree["structs"] = structs = list(self._used(one))
+            fields = [field for part in (one, *structs) for field in part.get("fields") or ()]
+            used = {field.get("unit") for field in fields}
             tree["units"] = [unit for symbol, unit in self.units.items() if symbol in used]
-            enums = list(dict.fromkeys([*(f["enum"] for f in one.get("fields") or () if "enum" in f), *enums]))
+            enums = list(dict.fromkeys([*(f["enum"] for f in fields if "enum" in f), *enums]))
         tree["enums"] = [plain(self.enums[name].source) for name in enums]
         return {key: value for key, value in tree.items() if value}
+
+    def _used(self, part: dict) -> Iterator[dict]:
+        """The structs that stand in a message or a struct, each once, and those in them."""
+        names = dict.fromkeys(field["struct"] for field in part.get("fields") or () if "struct" in field)
+        found = {name: copy.deepcopy(self.structs[name]) for name in names}
+        for one in list(found.values()):
+            found |= {inner["name"]: inner for inner in self._used(one)}
+        yield from found.values()
+
+
+def _line(field: Field) -> dict:
+    source = plain(field.source)
+    return {**source, "at": field.at} if "struct" in source else {"type": "uint", **source, "at": field.at}
 
 
 def _message(home: _Home, message: Message) -> Iterator[Mutant]:
@@ -96,7 +109,8 @@ def _message(home: _Home, message: Message) -> Iterator[Mutant]:
     def mutant(kind: str, about: str, change: Change) -> Mutant:
         tree = copy.deepcopy(base)
         change(tree)
-        used = {field.get("enum") for field in tree["messages"][0].get("fields") or ()}
+        parts = (tree["messages"][0], *tree.get("structs", ()))
+        used = {field.get("enum") for part in parts for field in part.get("fields") or ()}
         if "enums" in tree:
             tree["enums"] = [enum for enum in tree["enums"] if enum["name"] in used]
         return Mutant(kind, f"{name!r}: {about}", home.node.name, name, None, tree)
@@ -111,6 +125,9 @@ def _message(home: _Home, message: Message) -> Iterator[Mutant]:
                 yield on_message("id", f"{key} {number} -> {number + step}", **{key: number + step})
     for step in (-1, 1) if message.tail is None else ():  # an open end begins where it ends
         yield on_message("length", f"length {message.length} -> {message.length + step}", length=message.length + step)
+    for step in (-1, 1) if message.source.get("reserved") else ():
+        reserved, length = base["messages"][0]["reserved"] + step, message.length + step
+        yield on_message("reserved", f"reserved {reserved - step} -> {reserved}", reserved=reserved, length=length)
     if message.may_end_early:
         yield mutant("end", "never ends early", lambda tree: tree["messages"][0].pop("may_end_early"))
     for key, values in (("byte_order", ("little", "big")), ("bit_order", ("lsb0", "msb0"))):
@@ -121,29 +138,43 @@ def _message(home: _Home, message: Message) -> Iterator[Mutant]:
             f"{key} {other}",
             lambda t, k=key, o=other, own=own: (t["messages"][0] if own else t["node"]).update({k: o}),
         )
-    fields = base["messages"][0].get("fields") or []
+    for key, parts in (("messages", base["messages"]), ("structs", base.get("structs", ()))):
+        for number, part in enumerate(parts):
+            for kind, about, change in _part(part):
+                yield mutant(kind, about, lambda t, k=key, n=number, c=change: c(t[k][n]))
+
+
+def _part(part: dict) -> Iterator[tuple[str, str, Change]]:
+    """Changes of the fields of a message or a struct, and of the length of the latter."""
+    fields = part.get("fields") or []
     for about, change in _swaps(fields):
-        yield mutant("swap", about, change)
+        yield "swap", about, change
     for index, field in enumerate(fields):
         for kind, about, change in _field(field):
-            yield mutant(
-                kind, f"{field['name']!r}: {about}", lambda t, i=index, c=change: c(t["messages"][0]["fields"][i])
-            )
+            yield kind, f"{field['name']!r}: {about}", lambda p, i=index, c=change: c(p["fields"][i])
+    for step in (-1, 1) if "kind" not in part else ():
+        length = part["length"] + step
+        yield "length", f"{part['name']!r}: length {length - step} -> {length}", lambda p, v=length: p.update(length=v)
 
 
 def _swaps(fields: list[dict]) -> Iterator[tuple[str, Change]]:
     """Two neighbours of the same width and type in each other's place."""
     for index in range(1, len(fields)):
         one, other = fields[index - 1], fields[index]
-        if is_open(one) or is_open(other):
+        if is_open(one) or is_open(other) or "struct" in one or "struct" in other:
             continue
         if (one["bits"], one["type"]) == (other["bits"], other["type"]):
             about = f"{one['name']!r} and {other['name']!r} in each other's place"
             places = {index - 1: other["at"], index: one["at"]}
-            yield about, lambda t, p=places: [t["messages"][0]["fields"][i].update(at=at) for i, at in p.items()]
+            yield about, lambda t, p=places: [t["fields"][i].update(at=at) for i, at in p.items()]
 
 
 def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
+    if "struct" in field:
+        for key, steps in (("at", (-8, 8)), ("count", (-1, 1) if "count" in field else ())):
+            for step in steps:
+                yield _number("offset" if key == "at" else "count", field, key, step)
+        return
     if is_open(field):
         for step in (-1, 1):
             yield _number("up to", field, "up_to", step)
@@ -215,9 +246,11 @@ def _node(home: _Home) -> Iterator[Mutant]:
 def _enum(home: _Home, enum: Enum) -> Iterator[Mutant]:
     user = next((m for m in home.node.messages if any(f.enum is enum for f in m.fields)), None)
     for index, member in enumerate(enum.members):
-        for step in (-1, 1):
+        for key, step in product(("value", "to"), (-1, 1)):
+            if (value := getattr(member, key)) is None:
+                continue
             tree = copy.deepcopy(home.tree(user, [enum.name]))
             changed = next(e for e in tree["enums"] if e["name"] == enum.name)
-            changed["members"][index]["value"] = member.value + step
-            about = f"{enum.name!r}: {member.name!r} {member.value} -> {member.value + step}"
+            changed["members"][index][key] = value + step
+            about = f"{enum.name!r}: {member.name!r} {value} -> {value + step}"
             yield Mutant("enum value", about, home.node.name, None, enum.name, tree)

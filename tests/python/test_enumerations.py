@@ -15,7 +15,9 @@ def test_every_member_has_the_value_and_the_name_of_the_manual(package):
         assert list(module.ENUMS) == [enum.name for enum in node.enums]
         for enum in node.enums:
             found = getattr(module, module.ENUMS[enum.name])
-            assert [(member.value, member.label) for member in found] == [(m.value, m.name) for m in enum.members]
+            assert [(member.value, member.label) for member in found] == [
+                (end.value, m.name) for m in enum.members for end in m.ends
+            ]
             assert all(member.is_known for member in found)
 
 
@@ -46,6 +48,14 @@ def test_unknown_values_of_a_signed_enumeration_are_kept(odd, value, name):
     for beyond in (1 << 63, -(1 << 63) - 1):
         with pytest.raises(ValueError):
             signed(beyond)
+
+
+def test_values_of_a_range_have_its_name_and_are_kept(odd):
+    wide = odd.module("odd").WideEnum
+    assert (wide.A_RANGE_FIRST, wide.A_RANGE_LAST) == (100, 200)
+    assert [wide(value).label for value in (99, 100, 101, 199, 200, 201)] == ["", *['A " range'] * 4, ""]
+    assert (wide(150).name, wide(150).is_known, wide(150)) == ("A_RANGE_150", True, 150)
+    assert pickle.loads(pickle.dumps(wide(150))).label == 'A " range' and wide(150) is wide(150)
 
 
 def test_unknown_bytes_are_made_once(mode):

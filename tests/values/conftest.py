@@ -17,6 +17,7 @@ enums:
       - {value: 1, name: "On"}
       - {value: 7, name: Auto reset}
       - {value: 9, name: Auto retry}
+      - {value: 0x20, to: 0x2F, name: Reserved}
 messages:
   - name: Shared State
     id: 130

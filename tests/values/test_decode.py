@@ -105,6 +105,13 @@ def test_what_the_icd_does_not_know_is_shown_as_it_came(icd):
     assert (rows["Precise"]["raw"], rows["Precise"]["value"]) == ("fff0000000000000", "-inf")
 
 
+def test_all_values_of_a_range_have_its_name(icd):
+    named = {value: everything(icd, mode=value).rows[2] for value in (31, 32, 40, 47, 48)}
+    assert [row.text for row in named.values()] == ["unknown 31", *["Reserved"] * 3, "unknown 48"]
+    assert [row.remarks for row in named.values()] == [("no member of Switch",), (), (), (), ("no member of Switch",)]
+    assert named[40].to_json() == {"name": "Mode", "type": "enum", "raw": 40, "value": "Reserved", "enum": "Switch"}
+
+
 @pytest.mark.parametrize(
     ("value", "remarks"),
     [

@@ -133,6 +133,7 @@ def test_every_type(icd, name, value, raw):
         ("enabled", "maybe", "Enabled: `maybe` is neither true nor false"),
         ("mode", "auto", "Mode: `auto` fits several members; members: 0 Off, 1 On, 7 Auto reset, 9 Auto retry"),
         ("mode", "nope", "Mode: `nope` is no member of Switch; members: 0 Off"),
+        ("mode", "reserved", "Mode: `reserved` is 32 to 47: give the number; members: 0 Off, 1 On"),
         ("mode", "13", "Mode: 13 is not allowed: no member of Switch; members: 0 Off"),
         ("mode", "300", "Mode: takes 0 to 255, not 300"),
         ("ratio", "1e39", "Ratio: 1e39 is beyond what a 32-bit float holds"),

@@ -107,5 +107,5 @@ def _failed(icd: Icd, node: Node, outcome: Refused | Timeout) -> str:
         return "refused"
     name = icd.protocol_of(node).get("errors", {}).get("enum")
     enums = {e.name: e for n in (*icd.included(node), node) for e in n.enums}
-    members = {m.value: m.name for m in enums[name].members} if name in enums else {}
-    return f"refused: {members.get(outcome.code, 'unknown error')} (code {outcome.code})"
+    member = enums[name].member_of(outcome.code) if name in enums else None
+    return f"refused: {member.name if member else 'unknown error'} (code {outcome.code})"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from icdgen import naming
 from icdgen.describe.comments import Comment, enum_comment, member_comment
 from icdgen.describe.errata import Thing, tellers, told_elsewhere
 from icdgen.describe.named import Named
@@ -15,8 +16,7 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
     found: dict[tuple[str, str], int] = {}
     for node in icd.nodes:
         for enum in node.enums:
-            bits = enum.bits_for(enum.widest.value) if enum.widest else 1
-            found[enum.node, enum.name] = max(found.get((enum.node, enum.name), 1), bits)
+            found[enum.node, enum.name] = max(found.get((enum.node, enum.name), 1), enum.bits)
         every: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
         for one in every:
             for field in one.fields:
@@ -35,13 +35,22 @@ class EnumDescription(Named[Enum]):
 
     @cached_property
     def members(self) -> tuple[MemberDescription, ...]:
-        """In the order of the manual."""
-        return tuple(MemberDescription(member, self) for member in self.model.members)
+        """In the order of the manual; of a range its ends, each with a name of its own."""
+        return tuple(MemberDescription(end, self) for member in self.model.members for end in member.ends)
+
+    @cached_property
+    def ranges(self) -> tuple[Member, ...]:
+        """What has values between its ends: these have no constants in code, and are called as the range is."""
+        return tuple(member for member in self.model.members if member.last - member.value > 1)
+
+    def range_name(self, one: Member) -> str:
+        """What a range is called, in snake case."""
+        return naming.snake(naming.words(one.identifier or one.name, self.node.vocabulary))
 
     @cached_property
     def tellers(self) -> dict[str, Thing]:
         """By the ids of errata: which part of the enumeration tells of it."""
-        return tellers((self.model, *self.model.members))
+        return tellers((self.model, *(member.model for member in self.members)))
 
     @cached_property
     def comment(self) -> Comment:

@@ -9,7 +9,7 @@ from icdgen.describe.numbers import length_text
 from icdgen.diff.changes.numbers import is_wider
 from icdgen.diff.compare import Comparison
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
-from icdgen.diff.similar import same_sense
+from icdgen.diff.similar import other_senses
 from icdgen.diff.wording import read_as, some
 from icdgen.icd.formula import RAW
 from icdgen.icd.model import Field, Message
@@ -165,8 +165,7 @@ def _misread(pair: FieldPair) -> str:
 def _senses_differ(old: Field, new: Field) -> bool:
     if old.enum is None or new.enum is None or old.enum is new.enum:
         return False
-    before, after = ({m.value: m.name for m in enum.members} for enum in (old.enum, new.enum))
-    return any(not same_sense(before[value], after[value]) for value in before.keys() & after.keys())
+    return bool(other_senses(old.enum, new.enum))
 
 
 def _lengths(sent: Message, reader: Message, verb: str) -> tuple[str, tuple[str, ...]]:

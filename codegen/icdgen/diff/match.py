@@ -149,9 +149,9 @@ class _Left(Generic[Declared]):
         return frozenset(f.name for f in self.one.lines)
 
     @cached_property
-    def members(self: _Left[Enum]) -> frozenset[tuple[int, str]]:
+    def members(self: _Left[Enum]) -> frozenset[tuple[str, str]]:
         """Of an enumeration."""
-        return frozenset((m.value, m.name) for m in self.one.members)
+        return frozenset((m.values, m.name) for m in self.one.members)
 
 
 def _paired(
@@ -220,7 +220,7 @@ def _members(pair: EnumPair) -> list[MemberPair]:
     old = list(pair.before.members) if pair.before else []
     new = list(pair.after.members) if pair.after else []
     found: list[MemberPair] = []
-    keys: tuple[Callable[[Member], object], ...] = (lambda m: (m.value, m.name), lambda m: m.name, lambda m: m.value)
+    keys: tuple[Callable[[Member], object], ...] = (lambda m: (m.values, m.name), lambda m: m.name, lambda m: m.value)
     for key in keys:
         for one in list(old):
             twins = [m for m in old if key(m) == key(one)]

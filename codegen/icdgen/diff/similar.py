@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from icdgen.icd.model import Enum
 from icdgen.naming import words
 
 _SHORTEST = 5  # letters of a word in which a slip of the pen is told from another word
@@ -25,6 +26,13 @@ def letters(name: str) -> frozenset[str]:
 def overlap(one: frozenset[object], other: frozenset[object]) -> float:
     """Share of what both have in what either has; a half where there is nothing to compare."""
     return len(one & other) / len(one | other) if one or other else 0.5
+
+
+def other_senses(old: Enum, new: Enum) -> list[int]:
+    """Values to which both give names of another sense; of what is so for a range, where it begins or ends."""
+    ends = sorted({value for enum in (old, new) for one in enum.members for value in (one.value, one.last)})
+    named = ((value, old.member_of(value), new.member_of(value)) for value in ends)
+    return [value for value, was, now in named if was and now and not same_sense(was.name, now.name)]
 
 
 @lru_cache(maxsize=1 << 18)

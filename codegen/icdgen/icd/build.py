@@ -110,6 +110,7 @@ class Builder:
             name=item["name"],
             identifier=item.get("identifier"),
             summary=item.get("summary", ""),
+            to=item.get("to"),
             errata=self.applied.about(item),
             source=item,
         )

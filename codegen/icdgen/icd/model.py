@@ -14,6 +14,8 @@ from typing import Any
 from icdgen.frozen import dataclass
 from icdgen.icd.annex import Loggable, Missing
 from icdgen.icd.curve import Curve, leads_back
+from icdgen.icd.enumeration import Enum as Enum
+from icdgen.icd.enumeration import Member as Member
 from icdgen.icd.erratum import Erratum as Erratum
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, unread
@@ -25,47 +27,6 @@ TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configurati
 # Where the ICD gives no other numbers.
 CAN_DATA_BYTES = 8  # of a packet
 CAN_PACKETS = 256  # of an extended message
-
-
-@dataclass(frozen=True, slots=True)
-class Member:
-    """One value of an enumeration."""
-
-    value: int
-    name: str
-    identifier: str | None = None  # words to build identifiers from, if not the name's
-    summary: str = ""
-    errata: tuple[Erratum, ...] = ()
-    source: Map = field(default_factory=unread, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Enum:
-    """An enumeration; members in the order of the manual."""
-
-    name: str
-    members: tuple[Member, ...]
-    identifier: str | None = None
-    summary: str = ""
-    table: int | None = None
-    node: str = ""  # name of the node that declares it
-    errata: tuple[Erratum, ...] = ()
-    source: Map = field(default_factory=unread, compare=False, repr=False)
-
-    @property
-    def signed(self) -> bool:
-        """Whether every field of it is in two's complement: one of its values is negative."""
-        return any(member.value < 0 for member in self.members)
-
-    def bits_for(self, value: int) -> int:
-        """How many bits a field of it needs to hold the value."""
-        return (~value if value < 0 else value).bit_length() + 1 if self.signed else value.bit_length()
-
-    @property
-    def widest(self) -> Member | None:
-        """The member that takes the most bits: the one of the largest value, or of the smallest."""
-        by_value = sorted(self.members, key=lambda member: member.value)
-        return max(by_value[-1:] + by_value[:1], key=lambda member: self.bits_for(member.value), default=None)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from icdgen import codec
 from icdgen.errors import UserError
+from icdgen.icd.model import Enum
 from icdgen.logfile.columns import TIME, Column, Plan
 from icdgen.logfile.source import Source
 
@@ -91,11 +92,11 @@ class _Reader:
         import pyarrow as pa
 
         self.column, self.stride = column, entry_bytes
-        self.members: dict[int, str] = {}
+        self.enum: Enum | None = None
         self.names: pa.Array | None = None  # of all values, where there are few
         metadata = {"frame": column.frame, "field": column.field.name if column.field else "", "unit": column.unit}
         if column.field and column.field.enum:
-            metadata["members"] = json.dumps({m.value: m.name for m in column.field.enum.members})
+            metadata["members"] = json.dumps({m.values: m.name for m in column.field.enum.members})
         self.field = pa.field(column.name, self._type(), nullable=False, metadata=metadata)
 
     def _type(self) -> pa.DataType:
@@ -113,7 +114,7 @@ class _Reader:
         if column.kind == "float":
             return pa.float32() if column.field.bits == 32 else pa.float64()
         if column.kind == "enum":
-            self.members = {m.value: m.name for m in column.field.enum.members}  # type: ignore[union-attr]
+            self.enum = column.field.enum
             if column.field.bits > 8 or column.field.signed:
                 return pa.dictionary(pa.int32(), pa.string())
             self.names = pa.array(self._named(range(1 << column.field.bits)))
@@ -151,13 +152,14 @@ class _Reader:
             bits = raw.astype(np.uint32 if is_single else np.uint64)
             raw = bits.view(np.float32 if is_single else np.float64)
         if column.curve:
-            return pa.array(_on_curve(column.curve.coefficients, raw.astype(np.float64)))
+            return pa.array(_on_curve(column.curve.coefficients, raw))
         if column.kind == "float":
             return pa.array(raw)
         return pa.array(raw.astype(type_.to_pandas_dtype()))
 
     def _named(self, values: Iterable[int]) -> list[str]:
-        return [self.members.get(value) or f"unknown {value}" for value in values]
+        members = ((value, self.enum.member_of(value) if self.enum else None) for value in values)
+        return [one.name if one else f"unknown {value}" for value, one in members]
 
     def _raw(self, data: bytes) -> np.ndarray:
         import numpy as np
@@ -208,7 +210,8 @@ def _on_curve(coefficients: tuple[float, ...], raw: np.ndarray) -> np.ndarray:
     import numpy as np
 
     value = np.full(len(raw), coefficients[-1])
-    with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"):  # that a float is a signalling NaN, too
+        raw = raw.astype(np.float64)
         for coefficient in coefficients[-2::-1]:
             value = value * raw + coefficient
     value[np.isnan(value)] = np.nan

@@ -6,6 +6,7 @@ import math
 import struct
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime, timedelta
+from functools import lru_cache
 
 from icdgen import codec
 from icdgen.logfile.columns import Column
@@ -71,8 +72,11 @@ def _bool(column: Column) -> Callable[[bytes], Value]:
 
 def _enum(column: Column) -> Callable[[bytes], Value]:
     assert column.field and column.field.enum
-    raw, names = _raw(column), {m.value: m.name for m in column.field.enum.members}
-    return lambda entry: names.get(value := raw(entry)) or f"unknown {value}"
+    raw, enum = _raw(column), column.field.enum
+    named = lru_cache(maxsize=1024)(
+        lambda value: found.name if (found := enum.member_of(value)) else f"unknown {value}"
+    )
+    return lambda entry: named(raw(entry))
 
 
 def _float(column: Column) -> Callable[[bytes], Value]:

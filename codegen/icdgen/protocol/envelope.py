@@ -6,7 +6,6 @@ Everything a decoder computes with is decided here, once for all languages: a fi
 from __future__ import annotations
 
 from icdgen.frozen import dataclass
-from icdgen.protocol.declared import flag
 from icdgen.protocol.sections import Crc
 
 LENGTH, SLIP, COBS, HDLC, PACKET = DELIMITERS = ("length", "slip", "cobs", "hdlc", "none")
@@ -62,6 +61,7 @@ class StreamRow:
     id: int
     least: int
     most: int
+    cuts_zeros: bool  # whether zeros at the end of the data are not sent, but for one byte
     seed: int
     name: str
 
@@ -70,10 +70,6 @@ class StreamRow:
 class Stream:
     """How messages are put into a stream of bytes, or into packets."""
 
-    cuts_zeros: bool = flag(
-        "may_end_early", "whether zeros at the end of the data are left out, and filled in again", False, ("no", "zeros"),
-        key_about="what may be left out at the end of the data, and is filled in again",
-    )  # fmt: skip
     delimited_by: str  # one of `DELIMITERS`
     header_bytes: int
     trailer_bytes: int

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from icdgen.icd.model import Message, Node
-from icdgen.protocol.envelope import CRC, DATA, DIRECTIONS, ROLES, Check, EnvelopeField, Stream, StreamRow
+from icdgen.protocol.envelope import DATA, DIRECTIONS, ROLES, Check, EnvelopeField, Stream, StreamRow
 from icdgen.protocol.sections import Crc
 
 Section = Mapping[str, Any]
@@ -41,7 +41,7 @@ def values_of(row: Section, little: bool) -> tuple[int, int]:
 def rows_of(messages: Mapping[int, Message], seeds: Mapping[str, int]) -> tuple[StreamRow, ...]:
     """The messages of a direction."""
     return tuple(
-        StreamRow(id, one.least, one.length, seeds.get(one.name, 0), one.name) for id, one in sorted(messages.items())
+        StreamRow(id, one.least, one.length, bool(one.may_end_early), seeds.get(one.name, 0), one.name) for id, one in sorted(messages.items())
     )
 
 
@@ -55,17 +55,13 @@ def check_of(section: Section, checksums: Section) -> Check | None:
     """The checksum that a row asks for."""
     header, trailer = section.get("header", ()), section.get("trailer", ())
     row = place_of((*header, *trailer), "checksum", False)
-    given = checksums.get(row.get("checksum")) if row else None
+    given = checksums.get(row.get("checksum", "")) if row else None
     if not given:
         return None
     kind = given["kind"]
-    codes = [given.get(key, 0) for key in ("width", "polynomial", "init", "xor_out")]
-    reflect_in, reflect_out = given.get("reflect_in", False), given.get("reflect_out", False)
-    crc = (
-        Crc(*codes[:3], reflect_in, reflect_out, codes[3])
-        if kind == CRC
-        else Crc(codes[0], 0, codes[2], False, False, codes[3])
-    )
+    width, polynomial, init, xor_out = (given.get(key, 0) for key in ("width", "polynomial", "init", "xor_out"))
+    reflected = given.get("reflect_in", False), given.get("reflect_out", False)
+    crc = Crc(width, polynomial, init, *reflected, xor_out, given.get("empty"))
     first = place_of(header, given["covers"]["from"], False)
     last = place_of(trailer, given["covers"]["to"], True)
     return Check(
@@ -83,14 +79,14 @@ def stream_of(
     checksums: Section,
     telecommands: Mapping[int, Message],
     telemetry: Mapping[int, Message],
-) -> dict[str, object]:
+) -> dict[str, Any]:
     """What code makes of the section, beside its declared facts."""
     header, trailer = section.get("header", ()), section.get("trailer", ())
     fields = [field_of(node, row, row_in is trailer) for row_in in (header, trailer) for row in row_in]
     sizes = [bytes_of((row["at"], row["bits"]) for row in rows) for rows in (header, trailer)]
     length, sequence = (place_of((*header, *trailer), role, False) or {} for role in ("length", "sequence"))
     check = place_of((*header, *trailer), "checksum", False) or {}
-    seeds = checksums.get(check.get("checksum"), {}).get("seeds", {})
+    seeds = checksums.get(check.get("checksum", ""), {}).get("seeds", {})
     counts_all = length.get("counts", DATA) == "message"
     assert all(field.role in ROLES for field in fields)
     return {

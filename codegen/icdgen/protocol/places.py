@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from icdgen.protocol.envelope import Stream
 from icdgen.protocol.sections import (
     Acknowledge,
     Can,
@@ -41,7 +40,6 @@ PLACES: tuple[tuple[str, type[Any]], ...] = (
     *((f"file_transfer.{name}", part) for name, part in PROCEDURES.items()),
     ("program_copy", Operation),
     ("program_information", Operation),
-    ("stream", Stream),
     ("checksums.*", Crc),
 )
 """Where the facts of each part stand in the protocol section of an ICD; `*` is any name."""

@@ -156,7 +156,7 @@ class Reader:
         if not section:
             return None
         made = stream_of(self.node, section, self.section("checksums"), self.telecommands, self.telemetry)
-        return self.part("stream", Stream, **made)
+        return Stream(**made)
 
     def mask(self) -> LogMask | None:
         slot, bits = self.section("log_mask").get("frame_bytes", 0), {}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping
 from typing import NamedTuple
 
 from icdgen.protocol import checks, stuffing
@@ -43,7 +43,7 @@ def encode(form: Stream, direction: str, id: int, data: bytes, values: Mapping[s
         raise UnknownIdError(f"there is no {direction} of id {id}")
     if not row.least <= len(data) <= row.most:
         raise LengthError(row.most if len(data) > row.most else row.least, len(data))
-    if form.cuts_zeros:
+    if row.cuts_zeros:
         data = data[:1] + data[1:].rstrip(b"\0")
     head, tail = bytearray(form.header_bytes), bytearray(form.trailer_bytes)
     known = {"id": id, "length": len(data) + form.length_plus}
@@ -120,7 +120,7 @@ class Decoder:
         elif not (yield from self._told(self._judged(frame))):
             self.discarded += size
 
-    def _front(self) -> Iterator[Event]:
+    def _front(self) -> Generator[Event, None, int | None]:
         """What the buffer begins with: bytes to take away, None while that is not decided."""
         form, buffer = self.form, bytes(self.buffer)
         header = [field for field in form.fields if not field.in_trailer]
@@ -149,7 +149,7 @@ class Decoder:
             self.discarded += size
         return size
 
-    def _told(self, verdict: Verdict) -> Iterator[Event]:
+    def _told(self, verdict: Verdict) -> Generator[Event, None, bool]:
         """Tells of a frame; whether it is a message."""
         event = verdict.event
         place = self.form.of("sequence")
@@ -185,9 +185,9 @@ class Decoder:
                 return Verdict(Event(CHECKSUM, id), False)
         if row is None:
             return Verdict(Event(UNKNOWN_ID, id), True)
-        if size > row.most or (size < row.least and not form.cuts_zeros):
+        if not row.least <= size <= row.most:
             return Verdict(Event(BAD_LENGTH, id), True)
-        data = frame[form.header_bytes : form.header_bytes + size].ljust(row.least, b"\0")
+        data = frame[form.header_bytes : form.header_bytes + size]
         fields = {field.role: field for field in form.fields}
         values = tuple((role, _get(form, fields[role], frame)) for role in GIVEN if role in fields)
         return Verdict(Event(MESSAGE, id, data, values), True, number or 0)

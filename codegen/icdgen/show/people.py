@@ -149,7 +149,7 @@ def _message(icd: Icd, message: Message, width: int | None) -> str:
 
 def _enum(enum: Enum, width: int | None) -> str:
     head = f"{enum.name} (enumeration" + (f", table {enum.table})" if enum.table else ")")
-    members = [(str(m.value), m.name, m.summary) for m in enum.members]
+    members = [(m.values, m.name, m.summary) for m in enum.members]
     table = render([Column("value", right=True, fixed=True), Column("name"), Column("meaning")], members, width)
     errata = "".join("\n" + _erratum(e, width) for e in errata_of_enum(enum))
     return _lines([head, enum.summary], width) + table + errata

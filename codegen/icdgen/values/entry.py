@@ -16,7 +16,7 @@ _TRUTH = {"true": 1, "yes": 1, "on": 1, "1": 1, "false": 0, "no": 0, "off": 0, "
 
 def members(field: Field) -> str:
     """The members of the field's enumeration, for the end of a message."""
-    return "; members: " + ", ".join(f"{m.value} {m.name}" for m in field.enum.members) if field.enum else ""
+    return "; members: " + ", ".join(f"{m.values} {m.name}" for m in field.enum.members) if field.enum else ""
 
 
 def raw_value(field: Field, text: str) -> int | bytes:
@@ -153,14 +153,17 @@ def _enum(field: Field, text: str) -> int:
 def _member(field: Field, enum: Enum, text: str) -> int:
     known = enum.members
     number = numbers.integer(text)
-    found = {m.value for m in by_name(known, text, ())}
+    found = {m.values: m.value for m in by_name(known, text, ())}
     if not found and number is None:
-        found = {m.value for m in known if _has_words(m, text)}
+        found = {m.values: m.value for m in known if _has_words(m, text)}
     if number is not None:
-        found.add(number)
+        found[str(number)] = number
     if len(found) == 1:
-        return found.pop()
-    what = "fits several members" if found else f"is no member of {enum.name}"
+        ((values, value),) = found.items()
+        if values == str(value):
+            return value
+    what = f"is {' and '.join(found)}: give the number" if len(found) == 1 else "fits several members"
+    what = what if found else f"is no member of {enum.name}"
     raise BadValue(f"`{text}` {what}{members(field)}")
 
 

@@ -37,8 +37,8 @@ class Row:
     @property
     def member(self) -> str | None:
         """Name of the enumeration's member, None if it has none of that value."""
-        members = self.field.enum.members if self.field.enum else ()
-        return next((m.name for m in members if m.value == self.raw), None)
+        found = self.field.enum.member_of(self.raw) if self.field.enum else None
+        return found.name if found else None
 
     @property
     def raw_text(self) -> str:
@@ -150,7 +150,7 @@ def violations(field: Field, raw: int) -> list[str]:
     found = []
     if field.const is not None and raw != field.const:
         found.append(f"must be {value_text(field.const)}")
-    if field.enum and not any(m.value == raw for m in field.enum.members):
+    if field.enum and field.enum.member_of(raw) is None:
         found.append(f"no member of {field.enum.name}")
     return found + (_outside(field, raw) if field.limits else [])
 

@@ -58,7 +58,7 @@ def make(icd: Icd, node: Node) -> NodeVectors:
     return NodeVectors(
         node=node,
         ids=_ids(icd, node),
-        enums=tuple((enum, _no_member(enum)) for enum in node.enums),
+        enums=tuple((enum, enum.unnamed) for enum in node.enums),
         messages=tuple(message_vectors(node, message) for message in node.messages),
     )
 
@@ -135,8 +135,3 @@ def _ids(icd: Icd, node: Node) -> dict[str, dict[int, str]]:
             if message.kind == CONFIGURATION:
                 ids[CONFIGURATION][getattr(message, pick)] = message.name
     return {direction: dict(sorted(found.items())) for direction, found in ids.items()}
-
-
-def _no_member(enum: Enum) -> int | None:
-    values = {member.value for member in enum.members}
-    return next(value for value in range(len(values) + 1) if value not in values)

@@ -118,9 +118,10 @@ def _numbers(field: Field) -> Iterator[int]:
         yield value - (1 << field.bits) if value > high else value
     yield high - 1
     if field.type == "enum" and field.enum is not None:
-        members = [member.value for member in field.enum.members]
-        yield from members
-        yield next(value for value in range(len(members) + 1) if value not in members)
+        yield from (value for one in field.enum.members for value in dict.fromkeys((one.value, one.last)))
+        yield from (value for one in field.enum.members if one.to is not None for value in (one.value + 1, one.to + 1))
+        if field.enum.unnamed is not None:
+            yield field.enum.unnamed
     if field.const is not None:
         yield from (field.const, field.const + 1)
     for special in field.special:

@@ -71,7 +71,7 @@ def _ids(vectors: NodeVectors) -> Iterator[str]:
 
 def _enums(vectors: NodeVectors) -> Iterator[str]:
     for enum, unknown in vectors.enums:
-        members = [[member.value, member.name] for member in enum.members]
+        members = [[m.value, m.name, *([] if m.to is None else [m.to])] for m in enum.members]
         yield _json({"name": enum.name, "members": members, "unknown": unknown})
 
 

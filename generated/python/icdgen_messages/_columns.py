@@ -138,7 +138,7 @@ def _metadata(info: FieldInfo) -> dict[str, str]:
 def _physical(numpy: Any, info: FieldInfo, raw: Any) -> Any:
     """Correctly rounded: all but the division is exact, or Python's integers do it."""
     if info.curve:
-        return _on_curve(numpy, info.curve, raw.astype(numpy.float64))
+        return _on_curve(numpy, info.curve, raw)
     p, c, q = info.scale
     low, high = info.raw_range
     bounds = [p, c, q, low, high, low * p, high * p, low * p + c, high * p + c]
@@ -158,7 +158,8 @@ def _physical(numpy: Any, info: FieldInfo, raw: Any) -> Any:
 def _on_curve(numpy: Any, coefficients: tuple[float, ...], raw: Any) -> Any:
     """Horner's rule, as `icdgen_runtime._curves.on_curve`."""
     column = numpy.full(len(raw), coefficients[-1])
-    with numpy.errstate(all="ignore"):
+    with numpy.errstate(all="ignore"):  # that a float is a signalling NaN, too
+        raw = raw.astype(numpy.float64)
         for coefficient in coefficients[-2::-1]:
             column *= raw
             column += coefficient

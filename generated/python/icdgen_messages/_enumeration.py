@@ -5,6 +5,10 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import ClassVar
+
 _KEPT = 256  # unknown values below this are made once, so that `is` works
 
 
@@ -12,11 +16,15 @@ class OpenEnum(IntEnum):
     """An integer with a name where the manual gives one.
 
     A value that the manual does not list becomes a member of its own, such as
-    ``UNKNOWN_7``, so that decoding never fails and encoding gives back what came.
+    ``UNKNOWN_7``, so that decoding never fails and encoding gives back what came. One that
+    lies in a range of the manual has its label: of ``RESERVED_FIRST`` to ``RESERVED_LAST``
+    17 is ``RESERVED_17``.
     """
 
     label: str
     """The manual's name, verbatim; empty for a value that it does not list."""
+
+    __ranges__: ClassVar[tuple[tuple[int, int, str, str], ...]] = ()
 
     def __new__(cls, value: int, label: str = "") -> OpenEnum:  # noqa: PYI034
         self = int.__new__(cls, value)
@@ -30,12 +38,20 @@ class OpenEnum(IntEnum):
         if not isinstance(value, int) or not low <= value < high:
             return None
         self = int.__new__(cls, value)
-        self._name_ = f"UNKNOWN_{'MINUS_' if value < 0 else ''}{abs(value)}"
+        words, self.label = cls._range_of(value)
+        self._name_ = f"{words}_{'MINUS_' if value < 0 else ''}{abs(value)}"
         self._value_ = int(value)
-        self.label = ""
         if abs(value) < _KEPT:
             cls._value2member_map_[int(value)] = self
         return self
+
+    @classmethod
+    def _range_of(cls, value: int) -> tuple[str, str]:
+        """What a value that is no member of its own is called in code, and its label."""
+        for first, last, words, label in cls.__ranges__:
+            if first <= value <= last:
+                return words, label
+        return "UNKNOWN", ""
 
     def __reduce_ex__(self, protocol: object) -> tuple[type[OpenEnum], tuple[int]]:
         return type(self), (int(self),)

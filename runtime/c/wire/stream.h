@@ -47,17 +47,13 @@ typedef struct {
     icd_stream_kind_t kind;
     bool has_id; /**< Whether so much of it could be read. */
     uint32_t id;
-    const uint8_t *data; /**< As they came. */
+    const uint8_t *data;
     size_t length;
-    size_t whole; /**< Bytes of the message, with the zeros that were left out. */
     icd_envelope_values_t values;
     uint32_t missing;
 } icd_stream_event_t;
 
 typedef void icd_stream_event_fn(void *context, const icd_stream_event_t *event);
-
-/** The data of a message with the zeros that were left out; ICD_ERROR_LENGTH if they do not fit. */
-ICDGEN_API icd_status_t icd_stream_data(const icd_stream_event_t *event, uint8_t *data, size_t capacity);
 
 /** Finds the messages of a direction in a stream. */
 typedef struct {

@@ -37,20 +37,6 @@ static inline void icdgen_stream_tell_of(const icdgen_listener_t *listener, icd_
     listener->on_event(listener->context, &event);
 }
 
-ICDGEN_API icd_status_t icd_stream_data(const icd_stream_event_t *event, uint8_t *data, size_t capacity)
-{
-    if (event->whole > capacity) {
-        return ICD_ERROR_LENGTH;
-    }
-    if (event->length != 0u) {
-        (void)memcpy(data, event->data, event->length);
-    }
-    if (event->whole != event->length) {
-        (void)memset(data + event->length, 0, event->whole - event->length);
-    }
-    return ICD_OK;
-}
-
 static inline void icdgen_stream_clear(icd_stream_decoder_t *decoder)
 {
     decoder->length = 0;
@@ -124,7 +110,6 @@ static inline void icdgen_stream_message(
     event.id = row->id;
     event.data = frame + form->header_bytes;
     event.length = length;
-    event.whole = length < row->least ? row->least : length;
     for (size_t i = 0; i < form->field_count; ++i) {
         const icd_envelope_field_t *const field = &form->fields[i];
         if (field->role < ICD_ENVELOPE_CONSTANT) {
@@ -206,7 +191,7 @@ static inline icdgen_verdict_t icdgen_stream_judge(
         icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, id);
         return ICDGEN_PROVEN;
     }
-    if (length > row->most || (length < row->least && !form->cuts_zeros)) {
+    if (length < row->least || length > row->most) {
         icdgen_stream_tell_of(listener, ICD_STREAM_LENGTH, id);
         return ICDGEN_PROVEN;
     }

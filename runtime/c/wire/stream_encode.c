@@ -182,7 +182,7 @@ ICDGEN_API icd_status_t icd_stream_encode(
     if (length < row->least || length > row->most) {
         return ICD_ERROR_LENGTH;
     }
-    const size_t sent = form->cuts_zeros ? icdgen_without_zeros(data, length) : length;
+    const size_t sent = row->cuts_zeros ? icdgen_without_zeros(data, length) : length;
     const icd_envelope_values_t chosen = values != NULL ? *values : icd_envelope_values(link, direction);
     if (!icdgen_envelope_fill(form, direction, id, sent, &chosen, header, trailer)) {
         return ICD_ERROR_RANGE;

@@ -65,13 +65,12 @@ typedef struct {
     uint32_t id;
     uint16_t least;
     uint16_t most;
+    bool cuts_zeros; /**< Whether zeros at the end of the data are not sent, but for one byte. */
     uint8_t seed;
 } icd_stream_row_t;
 
 /** How messages are put into a stream of bytes, or into packets. */
 typedef struct {
-    /** Whether zeros at the end of the data are left out, and filled in again. */
-    bool cuts_zeros;
     icd_delimiter_t delimited_by;
     uint8_t header_bytes;
     uint8_t trailer_bytes;

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
+from itertools import product
 from operator import is_
 from typing import Any, NamedTuple, TypeVar
 
@@ -14,7 +15,7 @@ from icdgen import layout
 from icdgen.icd import floats
 from icdgen.icd.build import calibration, special
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Field, Limits, Message, Node, Struct
+from icdgen.icd.model import Enum, Field, Limits, Member, Message, Node, Struct
 from icdgen.icd.paths import members_of
 
 OTHER_TYPES = {
@@ -28,7 +29,7 @@ OTHER_TYPES = {
 }
 """Types that a field of the same width could be instead."""
 
-T = TypeVar("T", Field, Message, Node)
+T = TypeVar("T", Field, Message, Node, Member)
 IDS = ("id", "set_id", "get_id")
 _OTHER_ORDER = {"little": "big", "big": "little", "lsb0": "msb0", "msb0": "lsb0"}
 _WIDER = {**dict.fromkeys(("uint", "int", "enum"), (-1, 1)), **dict.fromkeys(("bytes", "text"), (-8, 8))}
@@ -177,11 +178,11 @@ def of_node(node: Node) -> Iterator[tuple[Change, Node]]:
 def of_enum(enum: Enum) -> Iterator[tuple[Change, Enum]]:
     """The changes of the members of an enumeration."""
     for index, member in enumerate(enum.members):
-        for step in (-1, 1):
-            members = list(enum.members)
-            members[index] = replace(member, value=member.value + step)
-            change = _step("enum value", member.source, "value", member.value, step)
-            yield change, replace(enum, members=tuple(members))
+        for key, step in product(("value", "to"), (-1, 1)):
+            value = getattr(member, key)
+            if value is not None:
+                members = (*enum.members[:index], _with(member, key, value + step), *enum.members[index + 1 :])
+                yield _step("enum value", member.source, key, value, step), replace(enum, members=members)
 
 
 def formulas(text: str) -> Iterator[str]:

@@ -170,7 +170,8 @@ def _name(field: Field, raw: Any) -> object:
     """Name of the member; whether there are names at all."""
     if field.enum is None:
         return None
-    return {member.value: member.name for member in field.enum.members}.get(raw, "")
+    member = field.enum.member_of(raw)
+    return member.name if member else ""
 
 
 def _physical(field: Field, raw: Any) -> object:

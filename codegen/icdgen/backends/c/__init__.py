@@ -58,7 +58,8 @@ class CBackend:
             shared = {"origin": origin(node.model), "title": prose(words(node.model.title)), **_FUNCTIONS}
             if node.enums:
                 enums = [(enum, *constants.of_enum(enum)) for enum in node.enums]
-                yield folder / "enums.h", render("enums.h.j2", node=node.name, enums=enums, **shared)
+                values = {"node": node.name, "enums": enums, "within": constants.within}
+                yield folder / "enums.h", render("enums.h.j2", **values, **shared)
             for struct in node.structs:
                 yield folder / f"{struct.name}.h", render("struct.h.j2", m=struct, **_composite(struct), **shared)
             for message in node.messages:
@@ -69,8 +70,8 @@ class CBackend:
                 yield folder / "link.c", render("link.c.j2", **link)
                 if node.has_client:
                     yield folder / "client.h", render("client.h.j2", **_client(node, links[node.name]), **shared)
-            values = {**_node(node), "id_type": f"uint{description.id_bits}_t"}
-            yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", node=node, **values, **shared)
+            of_node = {**_node(node), "id_type": f"uint{description.id_bits}_t"}
+            yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", node=node, **of_node, **shared)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that the headers declare."""

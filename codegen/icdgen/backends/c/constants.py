@@ -13,6 +13,7 @@ from icdgen.describe.constants import Constant
 from icdgen.describe.description import Composite
 from icdgen.describe.numbers import exact_text
 from icdgen.icd import floats
+from icdgen.icd.model import Member
 
 _MAX_ENUMERATOR = 32767
 """What every `int` can hold."""
@@ -61,6 +62,13 @@ def of_enum(enum: EnumDescription) -> tuple[bool, Callable[[int], str]]:
         return are_macros, partial(_signed, bits=enum.storage.bits if are_macros else 0)
     form = "UINT64_C(%d)" if enum.storage.bits == 64 else "%du" if are_macros else "%d"
     return are_macros, form.__mod__
+
+
+def within(enum: EnumDescription, one: Member) -> str:
+    """Whether ``value`` lies between the ends of a range."""
+    bits, signed = enum.storage
+    form = partial(_signed, bits=bits) if signed else ("UINT64_C(%d)" if bits == 64 else "%du").__mod__
+    return f"value > {form(one.value)} && value < {form(one.last)}"
 
 
 def _signed(value: int, bits: int) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.protocol.declared import Fact, Kind
-from icdgen.protocol.envelope import Stream
 from icdgen.protocol.sections import (
     BUSES,
     Acknowledge,
@@ -35,7 +34,6 @@ TYPES: dict[type, str] = {
     LogFile: "icd_log_file_form_t", LogMessage: "icd_log_message_form_t", Index: "icd_index_form_t",
     HoleMap: "icd_hole_map_form_t", Files: "icd_files_form_t", Listing: "icd_list_form_t", Download: "icd_download_form_t",
     Upload: "icd_upload_form_t", Erasure: "icd_erase_form_t", Operation: "icd_operation_form_t",
-    Stream: "icd_stream_form_t",
 }  # fmt: skip
 
 

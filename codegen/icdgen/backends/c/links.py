@@ -283,23 +283,20 @@ class _Tables:
             self.array(
                 name,
                 "icd_stream_row_t",
-                [Row(f"{{{row.id:#x}u, {row.least}u, {row.most}u, {row.seed}u}}", plain(row.name)) for row in found],
+                [Row(f"{{{row.id:#x}u, {row.least}u, {row.most}u, {boolean(row.cuts_zeros)}, {row.seed}u}}", plain(row.name)) for row in found],
             )
             for name, found in (("sent", form.telecommands), ("received", form.telemetry))
         ]
-        return self.part(
-            "stream",
-            form,
-            "stream",
-            Row(
-                f"{streams.DELIMITERS[form.delimited_by]}, {form.header_bytes}u, {form.trailer_bytes}u",
-                "bytes of header, trailer",
-            ),
+        sizes = f"{streams.DELIMITERS[form.delimited_by]}, {form.header_bytes}u, {form.trailer_bytes}u"
+        parts = [
+            Row(sizes, "bytes of header, trailer"),
             Row(f"{form.length_plus}, {boolean(form.per_id)}", "length beside the data, a sequence for each id"),
             Row(f"{fields}, {len(form.fields)}u", "fields"),
             Row(check, "checksum"),
             Row(f"{{{rows[0]}, {rows[1]}}}, {{{len(form.telecommands)}u, {len(form.telemetry)}u}}", "messages"),
-        )
+        ]
+        assumed = (plain(f"{key}: {why}") for key, why in self.assumed.of_section("stream"))
+        return self.add("stream", "icd_stream_form_t", parts, assumed)
 
     def log_mask(self) -> str:
         mask = self.known.mask

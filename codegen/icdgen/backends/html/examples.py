@@ -79,7 +79,8 @@ def _cell(field: Field, raw: int | bytes) -> Cell:
         value = floats.text_of(codec.float_value(field, raw), field.bits)
         return Cell(f"0x{raw:0{field.bits // 4}X}", value.replace("-", MINUS))
     if field.enum is not None:
-        name = next((member.name for member in field.enum.members if member.value == raw), "no member")
+        member = field.enum.member_of(raw)
+        name = member.name if member else "no member"
         return Cell(number(raw), name)
     if field.type == "bool":
         return Cell(str(raw), "true" if raw else "false")

@@ -29,8 +29,8 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
 
 
 def enum_plan(enum: Enum) -> list[list[object]]:
-    """Value and name of each member."""
-    return [[integer(member.value), member.name] for member in enum.members]
+    """Value and name of each member, and of a range its last value."""
+    return [[*map(integer, (m.value,)), m.name, *([] if m.to is None else [integer(m.to)])] for m in enum.members]
 
 
 def integer(value: int) -> int | str:

@@ -94,7 +94,7 @@ def _of_enum(relations: Relations, node: Node, enum: Enum) -> Iterator[Entry]:
     yield Entry("enumeration", enum.name, node.title, own, about, tuple(_table(enum.table)), links.enum(enum))
     for member in enum.members:
         url = f"{links.enum(enum)}#{links.anchor(enum, str(member.value))}"
-        context = f"{enum.name} = {member.value} · {node.title}"
+        context = f"{enum.name} = {member.values} · {node.title}"
         about = f"{node.name} {own} {member.summary}"
         yield Entry("member", member.name, context, _words(member, node), about, (), url)
 

@@ -12,7 +12,6 @@ from icdgen.protocol.envelope import EnvelopeField, Stream, StreamRow
 def stream_call(form: Stream) -> Call:
     """The call that makes it."""
     parts: dict[str, object] = {
-        **{fact.name: getattr(form, fact.name) for fact in facts_of(form)},
         "delimited_by": form.delimited_by,
         "header_bytes": form.header_bytes,
         "trailer_bytes": form.trailer_bytes,
@@ -38,4 +37,4 @@ def _field(one: EnvelopeField) -> Call:
 
 
 def _rows(rows: Iterable[StreamRow]) -> tuple[Call, ...]:
-    return tuple(Call("link.StreamRow", (row.id, row.least, row.most, row.seed), {}, is_flat=True) for row in rows)
+    return tuple(Call("link.StreamRow", (row.id, row.least, row.most, row.cuts_zeros, row.seed), {}, is_flat=True) for row in rows)

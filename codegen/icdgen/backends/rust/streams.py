@@ -31,7 +31,6 @@ def stream_of(form: Stream) -> Brackets:
         )
     return struct(
         "Stream",
-        *(part(member_name(fact), value_of(fact, form)) for fact in facts_of(form)),
         part("delimited_by", f"link::Delimiter::{_DELIMITERS.get(form.delimited_by) or _camel(form.delimited_by)}"),
         part("header_bytes", integer(form.header_bytes)),
         part("trailer_bytes", integer(form.trailer_bytes)),
@@ -63,4 +62,4 @@ def _field(one: EnvelopeField) -> Brackets:
 
 
 def _rows(found: Iterable[StreamRow]) -> Brackets:
-    return rows(flat("StreamRow", id=row.id, least=row.least, most=row.most, seed=row.seed) for row in found)
+    return rows(flat("StreamRow", id=row.id, least=row.least, most=row.most, cuts_zeros=row.cuts_zeros, seed=row.seed) for row in found)

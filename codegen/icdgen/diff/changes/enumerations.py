@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import EnumPair, FieldPair, MemberPair
 from icdgen.diff.rule import Found, rule
-from icdgen.diff.similar import same_sense
+from icdgen.diff.similar import other_senses, same_sense
 from icdgen.diff.wording import some
+from icdgen.icd.model import Enum
 from icdgen.icd.rules.wording import quote
 
 
@@ -18,8 +19,7 @@ def other_enumeration(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     if (pair.old.type == "enum") == (pair.new.type == "enum") and ctx.match.same_enum(old, new):
         return
     was, now = old.name if old else "", new.name if new else ""
-    values = [{m.value: m.name for m in enum.members} if enum else {} for enum in (old, new)]
-    details = _differences(*values) if old and new else ()
+    details = _differences(old, new) if old and new else ()
     if now and was:
         text = f"the values of {quote(pair.new.name)} are those of {quote(now)}, were those of {quote(was)}"
     elif now:
@@ -29,9 +29,9 @@ def other_enumeration(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     yield Found(text, ("enum", "type"), was, now, details, None if was and now else "warning")
 
 
-def _differences(old: dict[int, str], new: dict[int, str]) -> tuple[str, ...]:
-    other = [str(v) for v in sorted(old.keys() & new.keys()) if not same_sense(old[v], new[v])]
-    gone = [old[v] for v in sorted(old.keys() - new.keys())]
+def _differences(old: Enum, new: Enum) -> tuple[str, ...]:
+    other = [str(value) for value in other_senses(old, new)]
+    gone = [m.name for m in sorted(old.members, key=lambda m: m.value) if not new.member_of(m.value)]
     lines = [f"Another sense: {', '.join(other)}."] if other else []
     return (*lines, *([f"Without a name now: {some(gone)}."] if gone else []))
 
@@ -45,26 +45,26 @@ def _used(owner: EnumPair, ctx: Context) -> tuple[str, ...]:
 @rule("DIF205", "member")
 def other_sense(pair: MemberPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    if old.value == new.value and old.name != new.name and not same_sense(old.name, new.name):
-        text = f"{new.value} of {quote(pair.owner.new.name)} is {quote(new.name)}, was {quote(old.name)}"
+    if old.values == new.values and old.name != new.name and not same_sense(old.name, new.name):
+        text = f"{new.values} of {quote(pair.owner.new.name)} is {quote(new.name)}, was {quote(old.name)}"
         yield Found(text, ("name",), old.name, new.name, _used(pair.owner, ctx))
 
 
 @rule("DIF206", "member")
 def renumbered(pair: MemberPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    if old.value != new.value:
-        text = f"{quote(new.name)} of {quote(pair.owner.new.name)} is {new.value}, was {old.value}"
-        yield Found(text, ("value",), str(old.value), str(new.value), _used(pair.owner, ctx))
+    if old.values != new.values:
+        text = f"{quote(new.name)} of {quote(pair.owner.new.name)} is {new.values}, was {old.values}"
+        yield Found(text, ("value",), old.values, new.values, _used(pair.owner, ctx))
 
 
 @rule("DIF207", "member", severity="warning", when="gone")
 def member_removed(pair: MemberPair, ctx: Context) -> Iterator[Found]:
-    text = f"{pair.old.value} of {quote(pair.owner.any.name)} has no name now, was {quote(pair.old.name)}"
-    yield Found(text, ("name",), f"{pair.old.value} = {pair.old.name}", "", _used(pair.owner, ctx))
+    text = f"{pair.old.values} of {quote(pair.owner.any.name)} has no name now, was {quote(pair.old.name)}"
+    yield Found(text, ("name",), f"{pair.old.values} = {pair.old.name}", "", _used(pair.owner, ctx))
 
 
 @rule("DIF208", "member", severity="note", when="come", addition=True)
 def member_added(pair: MemberPair, ctx: Context) -> Iterator[Found]:
-    text = f"{pair.new.value} of {quote(pair.owner.any.name)} is {quote(pair.new.name)}; it had no name"
-    yield Found(text, ("name",), "", f"{pair.new.value} = {pair.new.name}", _used(pair.owner, ctx))
+    text = f"{pair.new.values} of {quote(pair.owner.any.name)} is {quote(pair.new.name)}; it had no name"
+    yield Found(text, ("name",), "", f"{pair.new.values} = {pair.new.name}", _used(pair.owner, ctx))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import TypeVar
 
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Message, Node, Struct
+from icdgen.icd.model import Enum, Member, Message, Node, Struct
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
@@ -88,10 +88,24 @@ def enum_names(ctx: Context) -> Iterator[Fault]:
 @rule("ICD053")
 def member_values(ctx: Context) -> Iterator[Fault]:
     for enum in (e for n in ctx.icd.nodes for e in n.enums):
-        for first, second in _twice(enum.members, lambda m: m.value):
+        for first, second in _sharing(enum):
             place = second.source.at("value")
             there = f"{quote(first.name)} ({line_of(first.source.at('value'), place)})"
-            yield Fault(second.source, place, f"{there} already has the value {second.value}", "correct one of them")
+            what = f"the value {max(first.value, second.value)}"
+            yield Fault(second.source, place, f"{there} already has {what}", "correct one of them")
+
+
+def _sharing(enum: Enum) -> Iterator[tuple[Member, Member]]:
+    """Members that have values in common with one before them, in their order; ranges are taken as far as they are some."""
+    place = {id(one): number for number, one in enumerate(enum.members)}
+    reaching: Member | None = None
+    found = []
+    for one in sorted(enum.members, key=lambda m: m.value):
+        if reaching is not None and one.value <= reaching.last:
+            found.append(sorted((reaching, one), key=lambda m: place[id(m)]))
+        if reaching is None or one.last > reaching.last:
+            reaching = one
+    yield from ((first, second) for first, second in sorted(found, key=lambda pair: place[id(pair[1])]))
 
 
 @rule("ICD054")

@@ -39,7 +39,7 @@ TYPES = ("request", "extended_request", "acknowledge", "response", "extended_res
 def named_things_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         messages = {m.name for m in ctx.messages_of(node)}
-        enums = {e.name: {m.value for m in e.members} for n in ctx.scope(node) for e in n.enums}
+        enums = {e.name: e for n in ctx.scope(node) for e in n.enums}
         for section in sections(node):
             for key in MESSAGES:
                 for name, place in _values(section, key, str):
@@ -52,7 +52,7 @@ def named_things_exist(ctx: Context) -> Iterator[Fault]:
                     continue
                 for key in keys:
                     for value, place in _values(section, key, int):
-                        if value not in known:
+                        if known.member_of(value) is None:
                             message = f"the enumeration {quote(enum)} has no member {value}"
                             yield Fault(section, place, message, f"correct `{key}` or `{name}`")
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.icd import floats
 from icdgen.icd.build import float_bits
-from icdgen.icd.model import Field
+from icdgen.icd.model import Field, Member
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
@@ -20,17 +20,34 @@ def member_fits(ctx: Context) -> Iterator[Fault]:
     largest = {id(e): e.widest for n in ctx.icd.nodes for e in n.enums}
     for field, _, _ in ctx.having["enum"]:
         top = largest.get(id(field.enum)) if field.enum else None
-        if field.enum and top is not None and not field.raw_min <= top.value <= field.raw_max:
-            unfit = sum(not field.raw_min <= m.value <= field.raw_max for m in field.enum.members)
+        if field.enum and top is not None and not _holds(field, top):
+            unfit = sum(not _holds(field, m) for m in field.enum.members)
             others = f" (nor do {unfit - 1} others)" if unfit > 2 else " (nor does another)" if unfit == 2 else ""
-            member = f"{quote(top.name)} = {top.value} of {quote(field.enum.name)}"
+            member = f"{quote(top.name)} = {top.values} of {quote(field.enum.name)}"
             yield Fault(
                 field.source,
                 field.source.at("bits"),
                 f"{member} does not fit the {count(field.bits, 'bit')} of {quote(field.name)}{others}",
-                f"it takes {count(field.enum.bits_for(top.value), 'bit')}"
+                f"it takes {count(max(map(field.enum.bits_for, (top.value, top.last))), 'bit')}"
                 + (", as others of the enumeration are negative" if field.signed and top.value >= 0 else ""),
             )
+
+
+def _holds(field: Field, member: Member) -> bool:
+    """Whether the field can have all values of the member."""
+    return field.raw_min <= member.value and member.last <= field.raw_max
+
+
+@rule("ICD035")
+def range_has_more_than_one_value(ctx: Context) -> Iterator[Fault]:
+    for enum in (e for n in ctx.icd.nodes for e in n.enums):
+        for member in enum.members:
+            if member.to is None or member.to > member.value:
+                continue
+            what = "is no range" if member.to == member.value else "ends before it begins"
+            message = f"{quote(member.name)}, {member.values}, {what}"
+            help = "leave `to` out" if member.to == member.value else f"`value: {member.to}, to: {member.value}`?"
+            yield Fault(member.source, member.source.at("to"), message, help)
 
 
 @rule("ICD031")

@@ -61,14 +61,14 @@ class StreamRow(NamedTuple):
     id: int
     least: int
     most: int
+    cuts_zeros: bool
+    """Whether zeros at the end of the data are not sent, but for one byte."""
     seed: int
 
 
 class Stream(NamedTuple):
     """How messages are put into a stream of bytes, or into packets."""
 
-    cuts_zeros: bool
-    """Whether zeros at the end of the data are left out, and filled in again."""
     delimited_by: Delimiter
     header_bytes: int
     trailer_bytes: int

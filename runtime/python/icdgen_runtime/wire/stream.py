@@ -73,7 +73,7 @@ def stream_encode(
     if not row.least <= len(data) <= row.most:
         nearest = row.most if len(data) > row.most else row.least
         raise LengthError("a message", nearest, len(data))
-    if form.cuts_zeros:
+    if row.cuts_zeros:
         data = data[:1] + data[1:].rstrip(b"\0")
     head, tail = bytearray(form.header_bytes), bytearray(form.trailer_bytes)
     known = {"id": id, "length": len(data) + form.length_plus}
@@ -241,13 +241,12 @@ class StreamDecoder:
         if row is None:
             events.append(StreamEvent("unknown_id", id))
             return "proven"
-        if count > row.most or (count < row.least and not form.cuts_zeros):
+        if not row.least <= count <= row.most:
             events.append(StreamEvent("length", id))
             return "proven"
         data = frame[form.header_bytes : form.header_bytes + count]
         values = {one.role: _get(form, one, frame, size) for one in self._values}
         self._count(id, values, events)
-        data = data.ljust(row.least, b"\0")
         events.append(StreamEvent("message", id, data, values, 0, self._types[id]))
         return "message"
 

@@ -102,6 +102,8 @@ pub struct StreamRow {
     pub least: usize,
     /// Most bytes of its data.
     pub most: usize,
+    /// Whether zeros at the end of the data are not sent, but for one byte.
+    pub cuts_zeros: bool,
     /// What its checksum covers after all others.
     pub seed: u8,
 }
@@ -109,8 +111,6 @@ pub struct StreamRow {
 /// How messages are put into a stream of bytes, or into packets.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream {
-    /// Whether zeros at the end of the data are left out, and filled in again.
-    pub cuts_zeros: bool,
     /// What tells where a message ends.
     pub delimited_by: Delimiter,
     /// Bytes before the data.

@@ -16,10 +16,8 @@ pub enum Event<'a> {
     Message {
         /// Its id.
         id: u32,
-        /// Its data, as they came.
+        /// Its data.
         data: &'a [u8],
-        /// Bytes of the message, with the zeros that were left out.
-        whole: usize,
         /// The fields that the sender chose.
         values: Values,
     },
@@ -49,25 +47,6 @@ pub enum Event<'a> {
     Overrun,
     /// A constant or a delimiter is not what it must be.
     Framing,
-}
-
-impl Event<'_> {
-    /// Copies the data of a message with the zeros that were left out, and says how many bytes they are;
-    /// none if it is no message or `out` is too small.
-    #[must_use]
-    pub fn copy_to(&self, out: &mut [u8]) -> Option<usize> {
-        match self {
-            Self::Message { data, whole, .. } => {
-                let out = out.get_mut(..*whole)?;
-                let bytes = data.iter().chain(core::iter::repeat(&0));
-                for (place, byte) in out.iter_mut().zip(bytes) {
-                    *place = *byte;
-                }
-                Some(*whole)
-            }
-            _ => None,
-        }
-    }
 }
 
 /// What a frame turned out to be.
@@ -445,7 +424,7 @@ impl Judge {
                 return Verdict::Proven;
             }
         };
-        if data.len() > row.most || (data.len() < row.least && !form.cuts_zeros) {
+        if data.len() < row.least || data.len() > row.most {
             on_event(Event::Length { id: Some(id) });
             return Verdict::Proven;
         }
@@ -485,7 +464,6 @@ impl Judge {
         on_event(Event::Message {
             id,
             data,
-            whole: row.least.max(data.len()),
             values,
         });
     }

@@ -102,7 +102,7 @@ pub fn encode(
             actual: data.len(),
         });
     }
-    let data = if form.cuts_zeros {
+    let data = if row.cuts_zeros {
         without_zeros(data)
     } else {
         data

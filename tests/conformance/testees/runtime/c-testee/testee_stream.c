@@ -79,10 +79,7 @@ static void on_stream_event(void *context, const icd_stream_event_t *event)
         put_number("missing", event->missing);
     }
     if (event->kind == ICD_STREAM_MESSAGE) {
-        uint8_t *data = memory(event->whole);
-        if (icd_stream_data(event, data, event->whole) == ICD_OK) {
-            put_octets("bytes", data, event->whole);
-        }
+        put_octets("bytes", event->data, event->length);
         for (size_t i = 0; i < link->stream->field_count; ++i) {
             const icd_envelope_role_t role = link->stream->fields[i].role;
             if (role < ICD_ENVELOPE_CONSTANT) {

@@ -267,7 +267,10 @@ def _constants(node: Any, words: Words) -> str:
 
 def _enum(node: Any, words: Words) -> str:
     enum = getattr(node, list(node.ENUMS.values())[int(next(words))])
-    label = {int(one): one.label for one in enum}.get(int(next(words)))
+    try:
+        label = enum(int(next(words))).label
+    except ValueError:  # beyond 64 bits
+        label = ""
     return f" name={_hex(label)}" if label else ""
 
 

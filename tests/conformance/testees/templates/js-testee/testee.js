@@ -32,7 +32,7 @@ function physicalOf(field, raw) {
 
 function described(plan, raw) {
   const rows = fieldsOf(plan, raw).map(({ field, raw: value, row }) => {
-    const name = field.enum?.find(([number]) => BigInt(number) === value)?.[1];
+    const name = field.enum && codec.memberName(field.enum, value);
     return row + physicalOf(field, value) + (name === undefined ? "" : ` name=${hexOfText(name)}`);
   });
   return [`bytes=${hexOf(codec.encode(plan, raw))}`, ...rows].join(" ");
@@ -92,8 +92,8 @@ const operations = {
   },
 
   enum(node, place, value) {
-    const found = nodes[node].enums[place].find(([number]) => BigInt(number) === BigInt(value));
-    return found ? `name=${hexOfText(found[1])}` : "";
+    const name = codec.memberName(nodes[node].enums[place], BigInt(value));
+    return name === undefined ? "" : `name=${hexOfText(name)}`;
   },
 
   node(node) {

@@ -60,12 +60,8 @@ pub fn stream_events(link: &'static Link, words: &mut Words) -> Answer {
 
 fn shown(form: &Stream, event: &Event<'_>) -> String {
     match *event {
-        Event::Message {
-            id, whole, values, ..
-        } => {
-            let mut data = vec![0; whole];
-            let size = event.copy_to(&mut data).unwrap_or(0);
-            let mut row = format!(" message id={id} bytes={}", hex(&data[..size]));
+        Event::Message { id, data, values } => {
+            let mut row = format!(" message id={id} bytes={}", hex(data));
             for field in form.fields {
                 let (name, value) = match field.role {
                     EnvelopeRole::Sequence => ("sequence", values.sequence),

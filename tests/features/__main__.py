@@ -1,0 +1,30 @@
+"""``python -m tests.features``: measures, writes docs/features.md, and names what lacks a reason; status 1 if anything does."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+from tests.features.data import features
+from tests.features.measure import row
+from tests.features.page import PAGE, page
+
+
+def main() -> int:
+    with tempfile.TemporaryDirectory() as folder:
+        rows = {feature.name: (feature, row(feature, Path(folder))) for feature in features()}
+    text, wrong = page(rows), 0
+    if not PAGE.exists() or PAGE.read_text("utf-8") != text:
+        PAGE.write_text(text, "utf-8")
+        print("written: docs/features.md")
+    for name, (feature, cells) in rows.items():
+        for output, cell in cells.items():
+            if cell.has == (output in feature.without):
+                wrong += 1
+                print(f"{name}: {output} {'has it now' if cell.has else f'lacks it, without a reason {cell.says}'}")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

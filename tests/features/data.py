@@ -1,0 +1,111 @@
+"""The features of the format, as docs/features/rows.yaml has them, and the ICDs on which they are tried."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import yaml
+
+from tests.conftest import ROOT
+
+FORMAT, ROWS = ROOT / "docs" / "icd-format.md", ROOT / "docs" / "features" / "rows.yaml"
+_EXAMPLE = re.compile(r"```yaml\n(icdgen: 1\n.*?)```", re.DOTALL)
+_HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Feature:
+    """``uses``: by the list in which it stands, the keys and values (regular expressions) of what has the feature.
+
+    ``change`` and ``wrong``: by turns what is replaced in the example, and by what; ``without``: by output, why it has it not.
+    """
+
+    name: str
+    section: str
+    uses: dict[str, dict[str, str]]
+    change: tuple[str, ...]
+    wrong: tuple[str, ...]
+    without: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def example(self) -> str:
+        """The whole ICD that the documents show of it."""
+        found = [text for text in examples()[self.section] if self.change[0] in text]
+        if not found:
+            raise ValueError(f"no example under `{self.section}` has `{self.change[0]}`, the change of `{self.name}`")
+        return found[0]
+
+    def changed(self) -> str:
+        """The example with the feature said otherwise."""
+        return self._replaced("change")
+
+    def spoilt(self) -> str:
+        """The example with the feature said wrongly."""
+        return self._replaced("wrong")
+
+    def _replaced(self, key: str) -> str:
+        text, words = self.example, getattr(self, key)
+        for old, new in zip(words[::2], words[1::2], strict=True):
+            if text.count(old) != 1:
+                raise ValueError(f"`{old}`, the `{key}` of `{self.name}`, is {text.count(old)} times in its example")
+            text = text.replace(old, new)
+        return text
+
+    def places(self, tree: object) -> list[object]:
+        """What a tree of an ICD says of the feature: the values at the keys, in order."""
+        return list(_places(tree, self.uses))
+
+
+def features() -> list[Feature]:
+    """In the order of the page."""
+    data: dict[str, Any] = yaml.safe_load(ROWS.read_text("utf-8"))
+    return [_feature(data["reasons"], **row) for row in data["features"]]
+
+
+def _feature(
+    reasons: dict[str, str], change: list[str], wrong: list[str], without: dict[str, str] | None = None, **row: Any
+) -> Feature:
+    why = {output: reasons[key] for output, key in (without or {}).items()}
+    return Feature(change=tuple(change), wrong=tuple(wrong), without=why, **row)
+
+
+def examples() -> dict[str, list[str]]:
+    """The whole ICDs of the page about the format, by the heading above them."""
+    found: dict[str, list[str]] = {}
+    page = FORMAT.read_text("utf-8")
+    for match in _EXAMPLE.finditer(page):
+        heading = [one[1] for one in _HEADING.finditer(re.sub(_EXAMPLE, _blank, page), 0, match.start())][-1]
+        found.setdefault(heading, []).append(match[1])
+    return found
+
+
+def _blank(match: re.Match[str]) -> str:
+    return " " * len(match[0])
+
+
+def _places(tree: object, uses: dict[str, dict[str, str]]) -> Iterator[object]:
+    if isinstance(tree, dict):
+        for key, value in tree.items():
+            for one in value if isinstance(value, list) else [value]:
+                if isinstance(one, dict) and key in uses and (has := _having(one, uses[key])):
+                    yield has
+                yield from _places(one, uses)
+    elif isinstance(tree, list):
+        for one in tree:
+            yield from _places(one, uses)
+
+
+def _having(entry: dict[str, object], wanted: dict[str, str]) -> list[object]:
+    """The values of the keys, if every one of them is there and as wanted."""
+    values: list[object] = []
+    for key, pattern in wanted.items():
+        hits = [
+            entry[k] for k in entry if re.fullmatch(key, str(k)) and re.fullmatch(pattern, str(entry[k]), re.DOTALL)
+        ]
+        if not hits:
+            return []
+        values += hits
+    return values

@@ -1,0 +1,48 @@
+"""Every feature of the format is in every output, or the page says why not."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from tests.features.data import examples, features
+from tests.features.measure import row
+from tests.features.page import OUTPUTS, PAGE, page
+
+FEATURES = {feature.name: feature for feature in features()}
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("features")
+    return {name: (feature, row(feature, folder)) for name, feature in FEATURES.items()}
+
+
+@pytest.mark.parametrize("name", FEATURES)
+def test_a_feature_is_in_every_output_but_those_that_are_said_to_lack_it(measured, name):
+    feature, cells = measured[name]
+    assert cells.keys() == OUTPUTS.keys() >= feature.without.keys()
+    assert {output for output, cell in cells.items() if not cell.has} == set(feature.without)
+
+
+def test_the_page_is_what_was_measured(measured):
+    assert PAGE.read_text("utf-8") == page(measured), "python -m tests.features"
+
+
+def test_every_example_of_the_format_is_that_of_a_feature():
+    used = {feature.example for feature in FEATURES.values()}
+    assert [heading for heading, texts in examples().items() for text in texts if text not in used] == []
+
+
+def test_an_output_that_does_not_know_a_feature_is_noticed(tmp_path):
+    """What changes nothing that an output says is nothing that it has."""
+    feature = FEATURES["Constants"]
+    nothing = dataclasses.replace(
+        feature,
+        uses={"fields": {"thermocouple": ".*"}},
+        change=("icdgen: 1\n", "icdgen: 1\n# the same, with another digest\n"),
+        wrong=("0x5A", "0x5B"),
+    )
+    has = {output for output, cell in row(nothing, tmp_path).items() if cell.has}
+    assert has == {"fmt"}
