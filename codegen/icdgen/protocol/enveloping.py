@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from icdgen.icd.model import Message, Node
-from icdgen.protocol.envelope import DATA, DIRECTIONS, ROLES, Check, EnvelopeField, Stream, StreamRow
+from icdgen.protocol.envelope import DATA, DIRECTIONS, ROLES, Check, EnvelopeField, StreamRow
 from icdgen.protocol.sections import Crc
 
 Section = Mapping[str, Any]
@@ -41,7 +41,8 @@ def values_of(row: Section, little: bool) -> tuple[int, int]:
 def rows_of(messages: Mapping[int, Message], seeds: Mapping[str, int]) -> tuple[StreamRow, ...]:
     """The messages of a direction."""
     return tuple(
-        StreamRow(id, one.least, one.length, bool(one.may_end_early), seeds.get(one.name, 0), one.name) for id, one in sorted(messages.items())
+        StreamRow(id, one.least, one.length, bool(one.may_end_early), seeds.get(one.name, 0), one.name)
+        for id, one in sorted(messages.items())
     )
 
 

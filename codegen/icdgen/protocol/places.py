@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.protocol.sections import (
+    PROCEDURES,
     Acknowledge,
     Can,
     Checksum,
@@ -18,7 +19,6 @@ from icdgen.protocol.sections import (
     LogMask,
     LogMessage,
     Operation,
-    PROCEDURES,
     Settings,
 )
 

@@ -11,7 +11,7 @@ from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP, in_rows
 from icdgen.describe.links import CAN_PARTS, INDEX_PARTS, Assumptions, LinkDescription, SentMessage, StepDescription
 from icdgen.protocol.declared import Kind, facts_of
-from icdgen.protocol.envelope import CRC
+from icdgen.protocol.envelope import CRC, StreamRow
 from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
@@ -279,14 +279,8 @@ class _Tables:
             crc = self.crc("check", form.check.crc, form.check.kind == CRC)
             row = Row(f"ICD_CHECK_{form.check.kind.upper()}, {{{crc}}}")
             check = self.add("check", "icd_check_form_t", [row, Row(streams.covered(form.check), "covered")])
-        rows = [
-            self.array(
-                name,
-                "icd_stream_row_t",
-                [Row(f"{{{row.id:#x}u, {row.least}u, {row.most}u, {boolean(row.cuts_zeros)}, {row.seed}u}}", plain(row.name)) for row in found],
-            )
-            for name, found in (("sent", form.telecommands), ("received", form.telemetry))
-        ]
+        both = (("sent", form.telecommands), ("received", form.telemetry))
+        rows = [self.array(name, "icd_stream_row_t", map(self.enveloped, found)) for name, found in both]
         sizes = f"{streams.DELIMITERS[form.delimited_by]}, {form.header_bytes}u, {form.trailer_bytes}u"
         parts = [
             Row(sizes, "bytes of header, trailer"),
@@ -297,6 +291,12 @@ class _Tables:
         ]
         assumed = (plain(f"{key}: {why}") for key, why in self.assumed.of_section("stream"))
         return self.add("stream", "icd_stream_form_t", parts, assumed)
+
+    @staticmethod
+    def enveloped(row: StreamRow) -> Row:
+        """A message in an envelope."""
+        numbers = f"{row.id:#x}u, {row.least}u, {row.most}u, {boolean(row.cuts_zeros)}, {row.seed}u"
+        return Row(f"{{{numbers}}}", plain(row.name))
 
     def log_mask(self) -> str:
         mask = self.known.mask

@@ -37,4 +37,7 @@ def _field(one: EnvelopeField) -> Call:
 
 
 def _rows(rows: Iterable[StreamRow]) -> tuple[Call, ...]:
-    return tuple(Call("link.StreamRow", (row.id, row.least, row.most, row.cuts_zeros, row.seed), {}, is_flat=True) for row in rows)
+    return tuple(
+        Call("link.StreamRow", (row.id, row.least, row.most, row.cuts_zeros, row.seed), {}, is_flat=True)
+        for row in rows
+    )

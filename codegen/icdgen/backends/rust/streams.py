@@ -62,4 +62,9 @@ def _field(one: EnvelopeField) -> Brackets:
 
 
 def _rows(found: Iterable[StreamRow]) -> Brackets:
-    return rows(flat("StreamRow", id=row.id, least=row.least, most=row.most, cuts_zeros=row.cuts_zeros, seed=row.seed) for row in found)
+    return rows(map(_row, found))
+
+
+def _row(row: StreamRow) -> Brackets:
+    sizes = {"least": row.least, "most": row.most, "cuts_zeros": row.cuts_zeros}
+    return flat("StreamRow", id=row.id, **sizes, seed=row.seed)

@@ -9,11 +9,11 @@ from typing import Generic, Literal, NamedTuple, Optional, Union
 
 from .._hints import N
 from .._lazy import Messages
-from .envelope import CheckForm as CheckForm
-from .envelope import CrcForm as CrcForm
-from .envelope import EnvelopeField as EnvelopeField
-from .envelope import Stream as Stream
-from .envelope import StreamRow as StreamRow
+from .envelope import CheckForm as CheckForm  # noqa: PLC0414
+from .envelope import CrcForm as CrcForm  # noqa: PLC0414
+from .envelope import EnvelopeField as EnvelopeField  # noqa: PLC0414
+from .envelope import Stream as Stream  # noqa: PLC0414
+from .envelope import StreamRow as StreamRow  # noqa: PLC0414
 
 Bus = Literal["uart", "i2c", "can"]
 CanKind = Literal[

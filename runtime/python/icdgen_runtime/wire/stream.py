@@ -194,10 +194,10 @@ class StreamDecoder:
             return None
         front = self._buffer[at : at + form.header_bytes]
         for field, value in self._constants:
-            if not field.in_trailer and field.at + field.size <= left:
-                if _get(form, field, front, 0) != value:
-                    self.discarded += 1
-                    return 1
+            came = not field.in_trailer and field.at + field.size <= left
+            if came and _get(form, field, front, 0) != value:
+                self.discarded += 1
+                return 1
         if left < form.header_bytes:
             return None
         length = need(self._length, "length")
@@ -227,9 +227,9 @@ class StreamDecoder:
         for field, value in self._constants:
             if _get(form, field, frame, size) != value:
                 return self._doubtful("framing", None, events)
-        if self._length:
-            if _get(form, self._length, frame, size) - form.length_plus != count:
-                return self._doubtful("length", None, events)
+        told = count if self._length is None else self._told(self._length, frame)
+        if told != count:
+            return self._doubtful("length", None, events)
         id = _get(form, self._id, frame, size) if self._id else self._only
         row = self._rows.get(id)
         if self._checksum and form.check:
@@ -249,6 +249,11 @@ class StreamDecoder:
         self._count(id, values, events)
         events.append(StreamEvent("message", id, data, values, 0, self._types[id]))
         return "message"
+
+    def _told(self, length: EnvelopeField, frame: Buffer) -> int:
+        """Bytes of the data, as the field of the length says."""
+        form = self._form
+        return _get(form, length, frame, len(frame)) - form.length_plus
 
     def _doubtful(
         self, why: Found, id: Optional[int], events: list[StreamEvent]

@@ -21,11 +21,11 @@ from . import _testee_scripts
 from ._testee_scripts import packet
 from .can import CanEvent, CanJoiner, CanMessage, can_split
 from .crc import crc8, crc16
+from .envelope import Direction
 from .errors import ChecksumError, TooLongError, UnsupportedError
 from .files import HoleMap, IndexEntry, read_index, write_index
 from .i2c import i2c_read_length, i2c_reply, i2c_write
 from .identity import identify
-from .envelope import Direction
 from .link import CanKind, Link
 from .logs import LogFrame, LogMessage, LogReader, LogWriter
 from .stream import StreamDecoder, StreamEvent, stream_encode
@@ -132,10 +132,7 @@ def _i2c_reply(link: Link, words: Words) -> str:
 
 
 def _frames(frames: Iterable[LogFrame]) -> str:
-    return "".join(
-        row("frame", bit=one.bit, id="" if one.id is None else one.id, bytes=one.data)
-        for one in frames
-    )
+    return "".join(row("frame", bit=one.bit, id="" if one.id is None else one.id, bytes=one.data) for one in frames)
 
 
 def _log_decode(link: Link, words: Words) -> str:
@@ -238,11 +235,7 @@ def _stream_encode(link: Link, words: Words) -> str:
 
 def _stream_events(link: Link, words: Words) -> str:
     decoder = StreamDecoder(link, _DIRECTIONS[number(words)], number(words))
-    said = "".join(
-        _stream_event(event)
-        for chunk in words
-        for event in decoder.feed(bytes.fromhex(chunk))
-    )
+    said = "".join(_stream_event(event) for chunk in words for event in decoder.feed(bytes.fromhex(chunk)))
     return f"{said} ok discarded={decoder.discarded} pending={decoder.pending}"
 
 
