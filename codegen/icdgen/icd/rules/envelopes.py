@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Message, Node
@@ -14,6 +14,7 @@ from icdgen.icd.rules.wording import count, listing, quote
 
 PARTS = ("header", "trailer")
 FIXED = ("sync", "constant")
+WORD = 32  # bits of a field, at most
 MOST_SEQUENCE_BITS = 31
 MOST_SPAN = 4  # bytes that a field may have part in
 DATA = "data"
@@ -45,10 +46,11 @@ def links(ctx: Context) -> Iterator[Link]:
 
 
 def _is_sound(row: Map) -> bool:
-    at, bits, plus = row.get("at"), row.get("bits"), row.get("plus", 0)
-    numbers = (at, bits, plus)
-    in_range = all(type(one) is int for one in numbers) and at >= 0 and 0 < bits <= 32
-    return in_range and isinstance(row.get("role"), str) and isinstance(row.get("checksum", ""), str)
+    """Whether the schema has nothing to say of what is looked at here."""
+    numbers: list[Any] = [row.get("at"), row.get("bits"), row.get("plus", 0)]
+    if not all(type(one) is int for one in numbers) or numbers[0] < 0 or not 0 < numbers[1] <= WORD:
+        return False
+    return isinstance(row.get("role"), str) and isinstance(row.get("checksum", ""), str)
 
 
 @rule("ICD170")
@@ -223,7 +225,7 @@ def _is_known(known: object) -> bool:
 
 
 def _checksum(ctx: Context, link: Link, part: str, row: Map, known: Map) -> Iterator[Fault]:
-    width = known.get("width")
+    width: int = known["width"]
     demanded = BITS_OF.get(known["kind"])
     if demanded and width != demanded:
         message = f"a checksum of kind `{known['kind']}` has {demanded} bits, not {width}"
