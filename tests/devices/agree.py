@@ -8,7 +8,10 @@ import struct
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from icdgen import codec
+from icdgen.icd.build import special
 from icdgen.icd.formula import parse
+from icdgen.icd.model import Field
 from tests.conformance.driver import Answering
 from tests.devices.definition import Definition, NotHeld
 
@@ -24,12 +27,14 @@ class Agreement:
     values: int = 0
     rounded: int = 0  # ours is the double nearest to the exact value, the library's is not
     impossible: int = 0  # the library's value has more bits than the field
+    special: int = 0  # values that have a meaning, where the library has a value or says that there is none
     refused: int = 0  # frames that the library takes for another message
     differences: list[str] = field(default_factory=list)
 
     def __str__(self) -> str:
         return (
             f"{self.messages} messages, {self.frames} frames, {self.values} values, {len(self.differences)} differences, "
+            f"{self.special} special values, "
             f"{self.rounded} rounded wrongly by the library, {self.impossible} of it wider than the field, "
             f"{self.refused} frames of other layouts"
         )
@@ -60,7 +65,12 @@ def compare(node: str, messages: list[Definition], testee: Answering, frames: in
             if name in raw:
                 into.values += 1
                 value = raw[name]
-                if isinstance(value, int) and value.bit_length() > part["bits"]:
+                if value is None or (isinstance(value, int) and _means_something(value, part)):
+                    into.special += 1
+                if value is None:
+                    if not _means_something(_ours(said["raw"], part), part):
+                        into.differences.append(f"{about}: {name} is a number, the library says it is none")
+                elif isinstance(value, int) and value.bit_length() > part["bits"]:
                     into.impossible += 1
                 elif not _same(_ours(said["raw"], part), value, part):
                     into.differences.append(
@@ -78,6 +88,15 @@ def _ours(raw: dict[str, object], part: dict) -> object:
     """A raw value of an answer; of an array a list."""
     name = part["name"]
     return [raw[f"{name}[{index}]"] for index in range(part["count"])] if "count" in part else raw[name]
+
+
+def _means_something(raw: object, part: dict) -> bool:
+    """Whether a raw value is one that the ICD gives a meaning; of a float its bits are given."""
+    if part["type"] != "float":
+        return any(one["value"] == raw for one in part.get("special", ()))
+    named = (special("float", part["bits"], one["value"], one["meaning"]) for one in part.get("special", ()))
+    one = Field("", 0, part["bits"], "float", special=tuple(found for found in named if found))
+    return codec.special_of(one, int(str(raw), 16)) is not None
 
 
 def _physical(about: str, name: str, ours: float, theirs: object, exact: float, into: Agreement) -> None:

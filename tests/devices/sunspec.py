@@ -18,6 +18,7 @@ TYPES = {
     "eui48": ("bytes", 4), "ipaddr": ("bytes", 2), "ipv6addr": ("bytes", 8),
 }  # fmt: skip
 COMPARED = ("int", "uint", "float")
+NOT_COMPARED = ("ID", "L", "Pad")
 
 
 def models() -> Iterator[Definitions]:
@@ -52,6 +53,8 @@ def _fields(group: dict) -> tuple[list[dict], int]:
         one = {"at": at, "bits": bits, "name": point["name"], "type": type_, **unit(point.get("units"))}
         if point["type"] in ("enum16", "enum32", "bitfield16", "bitfield32", "pad", "count", "sunssf"):
             one.pop("unit", None)
+        if point["name"] not in NOT_COMPARED:
+            one |= _special(point["type"])
         if point.get("sf"):
             one["formula"] = f"raw*1e{point['sf']}"
         fields.append(one)
@@ -59,8 +62,18 @@ def _fields(group: dict) -> tuple[list[dict], int]:
     return fields, at // 8
 
 
+def _special(kind: str) -> dict:
+    """The key of what the library takes for 'not implemented'; of floats every NaN."""
+    from sunspec2 import mb
+
+    if TYPES[kind][0] not in COMPARED:
+        return {}
+    value = getattr(mb, f"SUNS_UNIMPL_{'UINT16' if kind == 'count' else kind.upper()}")
+    return {"special": [{"value": "nan" if kind == "float32" else value, "meaning": "not implemented"}]}
+
+
 def _read(number: int, fields: list[dict], data: bytes) -> dict[str, object]:
-    """What pysunspec2 makes of the block; what it takes for 'not implemented' is left out."""
+    """What pysunspec2 makes of the block; None is 'not implemented'."""
     from sunspec2.device import Model
 
     data = number.to_bytes(2, "big") + data[2:]
@@ -68,5 +81,5 @@ def _read(number: int, fields: list[dict], data: bytes) -> dict[str, object]:
     return {
         one["name"]: points[one["name"]].value
         for one in fields
-        if one["type"] in COMPARED and one["name"] not in ("ID", "L", "Pad") and points[one["name"]].value is not None
+        if one["type"] in COMPARED and one["name"] not in NOT_COMPARED
     }

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import prod
 from typing import Any, TypeAlias
+
+from icdgen.frozen import dataclass
 
 Field: TypeAlias = Any  # those of the model, which imports this
 Struct: TypeAlias = Any

@@ -7,9 +7,9 @@ from typing import Any
 
 from icdgen.backends import Identifier
 from icdgen.backends.python import names
-from icdgen.backends.python.fields import whole
 from icdgen.describe import Description, FieldDescription
 from icdgen.describe.description import Composite
+from icdgen.describe.wholes import whole
 from icdgen.naming import DEVICES
 
 
@@ -44,7 +44,7 @@ def _of_field(field: FieldDescription) -> Iterator[str]:
     yield field.name
     if field.has_physical:
         yield field.physical_name
-    found = whole(field)
+    found = None if field.steps is None else whole(field.steps)
     if found is not None:
         yield field.whole_name(found.per)
 

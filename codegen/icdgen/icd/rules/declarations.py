@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Set
+from collections.abc import Set
 from dataclasses import replace
 from operator import attrgetter, is_
 from typing import NamedTuple
@@ -52,17 +52,17 @@ def _sound(ctx: Context) -> Icd:
     bad = {id(f.owner) for code, f in errors if not ctx.accepts(code, f)}
     twins = {id(f.owner) for code, f in ctx.raised if code in TWINS}
 
-    def has_faults(fields: Iterable[Field]) -> bool:
-        return not all(id(f.source) not in bad and (f.enum or f.type != "enum") for f in fields)
+    def is_bad(field: Field) -> bool:
+        return id(field.source) in bad or (field.type == "enum" and not field.enum)
 
-    wrong = {id(s) for s, _ in ctx.structs if id(s.source) in bad | twins or has_faults((*s.fields, *s.members))}
+    wrong = {id(s) for s, _ in ctx.structs if id(s.source) in bad | twins or any(map(is_bad, (*s.fields, *s.members)))}
 
     def sound(message: Message) -> Message:
         members = {id(m.source) for m in message.members if m.struct is not None and id(m.source) in bad}
         kept = tuple(
             f
             for f in message.fields
-            if not has_faults((f,))
+            if not is_bad(f)
             and not any(id(s.struct) in wrong or (s.member and id(s.member.source) in members) for s in f.path)
         )
         return message if len(kept) == len(message.fields) else message.with_fields(kept)

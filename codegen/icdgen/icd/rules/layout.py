@@ -215,7 +215,7 @@ def covered_bytes(message: Message) -> int:
 @rule("ICD027", whole=True)
 def reserved_end(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
-        free = max(message.length - covered_bytes(message), 0)
+        free = max(message.length - covered_bytes(message), 0) if message.reserved else 0
         if message.reserved > free:
             place = message.source.at("reserved")
             text = f"{quote(message.name)} has {count(free, 'byte')} after its last field, {message.reserved} are called reserved"
