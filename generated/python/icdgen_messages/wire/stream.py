@@ -16,6 +16,8 @@ from .link import Link
 from .stuffing import Unstuffer, stuffed
 
 M = TypeVar("M", bound=Message)
+MessageClass = type[Message]
+MessageClassOf = type[M]
 Found = Literal[
     "message", "gap", "checksum", "length", "unknown_id", "overrun", "framing"
 ]
@@ -37,13 +39,14 @@ class StreamEvent(NamedTuple):
     values: Mapping[str, int] = {}
     """Of a message: the fields of the envelope that its sender chose, by role."""
     missing: int = 0
-    type: Optional[type[Message]] = None
+    kind: Optional[MessageClass] = None
+    """What the message is, of a message."""
 
-    def of(self, message: type[M]) -> Optional[M]:
+    def of(self, message: MessageClassOf[M]) -> Optional[M]:
         """The message, if it is one of these."""
-        if self.type is not message:
+        if self.kind is not message:
             return None
-        return cast(M, message.from_bytes(self.data))
+        return message.from_bytes(self.data)
 
 
 def stream_encode(
@@ -77,10 +80,10 @@ def stream_encode(
     if row.cuts_zeros:
         data = data[:1] + data[1:].rstrip(b"\0")
     head, tail = bytearray(form.header_bytes), bytearray(form.trailer_bytes)
-    known = {"id": id, "length": len(data) + form.length_plus}
+    made = {"id": id, "length": len(data) + form.length_plus}
     for field in form.fields:
         if field.role != "checksum":
-            value = known.get(field.role, field.values[direction == "telemetry"])
+            value = made.get(field.role, field.values[direction == "telemetry"])
             if field.role in _GIVEN:
                 value = values.get(field.role, value)
             _put(field, tail if field.in_trailer else head, value)

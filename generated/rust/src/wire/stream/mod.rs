@@ -6,6 +6,8 @@ mod check;
 mod decoder;
 mod encoder;
 mod field;
+mod judge;
 
-pub use self::decoder::{Decoder, Event};
+pub use self::decoder::Decoder;
 pub use self::encoder::{encode, Values};
+pub use self::judge::Event;
