@@ -319,7 +319,7 @@ static inline bool icd_is_special_f32(float value, float special)
     const uint32_t other = icdgen_bits_f32(&special);
     const uint32_t most = one & UINT32_C(0x7FFFFFFF);
     const uint32_t others = other & UINT32_C(0x7FFFFFFF);
-    return one == other || (most | others) == 0u || (most > infinity && others > infinity);
+    return (one == other) || ((most | others) == 0u) || ((most > infinity) && (others > infinity));
 }
 
 /** Whether a double is a special value, which no comparison says of NaN: all NaNs are the same here, and both zeros. */
@@ -330,7 +330,7 @@ static inline bool icd_is_special_f64(double value, double special)
     const uint64_t other = icdgen_bits_f64(&special);
     const uint64_t most = one & UINT64_C(0x7FFFFFFFFFFFFFFF);
     const uint64_t others = other & UINT64_C(0x7FFFFFFFFFFFFFFF);
-    return one == other || (most | others) == 0u || (most > infinity && others > infinity);
+    return (one == other) || ((most | others) == 0u) || ((most > infinity) && (others > infinity));
 }
 
 /*

@@ -145,6 +145,34 @@ def test_each_change_of_a_small_icd_fails_the_vectors_that_the_trace_names(demo_
         hold(demo_pack, change, tmp_path / str(number))
 
 
+NAMED = """\
+icdgen: 1
+node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}
+enums:
+  - name: Mode
+    members: [{value: 5, name: A}, {value: 0, to: 4, name: B}, {value: 8, to: 9, name: C}, {value: 10, name: D}]
+messages:
+  - name: Status
+    id: 130
+    kind: telemetry
+    length: 5
+    fields:
+      - {at: 0, bits: 8, name: Mode, type: enum, enum: Mode}
+      - {at: 8, bits: 32, name: Level, type: float, special: [{value: nan, meaning: not known}, {value: -99.9, meaning: no data}]}
+"""
+
+
+def test_each_change_of_a_range_or_of_a_special_value_fails_the_vectors_that_the_trace_names(tmp_path):
+    (tmp_path / "icd").mkdir()
+    (tmp_path / "icd" / "demo.yaml").write_text(NAMED, "utf-8")
+    pack = Pack(tmp_path / "icd")
+    named = [change for change in pack.changes if change["kind"] in ("enum value", "special")]
+    assert len(named) == 14
+    for number, change in enumerate(named):
+        assert change["vectors"], change
+        hold(pack, change, tmp_path / str(number))
+
+
 def test_changed_lines_of_the_shipped_icds_fail_the_vectors_that_the_trace_names(shipped, tmp_path):
     decided = {(e["node"], e["touches"]) for e in shipped.table("errata.csv") if e["kind"] == "Erratum"}
     touched = {(node, line) for node, lines in decided for line in lines.split("; ")}

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from icdgen.backends.html.guide import anchor_of
 from tests.conftest import ROOT
-from tests.features.data import Feature
+from tests.features.data import Feature, unmeasured
 from tests.features.measure import Cell
 
 PAGE = ROOT / "docs" / "features.md"
@@ -58,6 +58,7 @@ def page(rows: Mapping[str, tuple[Feature, dict[str, Cell]]]) -> str:
         shown = [_shown(feature, output, cells[output], reasons) for output in OUTPUTS]
         lines.append(f"| [{feature.name}](icd-format.md#{anchor_of(feature.section)}) | {' | '.join(shown)} |")
     lines += ["", *(f"{number}. {reason[0].upper()}{reason[1:]}." for number, reason in enumerate(reasons, 1))]
+    lines += ["", f"Not measured yet: {', '.join(unmeasured()).lower()}."]
     lines += ["", "| output | what is asked of it |", "|---|---|"]
     lines += [f"| {head} | {asked} |" for head, asked in OUTPUTS.values()]
     return "\n".join(lines) + "\n"

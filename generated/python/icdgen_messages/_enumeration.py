@@ -5,10 +5,6 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import ClassVar
-
 _KEPT = 256  # unknown values below this are made once, so that `is` works
 
 
@@ -24,7 +20,7 @@ class OpenEnum(IntEnum):
     label: str
     """The manual's name, verbatim; empty for a value that it does not list."""
 
-    __ranges__: ClassVar[tuple[tuple[int, int, str, str], ...]] = ()
+    __ranges__: tuple[tuple[int, int, str, str], ...] = ()
 
     def __new__(cls, value: int, label: str = "") -> OpenEnum:  # noqa: PYI034
         self = int.__new__(cls, value)

@@ -180,9 +180,14 @@ def of_enum(enum: Enum) -> Iterator[tuple[Change, Enum]]:
     for index, member in enumerate(enum.members):
         for key, step in product(("value", "to"), (-1, 1)):
             value = getattr(member, key)
-            if value is not None:
+            if value is not None and not _is_taken(value + step, member, enum):
                 members = (*enum.members[:index], _with(member, key, value + step), *enum.members[index + 1 :])
                 yield _step("enum value", member.source, key, value, step), replace(enum, members=members)
+
+
+def _is_taken(value: int, member: Member, enum: Enum) -> bool:
+    """Whether another member has what a range would get too: no ICD says so, and which name holds is not defined."""
+    return member.to is not None and any(one.value <= value <= one.last for one in enum.members if one is not member)
 
 
 def formulas(text: str) -> Iterator[str]:

@@ -1,0 +1,266 @@
+"""The devices of examples/devices: generated code reads random frames as the libraries of others do, or as a data sheet says."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+import shutil
+import struct
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+import yaml
+
+from icdgen import codec
+from icdgen.icd.build import plain
+from icdgen.icd.fmt import format_text
+from icdgen.icd.model import Icd
+from icdgen.loading import load
+from tests.conformance.build import build
+from tests.conformance.driver import Testee
+from tests.conformance.languages import all_languages
+from tests.conftest import ROOT
+from tests.devices.agree import Agreement, compare
+from tests.devices.definition import Definition, NotHeld, Values
+from tests.devices.mavlink import _read as mavlink_reads
+
+DEVICES = {path.stem: path for path in sorted((ROOT / "examples" / "devices").glob("*/*.yaml"))}
+LANGUAGES = ["python", *(name for name, tool in (("c", "gcc"), ("rust-debug", "cargo")) if shutil.which(tool))]
+FRAMES = 40
+
+
+@cache
+def devices() -> Icd:
+    loaded = load(list(DEVICES.values()))
+    assert loaded.findings == []
+    return loaded.icd
+
+
+@pytest.fixture(scope="module", params=LANGUAGES)
+def testee(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Testee]:
+    """What answers for all devices, built at once with the strictest flags of the conformance run."""
+    found = Testee(build(all_languages()[request.param], devices(), tmp_path_factory.mktemp("devices")), timeout=300)
+    yield found
+    found.close()
+
+
+def decoded(testee: Testee, node: str, kind: str, id: int, data: bytes) -> Values:
+    """The raw values of a frame, which is what encoding gives again but for reserved bits."""
+    request = {"op": "decode", "node": node, "kind": kind, "id": id, "bytes": data.hex()}
+    answer = json.loads(testee.ask([json.dumps(request).encode()])[0] or b"{}")
+    assert answer["ok"], answer
+    return answer["raw"]  # type: ignore[no-any-return]
+
+
+@pytest.mark.parametrize("name", DEVICES)
+def test_the_icd_is_without_findings_and_laid_out(name: str) -> None:
+    assert load([DEVICES[name]]).findings == []
+    text = DEVICES[name].read_text("utf-8")
+    assert format_text(text, DEVICES[name].name) == text
+
+
+def definitions(node: str, reads: Callable[[str, bytes], Values]) -> list[Definition]:
+    """The messages of one length each of an ICD, with the library's reading of them."""
+    found = []
+    for message in devices().node(node).messages:
+        fields = [plain(one.source) for one in message.members if not one.view]
+        scaled = {one["name"] for one in fields if "formula" in one}
+
+        def read(data: bytes, name: str = message.name) -> Values:
+            return reads(name, data)
+
+        def raw(data: bytes, read: Callable[[bytes], Values] = read, scaled: set[str] = scaled) -> Values:
+            return {key: value for key, value in read(data).items() if key not in scaled}
+
+        def physical(data: bytes, read: Callable[[bytes], Values] = read, scaled: set[str] = scaled) -> Values:
+            return {key: value for key, value in read(data).items() if key in scaled}
+
+        if message.tail is None:
+            id = message.ids[0]
+            found.append(Definition(message.name, id, message.kind, message.length, fields, raw=raw, physical=physical))
+    return found
+
+
+def agreed(node: str, testee: Testee, reads: Callable[[str, bytes], Values]) -> Agreement:
+    agreement = Agreement()
+    compare(node, definitions(node, reads), testee, FRAMES, 1, agreement)
+    assert agreement.differences == []
+    assert agreement.refused == 0
+    return agreement
+
+
+# MAVLink, by pymavlink
+
+FACTORS = {"lat": 1e7, "lon": 1e7, "alt": 1e3, "eph": 100, "epv": 100, "vel": 100, "cog": 100, "alt_ellipsoid": 1e3,
+           "h_acc": 1e3, "v_acc": 1e3, "vel_acc": 1e3, "hdg_acc": 1e5, "yaw": 100}  # fmt: skip
+
+
+def mavlink_values(name: str, data: bytes) -> Values:
+    from pymavlink.dialects.v20 import common
+
+    message = next(one for one in common.mavlink_map.values() if one.msgname == name)
+    found = mavlink_reads(common, message, data)
+    if name == "GPS_RAW_INT":
+        return {key: value / FACTORS[key] if key in FACTORS else value for key, value in found.items()}  # type: ignore[operator]
+    if name == "COMMAND_LONG":
+        found["param"] = [found[f"param{number}"] for number in range(1, 8)]
+    return found
+
+
+def test_mavlink_is_read_as_by_pymavlink(testee: Testee) -> None:
+    agreement = agreed("mavlink", testee, mavlink_values)
+    assert agreement.messages == 6 and agreement.values > 1500
+
+
+def test_mavlink_frames_end_before_their_zeros(testee: Testee) -> None:
+    assert decoded(testee, "mavlink", "telemetry", 30, b"\1")["time_boot_ms"] == 1
+    assert decoded(testee, "mavlink", "telemetry", 253, b"\4low")["text"] == b"low".ljust(50, b"\0").hex()
+
+
+# u-blox, by pyubx2
+
+
+def ubx_message(name: str, data: bytes) -> Values:
+    import pyubx2
+
+    message = next(one for one in devices().node("ublox").messages if one.name == name)
+    key = message.ids[0].to_bytes(2, "big")
+    mode = pyubx2.GET if message.kind == "telemetry" else pyubx2.SET
+    found = pyubx2.UBXMessage(key[:1], key[1:], mode, payload=data)
+    if found.identity != name:
+        raise NotHeld(found.identity)
+    return {key: value for key, value in found.__dict__.items() if not key.startswith("_")}
+
+
+def ubx_values(name: str, data: bytes) -> Values:
+    found = ubx_message(name, data)
+    if name == "MON-HW":
+        found["VP"] = [_number(found[f"VP_{number:02}"]) for number in range(1, 18)]
+        found |= {key: _number(value) for key, value in found.items() if isinstance(value, bytes)}
+    return found
+
+
+def _number(value: object) -> object:
+    return int.from_bytes(value, "little") if isinstance(value, bytes) else value
+
+
+def test_ubx_is_read_as_by_pyubx2(testee: Testee) -> None:
+    agreement = agreed("ublox", testee, ubx_values)
+    assert agreement.messages == 21 and agreement.values > 7000
+
+
+@pytest.mark.parametrize("count", [0, 1, 3, 30])
+def test_ubx_messages_of_variable_length_begin_as_pyubx2_reads_them(testee: Testee, count: int) -> None:
+    chance = random.Random(count)
+    rate = b"\x01\x00\x21\x30"  # the key of the rate of measurement, of two bytes
+    for name, kind, id, head, rest in (
+        (
+            "NAV-SAT",
+            "telemetry",
+            0x0135,
+            chance.randbytes(5) + bytes([count]) + chance.randbytes(2),
+            chance.randbytes(12 * count),
+        ),
+        (
+            "MON-VER",
+            "telemetry",
+            0x0A04,
+            b"EXT CORE 1.00".ljust(30, b"\0") + b"00190000".ljust(10, b"\0"),
+            b"MOD=ANY".ljust(30, b"\0") * count,
+        ),
+        ("CFG-VALSET", "telecommand", 0x068A, bytes([0, 5, 1, 0]), (rate + chance.randbytes(2)) * count),
+    ):
+        theirs, ours = ubx_message(name, head + rest), decoded(testee, "ublox", kind, id, head + rest)
+        end = ours.pop(next(key for key in ours if key in ("satellites", "extensions", "cfgData")))
+        assert str(end).rstrip("0") == rest.hex().rstrip("0")  # what is not in the frame is 0
+        for key, value in ours.items():
+            if name == "MON-VER" and key in theirs:
+                assert bytes.fromhex(str(value)).rstrip(b"\0") == theirs[key].rstrip(b"\0")  # type: ignore[attr-defined]
+            elif key in theirs:
+                assert value == theirs[key], (name, key)
+
+
+# BME280, by the layout of its registers in the data sheet
+
+
+def test_the_bme280_is_read_as_its_data_sheet_says(testee: Testee) -> None:
+    chance = random.Random(1)
+    for _ in range(FRAMES):
+        b = chance.randbytes(8)
+        assert decoded(testee, "bme280", "telemetry", 0xF7, b) == {
+            "Pressure": b[0] << 12 | b[1] << 4 | b[2] >> 4,
+            "Temperature": b[3] << 12 | b[4] << 4 | b[5] >> 4,
+            "Humidity": b[6] << 8 | b[7],
+        }
+        b = chance.randbytes(26)
+        names = ["T1", "T2", "T3", "P1", *(f"P2 to P9[{number}]" for number in range(8)), "H1"]
+        assert decoded(testee, "bme280", "telemetry", 0x88, b) == dict(
+            zip(names, struct.unpack("<HhhH8hxB", b), strict=True)
+        )
+        b = chance.randbytes(7)
+        h4, h5 = b[3] << 4 | b[4] & 15, b[5] << 4 | b[4] >> 4
+        assert decoded(testee, "bme280", "telemetry", 0xE1, b) == {
+            "H2": struct.unpack("<h", b[:2])[0],
+            "H3": b[2],
+            "H4": h4 - (h4 >> 11 << 12),
+            "H5": h5 - (h5 >> 11 << 12),
+            "H6": struct.unpack("b", b[6:])[0],
+        }
+
+
+def test_a_bme280_whose_coefficients_are_known_has_a_polynomial_of_temperature(tmp_path: Path) -> None:
+    """That of docs/devices.md, at the example that the data sheet of the sensor before it gives: 25.08 degrees."""
+    formula = re.search(r"^formula: (.*)$", (ROOT / "docs" / "devices.md").read_text("utf-8"), re.MULTILINE)
+    assert formula
+    tree = yaml.safe_load(DEVICES["bme280"].read_text("utf-8"))
+    field = next(one for one in tree["messages"] if one["name"] == "Measurement")["fields"][1]
+    field |= {"formula": formula[1], "unit": "C"}
+    (tmp_path / "bme280.yaml").write_text(json.dumps(tree), "utf-8")
+    loaded = load([tmp_path / "bme280.yaml"])
+    assert loaded.findings == []
+    found = next(one for one in loaded.icd.node("bme280").messages if one.name == "Measurement").fields[1]
+    assert found.name == "Temperature"
+    physical = codec.physical_double(found, 519888)
+    assert physical is not None and round(physical, 2) == 25.08
+
+
+# P31u, by frames whose bytes were laid out by hand
+
+POWER = ["Converters[0]", "Converters[1]", "Converters[2]", "Battery", "Inputs[0]", "Inputs[1]", "Inputs[2]",
+         "From Panels", "From Battery"]  # fmt: skip
+COUNTS = {"Currents": 6, "States": 8, "Time to On": 8, "Time to Off": 8, "Latch-ups": 6}
+OUTPUTS = [f"{name}[{number}]" for name, count in COUNTS.items() for number in range(count)]
+WATCHDOGS = ["Time Left of I2C", "Time Left of Ground", "Pings Left[0]", "Pings Left[1]", "Resets by I2C",
+             "Resets by Ground", "Resets by Pings[0]", "Resets by Pings[1]"]  # fmt: skip
+BASICS = ["Boots", *(f"Temperatures[{number}]" for number in range(6)), "Boot Cause", "Battery Mode", "Tracking"]
+PARTS = {
+    1: ("Power", ">9H2x", POWER),
+    2: ("Outputs", ">6H8B8H8H6H", OUTPUTS),
+    3: ("Watchdogs", ">IIBBIIII", WATCHDOGS),
+    4: ("Basics", ">I6hBBB2x", BASICS),
+}
+
+
+def test_the_p31u_is_read_as_its_bytes_were_laid_out(testee: Testee) -> None:
+    chance, whole, expected = random.Random(1), b"", {}
+    for number, (part, form, names) in PARTS.items():
+        data = chance.randbytes(struct.calcsize(form))
+        values = {f"{part}.{name}": value for name, value in zip(names, struct.unpack(form, data), strict=True)}
+        assert decoded(testee, "p31u", "telemetry", 0x0800 | number, data) == values
+        whole, expected = whole + data, expected | values
+    assert decoded(testee, "p31u", "telemetry", 0x0800, whole) == expected
+    nominal = bytes.fromhex("0fa0 0fa0 0fa0 1f40 0000 012c 0000 012c 0064 0000")
+    power = decoded(testee, "p31u", "telemetry", 0x0801, nominal)
+    assert (power["Power.Converters[0]"], power["Power.Battery"], power["Power.Inputs[1]"]) == (4000, 8000, 300)
+
+
+def test_telecommands_of_the_p31u_are_the_bytes_that_it_takes(testee: Testee) -> None:
+    on = decoded(testee, "p31u", "telecommand", 0x0900, b"\x41")
+    assert {name for name, value in on.items() if value} == {"Battery Heater", "Channel 1"}
+    assert decoded(testee, "p31u", "telecommand", 0x0A00, b"\2\1\xff\xfe") == {"Channel": 2, "State": 1, "Delay": -2}
+    assert decoded(testee, "p31u", "telecommand", 0x1000, b"\x78") == {"Key": 0x78}
+    values = struct.unpack(">BBbb8B8B8H8H3H", settings := random.Random(2).randbytes(58))
+    assert tuple(decoded(testee, "p31u", "configuration", 0x1300, settings).values()) == values
