@@ -13,6 +13,7 @@ ROOT = Path(__file__).parent.parent
 MAKERS = {
     "codegen/icdgen/icd/schema.json": schema.written,
     "runtime/python/icdgen_runtime/wire/link.py": python.written,
+    "runtime/python/icdgen_runtime/wire/envelope.py": python.written,
     **{f"runtime/c/wire/{name}.h": c.written for name in ("forms", "procedure_forms", "link")},
     **{f"runtime/rust/src/wire/link/{name}.rs": rust.written for name in ("mod", "can", "logs", "transfer")},
 }

@@ -46,7 +46,8 @@ def test_our_python_is_linted_and_formatted(command):
 
 
 def test_the_reference_of_the_protocol_judges_and_does_nothing_else():
-    facts = {"facts", "reading", "sections", "declared"}  # what an ICD says; the other modules do something with it
+    # What an ICD says; the other modules do something with it.
+    facts = {"facts", "reading", "sections", "declared", "places", "envelope", "enveloping"}
     machines = {path.stem for path in (ROOT / "codegen/icdgen/protocol").glob("*.py")} - facts - {"__init__"}
     assert {"client", "uart", "can", "transfer", "logs", "crc"} <= machines
     importing = []

@@ -451,6 +451,688 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
     return ICD_UART_OTHER;
 }
 
+/* Fields and checksum of a frame, for both encoder and decoder. */
+
+static inline uint32_t icdgen_envelope_mask(const icd_envelope_field_t *field)
+{
+    return UINT32_C(0xFFFFFFFF) >> (32u - field->bits);
+}
+
+/* The field of a role; NULL if there is none. */
+static inline const icd_envelope_field_t *icdgen_envelope_field(const icd_stream_form_t *form, icd_envelope_role_t role)
+{
+    for (size_t i = 0; i < form->field_count; ++i) {
+        if (form->fields[i].role == role) {
+            return &form->fields[i];
+        }
+    }
+    return NULL;
+}
+
+/* `bytes` begin with the header, or the trailer, that the field stands in. */
+static inline uint32_t icdgen_envelope_get(const icd_envelope_field_t *field, const uint8_t *bytes)
+{
+    uint32_t number = 0;
+    for (size_t i = 0; i < field->size; ++i) {
+        number = (number << 8) | bytes[field->at + (field->little ? field->size - 1u - i : i)];
+    }
+    return (number >> field->shift) & icdgen_envelope_mask(field);
+}
+
+static inline void icdgen_envelope_put(const icd_envelope_field_t *field, uint8_t *bytes, uint32_t value)
+{
+    uint32_t rest = value << field->shift;
+    for (size_t i = 0; i < field->size; ++i) {
+        uint8_t *const byte = &bytes[field->at + (field->little ? i : field->size - 1u - i)];
+        *byte = ICDGEN_U8(*byte | (rest & 0xFFu));
+        rest >>= 8;
+    }
+}
+
+/* A checksum that is fed piece by piece. */
+typedef struct {
+    const icd_check_form_t *form;
+    icd_crc_t crc;
+    uint32_t first;
+    uint32_t second;
+} icdgen_check_t;
+
+static inline void icdgen_check_begin(icdgen_check_t *check, const icd_check_form_t *form)
+{
+    const bool pair = form->kind == ICD_CHECK_FLETCHER || form->kind == ICD_CHECK_FLETCHER_255;
+    check->form = form;
+    icd_crc_init(&check->crc, &form->crc);
+    check->first = pair ? form->crc.init & 0xFFu : form->crc.init;
+    check->second = form->crc.init >> 8;
+}
+
+static inline void icdgen_check_feed(icdgen_check_t *check, const uint8_t *bytes, size_t length)
+{
+    const icd_check_kind_t kind = check->form->kind;
+    const uint32_t modulus = kind == ICD_CHECK_FLETCHER_255 ? 255u : 256u;
+    if (kind == ICD_CHECK_CRC) {
+        icd_crc_feed(&check->crc, bytes, length);
+        return;
+    }
+    for (size_t i = 0; i < length; ++i) {
+        if (kind == ICD_CHECK_SUM) {
+            check->first += bytes[i];
+        } else if (kind == ICD_CHECK_XOR) {
+            check->first ^= bytes[i];
+        } else {
+            check->first = (check->first + bytes[i]) % modulus;
+            check->second = (check->second + check->first) % modulus;
+        }
+    }
+}
+
+static inline uint32_t icdgen_check_result(const icdgen_check_t *check)
+{
+    const icd_crc_form_t *const form = &check->form->crc;
+    switch (check->form->kind) {
+    case ICD_CHECK_CRC:
+        return icd_crc_result(&check->crc);
+    case ICD_CHECK_SUM:
+    case ICD_CHECK_XOR:
+        return (check->first & (UINT32_C(0xFFFFFFFF) >> (32u - form->width))) ^ form->xor_out;
+    case ICD_CHECK_FLETCHER:
+    case ICD_CHECK_FLETCHER_255:
+    default:
+        return ((check->second << 8) | check->first) ^ form->xor_out;
+    }
+}
+
+/* Of a message in three pieces. `row` may be NULL where the checksum has no seed. */
+static inline uint32_t icdgen_envelope_check(
+    const icd_stream_form_t *form,
+    const icd_stream_row_t *row,
+    const uint8_t *header,
+    const uint8_t *data,
+    size_t length,
+    const uint8_t *trailer)
+{
+    const icd_check_form_t *const given = form->check;
+    icdgen_check_t check;
+    icdgen_check_begin(&check, given);
+    icdgen_check_feed(&check, header + given->covered_from, ICDGEN_SIZE(form->header_bytes) - given->covered_from);
+    icdgen_check_feed(&check, data, length);
+    icdgen_check_feed(&check, trailer, given->covered_trailer);
+    if (given->is_seeded && row != NULL) {
+        icdgen_check_feed(&check, &row->seed, 1);
+    }
+    return icdgen_check_result(&check);
+}
+
+/* The message of an id; NULL if there is none. */
+static inline const icd_stream_row_t *icdgen_stream_row(
+    const icd_stream_form_t *form, icd_direction_t direction, uint32_t id)
+{
+    size_t low = 0;
+    size_t high = form->row_counts[direction];
+    while (low < high) {
+        const size_t middle = low + ((high - low) / 2u);
+        const icd_stream_row_t *const row = &form->rows[direction][middle];
+        if (row->id == id) {
+            return row;
+        }
+        if (row->id < id) {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    return NULL;
+}
+
+#define ICDGEN_ENVELOPE_BYTES 64u /* of a header or trailer, at most */
+
+#define ICDGEN_SLIP_END 0xC0u
+#define ICDGEN_SLIP_ESCAPE 0xDBu
+#define ICDGEN_SLIP_ESCAPED_END 0xDCu
+#define ICDGEN_SLIP_ESCAPED_ESCAPE 0xDDu
+#define ICDGEN_HDLC_FLAG 0x7Eu
+#define ICDGEN_HDLC_ESCAPE 0x7Du
+#define ICDGEN_HDLC_FLIP 0x20u
+#define ICDGEN_COBS_WHOLE 0xFFu /* a block that has no zero behind it */
+
+/* Where a message is written, with what delimits it. */
+typedef struct {
+    icd_delimiter_t delimiter;
+    uint8_t *buffer;
+    size_t capacity;
+    size_t count;
+    size_t block; /* of COBS: where its length stands */
+    bool ended;   /* of COBS: the last block was a whole one */
+    bool full;
+} icdgen_line_t;
+
+static inline void icdgen_line_byte(icdgen_line_t *line, uint32_t byte)
+{
+    if (line->count < line->capacity) {
+        line->buffer[line->count] = ICDGEN_U8(byte);
+        line->count++;
+    } else {
+        line->full = true;
+    }
+}
+
+/* Ends a block of COBS, whose length stands before it, and begins the next one. */
+static inline void icdgen_line_block(icdgen_line_t *line)
+{
+    if (!line->full) {
+        line->buffer[line->block] = ICDGEN_U8(line->count - line->block);
+    }
+    line->block = line->count;
+}
+
+static inline void icdgen_line_put(icdgen_line_t *line, uint8_t byte)
+{
+    if (line->delimiter == ICD_DELIMITED_BY_COBS) {
+        if (line->ended) {
+            icdgen_line_byte(line, 0);
+            line->ended = false;
+        }
+        if (byte != 0u) {
+            icdgen_line_byte(line, byte);
+        }
+        if (byte == 0u || line->count - line->block == ICDGEN_COBS_WHOLE) {
+            icdgen_line_block(line);
+            line->ended = byte != 0u;
+            if (byte == 0u) {
+                icdgen_line_byte(line, 0);
+            }
+        }
+    } else if (line->delimiter == ICD_DELIMITED_BY_SLIP && byte == ICDGEN_SLIP_END) {
+        icdgen_line_byte(line, ICDGEN_SLIP_ESCAPE);
+        icdgen_line_byte(line, ICDGEN_SLIP_ESCAPED_END);
+    } else if (line->delimiter == ICD_DELIMITED_BY_SLIP && byte == ICDGEN_SLIP_ESCAPE) {
+        icdgen_line_byte(line, ICDGEN_SLIP_ESCAPE);
+        icdgen_line_byte(line, ICDGEN_SLIP_ESCAPED_ESCAPE);
+    } else if (line->delimiter == ICD_DELIMITED_BY_HDLC && (byte == ICDGEN_HDLC_FLAG || byte == ICDGEN_HDLC_ESCAPE)) {
+        icdgen_line_byte(line, ICDGEN_HDLC_ESCAPE);
+        icdgen_line_byte(line, byte ^ ICDGEN_HDLC_FLIP);
+    } else {
+        icdgen_line_byte(line, byte);
+    }
+}
+
+static inline void icdgen_line_delimiter(icdgen_line_t *line, bool begins)
+{
+    if (line->delimiter == ICD_DELIMITED_BY_SLIP) {
+        icdgen_line_byte(line, ICDGEN_SLIP_END);
+    } else if (line->delimiter == ICD_DELIMITED_BY_HDLC) {
+        icdgen_line_byte(line, ICDGEN_HDLC_FLAG);
+    } else if (line->delimiter == ICD_DELIMITED_BY_COBS && begins) {
+        icdgen_line_byte(line, 0); /* becomes the length of the first block */
+    } else if (line->delimiter == ICD_DELIMITED_BY_COBS) {
+        if (!line->ended) {
+            icdgen_line_block(line);
+        }
+        icdgen_line_byte(line, 0);
+    } else {
+        /* nothing delimits it but its length */
+    }
+}
+
+static inline void icdgen_line_write(icdgen_line_t *line, const uint8_t *bytes, size_t length)
+{
+    for (size_t i = 0; i < length; ++i) {
+        icdgen_line_put(line, bytes[i]);
+    }
+}
+
+ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd_direction_t direction)
+{
+    icd_envelope_values_t values;
+    (void)memset(&values, 0, sizeof values);
+    if (link->stream != NULL) {
+        for (size_t i = 0; i < link->stream->field_count; ++i) {
+            const icd_envelope_field_t *const field = &link->stream->fields[i];
+            if (field->role < ICD_ENVELOPE_CONSTANT) {
+                values.of[field->role] = field->values[direction];
+            }
+        }
+    }
+    return values;
+}
+
+/* Writes all fields but the checksum; false if a value does not fit. */
+static inline bool icdgen_envelope_fill(
+    const icd_stream_form_t *form,
+    icd_direction_t direction,
+    uint32_t id,
+    size_t length,
+    const icd_envelope_values_t *values,
+    uint8_t *header,
+    uint8_t *trailer)
+{
+    for (size_t i = 0; i < form->field_count; ++i) {
+        const icd_envelope_field_t *const field = &form->fields[i];
+        uint32_t value = field->values[direction];
+        if (field->role == ICD_ENVELOPE_CHECKSUM) {
+            continue;
+        }
+        if (field->role == ICD_ENVELOPE_ID) {
+            value = id;
+        } else if (field->role == ICD_ENVELOPE_LENGTH) {
+            value = ICDGEN_U32(ICDGEN_I64(length) + form->length_plus);
+        } else if (field->role < ICD_ENVELOPE_CONSTANT) {
+            value = values->of[field->role];
+        } else {
+            /* a constant */
+        }
+        if (value > icdgen_envelope_mask(field)) {
+            return false;
+        }
+        icdgen_envelope_put(field, field->in_trailer ? trailer : header, value);
+    }
+    return true;
+}
+
+/* Bytes of the data without the zeros at their end, but for one. */
+static inline size_t icdgen_without_zeros(const uint8_t *data, size_t length)
+{
+    size_t left = length;
+    while (left > 1u && data[left - 1u] == 0u) {
+        left--;
+    }
+    return left;
+}
+
+ICDGEN_API icd_status_t icd_stream_encode(
+    const icd_link_t *link,
+    icd_direction_t direction,
+    uint32_t id,
+    const uint8_t *data,
+    size_t length,
+    const icd_envelope_values_t *values,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
+{
+    const icd_stream_form_t *const form = link->stream;
+    uint8_t header[ICDGEN_ENVELOPE_BYTES] = {0};
+    uint8_t trailer[ICDGEN_ENVELOPE_BYTES] = {0};
+    if (form == NULL) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    const icd_stream_row_t *const row = icdgen_stream_row(form, direction, id);
+    if (row == NULL) {
+        return ICD_ERROR_UNKNOWN_ID;
+    }
+    if (length < row->least || length > row->most) {
+        return ICD_ERROR_LENGTH;
+    }
+    const size_t sent = row->cuts_zeros ? icdgen_without_zeros(data, length) : length;
+    const icd_envelope_values_t chosen = values != NULL ? *values : icd_envelope_values(link, direction);
+    if (!icdgen_envelope_fill(form, direction, id, sent, &chosen, header, trailer)) {
+        return ICD_ERROR_RANGE;
+    }
+    const icd_envelope_field_t *const check = icdgen_envelope_field(form, ICD_ENVELOPE_CHECKSUM);
+    if (check != NULL && form->check != NULL) {
+        const uint32_t sum = icdgen_envelope_check(form, row, header, data, sent, trailer);
+        icdgen_envelope_put(check, check->in_trailer ? trailer : header, sum);
+    }
+    icdgen_line_t line = {form->delimited_by, buffer, capacity, 0, 0, false, false};
+    icdgen_line_delimiter(&line, true);
+    icdgen_line_write(&line, header, form->header_bytes);
+    icdgen_line_write(&line, data, sent);
+    icdgen_line_write(&line, trailer, form->trailer_bytes);
+    icdgen_line_delimiter(&line, false);
+    *written = line.count;
+    return line.full ? ICD_ERROR_LENGTH : ICD_OK;
+}
+
+#define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF)
+
+/* What a frame turned out to be: taken; one beyond doubt, though of no use; perhaps none at all. */
+typedef enum { ICDGEN_TAKEN, ICDGEN_PROVEN, ICDGEN_DOUBTFUL } icdgen_verdict_t;
+
+/* Who is told. */
+typedef struct {
+    icd_stream_event_fn *on_event;
+    void *context;
+} icdgen_listener_t;
+
+static inline icd_stream_event_t icdgen_stream_event(icd_stream_kind_t kind)
+{
+    icd_stream_event_t event;
+    (void)memset(&event, 0, sizeof event);
+    event.kind = kind;
+    return event;
+}
+
+static inline void icdgen_stream_tell(const icdgen_listener_t *listener, icd_stream_kind_t kind)
+{
+    const icd_stream_event_t event = icdgen_stream_event(kind);
+    listener->on_event(listener->context, &event);
+}
+
+static inline void icdgen_stream_tell_of(const icdgen_listener_t *listener, icd_stream_kind_t kind, uint32_t id)
+{
+    icd_stream_event_t event = icdgen_stream_event(kind);
+    event.has_id = true;
+    event.id = id;
+    listener->on_event(listener->context, &event);
+}
+
+static inline void icdgen_stream_clear(icd_stream_decoder_t *decoder)
+{
+    decoder->length = 0;
+    decoder->escaped = false;
+    decoder->zero = false;
+    decoder->left = 0;
+    decoder->faulty = false;
+}
+
+ICDGEN_API icd_status_t icd_stream_decoder_init(
+    icd_stream_decoder_t *decoder,
+    const icd_link_t *link,
+    icd_direction_t direction,
+    uint8_t *buffer,
+    size_t capacity,
+    uint32_t *sequences,
+    size_t sequence_count)
+{
+    (void)memset(decoder, 0, sizeof *decoder);
+    if (link->stream == NULL) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    if (capacity < ICDGEN_SIZE(link->stream->header_bytes) + link->stream->trailer_bytes) {
+        return ICD_ERROR_LENGTH;
+    }
+    decoder->link = link;
+    decoder->form = link->stream;
+    decoder->direction = direction;
+    decoder->buffer = buffer;
+    decoder->capacity = capacity < link->longest ? capacity : link->longest;
+    decoder->sequences = sequences;
+    decoder->sequence_count = sequence_count;
+    for (size_t i = 0; i < sequence_count; ++i) {
+        sequences[i] = ICDGEN_NO_SEQUENCE;
+    }
+    return ICD_OK;
+}
+
+/* Tells of sequence numbers that did not come. */
+static inline void icdgen_stream_count(
+    icd_stream_decoder_t *decoder, const icd_stream_row_t *row, uint32_t number, const icdgen_listener_t *listener)
+{
+    const icd_stream_form_t *const form = decoder->form;
+    const icd_envelope_field_t *const field = icdgen_envelope_field(form, ICD_ENVELOPE_SEQUENCE);
+    const size_t key = form->per_id ? ICDGEN_SIZE(row - form->rows[decoder->direction]) : 0u;
+    if (field == NULL || key >= decoder->sequence_count) {
+        return;
+    }
+    const uint32_t last = decoder->sequences[key];
+    const uint32_t missing = (number - last - 1u) & icdgen_envelope_mask(field);
+    decoder->sequences[key] = number;
+    if (last != ICDGEN_NO_SEQUENCE && missing != 0u) {
+        icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_GAP);
+        event.has_id = true;
+        event.id = row->id;
+        event.missing = number == last ? 0u : missing;
+        listener->on_event(listener->context, &event);
+    }
+}
+
+static inline void icdgen_stream_message(
+    icd_stream_decoder_t *decoder,
+    const icd_stream_row_t *row,
+    const uint8_t *frame,
+    size_t length,
+    const icdgen_listener_t *listener)
+{
+    const icd_stream_form_t *const form = decoder->form;
+    icd_stream_event_t event = icdgen_stream_event(ICD_STREAM_MESSAGE);
+    event.has_id = true;
+    event.id = row->id;
+    event.data = frame + form->header_bytes;
+    event.length = length;
+    for (size_t i = 0; i < form->field_count; ++i) {
+        const icd_envelope_field_t *const field = &form->fields[i];
+        if (field->role < ICD_ENVELOPE_CONSTANT) {
+            event.values.of[field->role] = icdgen_envelope_get(field, field->in_trailer ? event.data + length : frame);
+        }
+    }
+    icdgen_stream_count(decoder, row, event.values.of[ICD_ENVELOPE_SEQUENCE], listener);
+    listener->on_event(listener->context, &event);
+}
+
+/* Whether the constants of the header, as far as it came, and of the trailer, if `trailer` is given, are right. */
+static inline bool icdgen_stream_constants(
+    const icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, const uint8_t *trailer)
+{
+    const icd_stream_form_t *const form = decoder->form;
+    for (size_t i = 0; i < form->field_count; ++i) {
+        const icd_envelope_field_t *const field = &form->fields[i];
+        const uint8_t *const bytes = field->in_trailer ? trailer : frame;
+        const bool came = field->in_trailer ? trailer != NULL : ICDGEN_SIZE(field->at) + field->size <= count;
+        if (field->role == ICD_ENVELOPE_CONSTANT && came &&
+            icdgen_envelope_get(field, bytes) != field->values[decoder->direction]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* What the field of the length says that the data have; negative if that is none. */
+static inline int64_t icdgen_stream_length(
+    const icd_stream_form_t *form, const icd_envelope_field_t *field, const uint8_t *frame, const uint8_t *trailer)
+{
+    return ICDGEN_I64(icdgen_envelope_get(field, field->in_trailer ? trailer : frame)) - form->length_plus;
+}
+
+/* Tells of a frame. */
+static inline icdgen_verdict_t icdgen_stream_judge(
+    icd_stream_decoder_t *decoder, const uint8_t *frame, size_t count, const icdgen_listener_t *listener)
+{
+    const icd_stream_form_t *const form = decoder->form;
+    const size_t around = ICDGEN_SIZE(form->header_bytes) + form->trailer_bytes;
+    if (count < around) {
+        icdgen_stream_tell(listener, ICD_STREAM_LENGTH);
+        return ICDGEN_DOUBTFUL;
+    }
+    const size_t length = count - around;
+    const uint8_t *const trailer = frame + form->header_bytes + length;
+    if (!icdgen_stream_constants(decoder, frame, count, trailer)) {
+        icdgen_stream_tell(listener, ICD_STREAM_FRAMING);
+        return ICDGEN_DOUBTFUL;
+    }
+    const icd_envelope_field_t *field = icdgen_envelope_field(form, ICD_ENVELOPE_LENGTH);
+    if (field != NULL && icdgen_stream_length(form, field, frame, trailer) != ICDGEN_I64(length)) {
+        icdgen_stream_tell(listener, ICD_STREAM_LENGTH);
+        return ICDGEN_DOUBTFUL;
+    }
+    field = icdgen_envelope_field(form, ICD_ENVELOPE_ID);
+    uint32_t id = 0;
+    if (field != NULL) {
+        id = icdgen_envelope_get(field, field->in_trailer ? trailer : frame);
+    } else if (form->row_counts[decoder->direction] != 0u) {
+        id = form->rows[decoder->direction][0].id;
+    } else {
+        /* there is no message in this direction */
+    }
+    const icd_stream_row_t *const row = icdgen_stream_row(form, decoder->direction, id);
+    field = icdgen_envelope_field(form, ICD_ENVELOPE_CHECKSUM);
+    if (field != NULL && form->check != NULL) {
+        if (form->check->is_seeded && row == NULL) {
+            icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, id);
+            return ICDGEN_DOUBTFUL;
+        }
+        const uint32_t sum = icdgen_envelope_check(form, row, frame, frame + form->header_bytes, length, trailer);
+        if (icdgen_envelope_get(field, field->in_trailer ? trailer : frame) != sum) {
+            icdgen_stream_tell_of(listener, ICD_STREAM_CHECKSUM, id);
+            return ICDGEN_DOUBTFUL;
+        }
+    }
+    if (row == NULL) {
+        icdgen_stream_tell_of(listener, ICD_STREAM_UNKNOWN_ID, id);
+        return ICDGEN_PROVEN;
+    }
+    if (length < row->least || length > row->most) {
+        icdgen_stream_tell_of(listener, ICD_STREAM_LENGTH, id);
+        return ICDGEN_PROVEN;
+    }
+    icdgen_stream_message(decoder, row, frame, length, listener);
+    return ICDGEN_TAKEN;
+}
+
+/* What the buffer has from `at` on: bytes to go on, 0 while that is not decided. */
+static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t at, const icdgen_listener_t *listener)
+{
+    const icd_stream_form_t *const form = decoder->form;
+    const size_t left = decoder->length - at;
+    const uint8_t *const frame = decoder->buffer + at;
+    const icd_envelope_field_t *const field = icdgen_envelope_field(form, ICD_ENVELOPE_LENGTH);
+    if (left != 0u && !icdgen_stream_constants(decoder, frame, left, NULL)) {
+        decoder->discarded++;
+        return 1;
+    }
+    if (left < form->header_bytes || field == NULL) {
+        return 0;
+    }
+    const int64_t length = icdgen_stream_length(form, field, frame, frame);
+    const int64_t size = length + form->header_bytes + form->trailer_bytes;
+    if (length < 0 || size > ICDGEN_I64(decoder->capacity)) {
+        const bool fits = length >= 0 && size <= ICDGEN_I64(decoder->link->longest);
+        icdgen_stream_tell(listener, fits ? ICD_STREAM_OVERRUN : ICD_STREAM_LENGTH);
+        decoder->discarded++;
+        return 1;
+    }
+    const size_t whole = ICDGEN_SIZE(size);
+    if (left < whole) {
+        return 0;
+    }
+    const icdgen_verdict_t verdict = icdgen_stream_judge(decoder, frame, whole, listener);
+    const size_t taken = verdict == ICDGEN_DOUBTFUL ? 1u : whole;
+    decoder->discarded += verdict == ICDGEN_TAKEN ? 0u : taken;
+    return taken;
+}
+
+/* A byte where a field of the length delimits messages. There is room: a whole buffer is always decided. */
+static inline void icdgen_stream_append(icd_stream_decoder_t *decoder, uint8_t byte, const icdgen_listener_t *listener)
+{
+    size_t at = 0;
+    size_t count;
+    decoder->buffer[decoder->length] = byte;
+    decoder->length++;
+    do {
+        count = icdgen_stream_front(decoder, at, listener);
+        at += count;
+    } while (count != 0u);
+    if (at != 0u) {
+        decoder->length -= at;
+        (void)memmove(decoder->buffer, decoder->buffer + at, decoder->length);
+    }
+    decoder->pending = decoder->length;
+}
+
+static inline void icdgen_stream_fail(icd_stream_decoder_t *decoder, icd_stream_kind_t fault)
+{
+    if (!decoder->faulty) {
+        decoder->faulty = true;
+        decoder->fault = fault;
+    }
+}
+
+static inline void icdgen_stream_put(icd_stream_decoder_t *decoder, uint32_t byte)
+{
+    if (decoder->length < decoder->capacity) {
+        decoder->buffer[decoder->length] = ICDGEN_U8(byte);
+        decoder->length++;
+    } else {
+        icdgen_stream_fail(decoder, ICD_STREAM_OVERRUN);
+    }
+}
+
+/* A byte of a frame between delimiters. */
+static inline void icdgen_stream_inside(icd_stream_decoder_t *decoder, uint8_t byte)
+{
+    const icd_delimiter_t delimiter = decoder->form->delimited_by;
+    const uint32_t escape = delimiter == ICD_DELIMITED_BY_SLIP ? ICDGEN_SLIP_ESCAPE : ICDGEN_HDLC_ESCAPE;
+    if (delimiter == ICD_DELIMITED_BY_COBS && decoder->left != 0u) {
+        decoder->left--;
+        icdgen_stream_put(decoder, byte);
+    } else if (delimiter == ICD_DELIMITED_BY_COBS) {
+        if (decoder->zero) {
+            icdgen_stream_put(decoder, 0);
+        }
+        decoder->left = ICDGEN_U8(byte - 1u);
+        decoder->zero = byte != ICDGEN_COBS_WHOLE;
+    } else if (decoder->escaped && delimiter == ICD_DELIMITED_BY_HDLC) {
+        decoder->escaped = false;
+        icdgen_stream_put(decoder, byte ^ ICDGEN_HDLC_FLIP);
+    } else if (decoder->escaped) {
+        decoder->escaped = false;
+        if (byte == ICDGEN_SLIP_ESCAPED_END) {
+            icdgen_stream_put(decoder, ICDGEN_SLIP_END);
+        } else if (byte == ICDGEN_SLIP_ESCAPED_ESCAPE) {
+            icdgen_stream_put(decoder, ICDGEN_SLIP_ESCAPE);
+        } else {
+            icdgen_stream_fail(decoder, ICD_STREAM_FRAMING);
+        }
+    } else if (byte == escape) {
+        decoder->escaped = true;
+    } else {
+        icdgen_stream_put(decoder, byte);
+    }
+}
+
+/* A delimiter came. */
+static inline void icdgen_stream_end(icd_stream_decoder_t *decoder, const icdgen_listener_t *listener)
+{
+    bool taken = false;
+    if (decoder->escaped || decoder->left != 0u) {
+        icdgen_stream_fail(decoder, ICD_STREAM_FRAMING);
+    }
+    if (decoder->faulty) {
+        icdgen_stream_tell(listener, decoder->fault);
+    } else if (decoder->length != 0u) {
+        taken = icdgen_stream_judge(decoder, decoder->buffer, decoder->length, listener) == ICDGEN_TAKEN;
+    } else {
+        taken = true; /* there was nothing */
+    }
+    decoder->discarded += taken ? 0u : decoder->pending;
+    decoder->pending = 0;
+    icdgen_stream_clear(decoder);
+}
+
+ICDGEN_API void icd_stream_feed(
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_stream_event_fn *on_event, void *context)
+{
+    const icd_delimiter_t delimiter = decoder->form->delimited_by;
+    const icdgen_listener_t listener = {on_event, context};
+    if (delimiter == ICD_DELIMITED_BY_PACKET) {
+        if (count > decoder->capacity) {
+            icdgen_stream_tell(&listener, ICD_STREAM_OVERRUN);
+            decoder->discarded += count;
+        } else if (icdgen_stream_judge(decoder, bytes, count, &listener) != ICDGEN_TAKEN) {
+            decoder->discarded += count;
+        } else {
+            /* it was a message */
+        }
+        return;
+    }
+    const uint32_t end = delimiter == ICD_DELIMITED_BY_SLIP ? ICDGEN_SLIP_END
+        : delimiter == ICD_DELIMITED_BY_HDLC                ? ICDGEN_HDLC_FLAG
+                                                            : 0u;
+    for (size_t i = 0; i < count; ++i) {
+        if (delimiter == ICD_DELIMITED_BY_LENGTH) {
+            icdgen_stream_append(decoder, bytes[i], &listener);
+            continue;
+        }
+        decoder->pending++;
+        if (bytes[i] == end) {
+            icdgen_stream_end(decoder, &listener);
+        } else if (!decoder->faulty) {
+            icdgen_stream_inside(decoder, bytes[i]);
+        } else {
+            /* until the next delimiter all is dropped */
+        }
+    }
+}
+
 ICDGEN_API uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length)
 {
     icd_crc_t crc;

@@ -450,6 +450,85 @@ typedef struct {
     uint16_t programs_count;
 } icd_operation_form_t;
 
+/* ---- the envelope of a link, as fields with roles around the data -------------------------------------------------- */
+
+/** What tells where a message ends; ICD_DELIMITED_BY_PACKET: whatever carries it. */
+typedef enum {
+    ICD_DELIMITED_BY_LENGTH = 0,
+    ICD_DELIMITED_BY_SLIP = 1,
+    ICD_DELIMITED_BY_COBS = 2,
+    ICD_DELIMITED_BY_HDLC = 3,
+    ICD_DELIMITED_BY_PACKET = 4
+} icd_delimiter_t;
+
+/** What a field of the envelope is. The first ones are those whose values the sender chooses. */
+typedef enum {
+    ICD_ENVELOPE_SEQUENCE = 0,
+    ICD_ENVELOPE_SOURCE = 1,
+    ICD_ENVELOPE_DESTINATION = 2,
+    ICD_ENVELOPE_TYPE = 3,
+    ICD_ENVELOPE_FLAGS = 4,
+    ICD_ENVELOPE_TIME = 5,
+    ICD_ENVELOPE_CONSTANT = 6,
+    ICD_ENVELOPE_ID = 7,
+    ICD_ENVELOPE_LENGTH = 8,
+    ICD_ENVELOPE_CHECKSUM = 9
+} icd_envelope_role_t;
+
+#define ICD_ENVELOPE_VALUES 6 /**< Roles whose values the sender chooses. */
+
+/** A field: `size` bytes from byte `at` of the header or trailer on are a number, shifted and cut to `bits`. */
+typedef struct {
+    icd_envelope_role_t role;
+    bool in_trailer;
+    uint8_t at;
+    uint8_t size;
+    uint8_t shift;
+    uint8_t bits;
+    bool little;
+    uint32_t values[2]; /**< Of a constant, or unless another is chosen: in telecommands, in telemetry. */
+} icd_envelope_field_t;
+
+typedef enum {
+    ICD_CHECK_CRC = 0,
+    ICD_CHECK_FLETCHER = 1,
+    ICD_CHECK_FLETCHER_255 = 2,
+    ICD_CHECK_SUM = 3,
+    ICD_CHECK_XOR = 4
+} icd_check_kind_t;
+
+/** The checksum; kinds other than a CRC use init, xor_out and width of the form. */
+typedef struct {
+    icd_check_kind_t kind;
+    icd_crc_form_t crc;
+    uint8_t covered_from;    /**< The byte of the header from which on it is computed. */
+    uint8_t covered_trailer; /**< Bytes of the trailer that it covers. */
+    bool is_seeded;          /**< Whether the seed of the message is covered, as a byte after all others. */
+} icd_check_form_t;
+
+/** A message: its id, the lengths that its data can have, and its seed. */
+typedef struct {
+    uint32_t id;
+    uint16_t least;
+    uint16_t most;
+    bool cuts_zeros; /**< Whether zeros at the end of the data are not sent, but for one byte. */
+    uint8_t seed;
+} icd_stream_row_t;
+
+/** How messages are put into a stream of bytes, or into packets. */
+typedef struct {
+    icd_delimiter_t delimited_by;
+    uint8_t header_bytes;
+    uint8_t trailer_bytes;
+    int32_t length_plus; /**< What the field of the length has more than the data have bytes. */
+    bool per_id;         /**< Whether each id counts its own sequence. */
+    const icd_envelope_field_t *fields;
+    uint8_t field_count;
+    const icd_check_form_t *check;
+    const icd_stream_row_t *rows[2]; /**< Telecommands and telemetry, by rising id. */
+    uint16_t row_counts[2];
+} icd_stream_form_t;
+
 /** How a client waits and tries again, in milliseconds. */
 typedef struct {
     /** How long a reply may take, in milliseconds. */
@@ -505,6 +584,7 @@ typedef struct {
     const icd_operation_form_t *program_copy;
     const icd_operation_form_t *program_information;
     const icd_step_t *identification;
+    const icd_stream_form_t *stream; /**< Then ids have up to 32 bits, and nothing else of the link is described. */
 } icd_link_t;
 
 /** Whether the node has the messages of that one, which is so of itself and of those that it includes. */
@@ -646,6 +726,92 @@ ICDGEN_API void icd_uart_feed(
 
 /** What a message from the node is, as far as its id and its length tell. `length` is not 0. */
 ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *message, size_t length);
+
+/* ---- messages in an envelope, in a stream of bytes or in packets ---------------------------------------------------- */
+
+/** Values of the fields that the sender chooses, by icd_envelope_role_t. */
+typedef struct {
+    uint32_t of[ICD_ENVELOPE_VALUES];
+} icd_envelope_values_t;
+
+/** Those of the ICD, and 0. */
+ICDGEN_API icd_envelope_values_t icd_envelope_values(const icd_link_t *link, icd_direction_t direction);
+
+/**
+ * A message as it is sent; `values` NULL: those of the ICD. ICD_ERROR_UNKNOWN_ID if there is none of that id,
+ * ICD_ERROR_LENGTH if its data have another length or the buffer is too small (NODE_LINE_BYTES are enough),
+ * ICD_ERROR_RANGE if a value does not fit its field.
+ */
+ICDGEN_API icd_status_t icd_stream_encode(
+    const icd_link_t *link,
+    icd_direction_t direction,
+    uint32_t id,
+    const uint8_t *data,
+    size_t length,
+    const icd_envelope_values_t *values,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written);
+
+typedef enum {
+    ICD_STREAM_MESSAGE = 0,
+    ICD_STREAM_GAP = 1,        /**< Before this message `missing` others did not come; 0: it came again. */
+    ICD_STREAM_CHECKSUM = 2,   /**< Dropped: the checksum is wrong. */
+    ICD_STREAM_LENGTH = 3,     /**< Dropped: no message, or not that one, has such a length. */
+    ICD_STREAM_UNKNOWN_ID = 4, /**< Dropped: the node has no such message. */
+    ICD_STREAM_OVERRUN = 5,    /**< Dropped: longer than the buffer. */
+    ICD_STREAM_FRAMING = 6     /**< Dropped: a constant or a delimiter is not what it must be. */
+} icd_stream_kind_t;
+
+/** What a decoder found, valid during the call that tells of it. */
+typedef struct {
+    icd_stream_kind_t kind;
+    bool has_id; /**< Whether so much of it could be read. */
+    uint32_t id;
+    const uint8_t *data;
+    size_t length;
+    icd_envelope_values_t values;
+    uint32_t missing;
+} icd_stream_event_t;
+
+typedef void icd_stream_event_fn(void *context, const icd_stream_event_t *event);
+
+/** Finds the messages of a direction in a stream. */
+typedef struct {
+    const icd_link_t *link;
+    const icd_stream_form_t *form;
+    icd_direction_t direction;
+    uint8_t *buffer;
+    size_t capacity;
+    size_t length; /**< Bytes in the buffer. */
+    uint32_t *sequences;
+    size_t sequence_count;
+    size_t pending;     /**< Bytes of the stream about which nothing is decided yet. */
+    uint64_t discarded; /**< Bytes of the stream that became part of no message. */
+    bool escaped;
+    bool zero;    /* whether a zero follows the block of COBS */
+    uint8_t left; /* bytes that the block of COBS still has */
+    bool faulty;
+    icd_stream_kind_t fault;
+} icd_stream_decoder_t;
+
+/**
+ * `buffer` holds the longest message that is taken; that of the node is NODE_LONGEST bytes long. `sequences` are
+ * NODE_SEQUENCES numbers, by which gaps are noticed; with less, gaps of some messages are not. ICD_ERROR_LENGTH if
+ * header and trailer do not fit the buffer.
+ */
+ICDGEN_API icd_status_t icd_stream_decoder_init(
+    icd_stream_decoder_t *decoder,
+    const icd_link_t *link,
+    icd_direction_t direction,
+    uint8_t *buffer,
+    size_t capacity,
+    uint32_t *sequences,
+    size_t sequence_count);
+
+/** Takes the next bytes of the stream, or a packet. Events do not depend on how a stream was cut. */
+ICDGEN_API void icd_stream_feed(
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_stream_event_fn *on_event, void *context);
 
 /* ---- I2C --------------------------------------------------------------------------------------------------------- */
 

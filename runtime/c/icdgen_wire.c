@@ -20,6 +20,12 @@
 
 #include "wire/uart.c"
 
+#include "wire/envelope.h"
+
+#include "wire/stream_encode.c"
+
+#include "wire/stream_decode.c"
+
 #include "wire/i2c.c"
 
 #include "wire/can.c"

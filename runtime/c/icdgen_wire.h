@@ -24,6 +24,8 @@
 
 #include "wire/procedure_forms.h"
 
+#include "wire/stream_form.h"
+
 #include "wire/link.h"
 
 #include "wire/events.h"
@@ -31,6 +33,8 @@
 #include "wire/crc.h"
 
 #include "wire/uart.h"
+
+#include "wire/stream.h"
 
 #include "wire/i2c.h"
 

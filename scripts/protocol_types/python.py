@@ -7,7 +7,8 @@ import textwrap
 
 from icdgen.backends.python.links import type_name
 from icdgen.protocol.declared import Fact, Kind, facts_of
-from icdgen.protocol.sections import PLACES, Settings
+from icdgen.protocol.places import PLACES
+from icdgen.protocol.sections import Settings
 
 _TYPES = {
     Kind.FLAG: "bool", Kind.BUSES: "tuple[str, ...]", Kind.SPAN: "tuple[int, int]",
@@ -24,7 +25,9 @@ def written(text: str) -> str:
 
 def _with_facts(text: str, part: type) -> str:
     name, facts = type_name(part), facts_of(part)
-    one = next(node for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and node.name == name)
+    one = next((node for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and node.name == name), None)
+    if one is None:
+        return text
     lines, names = text.splitlines(), {fact.name for fact in facts}
     members, begin, end = {}, one.body[0].end_lineno or 0, one.body[0].end_lineno or 0
     for statement, after in zip(one.body[1:], [*one.body[2:], None], strict=True):

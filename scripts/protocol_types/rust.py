@@ -7,7 +7,7 @@ import re
 from icdgen.backends.rust.facts import member_name, type_name
 from icdgen.backends.rust.text import doc
 from icdgen.protocol.declared import BYTE, Fact, Kind, facts_of
-from icdgen.protocol.sections import PLACES
+from icdgen.protocol.places import PLACES
 
 _TYPES = {
     Kind.SIZE: "usize", Kind.TIME: "u32", Kind.FLAG: "bool", Kind.BUSES: "PerBus<bool>", Kind.SPAN: "Span",

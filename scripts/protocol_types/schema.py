@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from icdgen.protocol.declared import Fact, Kind, facts_of
-from icdgen.protocol.sections import PLACES
+from icdgen.protocol.places import PLACES
 
 Schema = dict[str, Any]
 _LAST = "assumptions"  # the key before which a new one is put
@@ -25,7 +25,7 @@ def written(text: str) -> str:
 
 def _section(schema: Schema, path: list[str]) -> Schema:
     for key in path:
-        schema = schema["properties"][key]
+        schema = schema["additionalProperties"] if key == "*" else schema["properties"][key]
     return schema
 
 

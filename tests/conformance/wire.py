@@ -46,7 +46,7 @@ def batches(files: dict) -> Iterator[Batch]:
 
 def refused(cases: list[dict]) -> Iterator[dict]:
     """The first request of each op, with each of its keys missing or of another type."""
-    optional = {"address", "senders", "end", "limit", "crc", "node", "settings", "block", "size", "all"}
+    optional = {"address", "senders", "end", "limit", "crc", "node", "settings", "block", "size", "all", "values"}
     seen = set()
     for case in cases:
         request = case["request"]

@@ -102,13 +102,15 @@ class LinkDescription:
 
     @property
     def telecommands(self) -> list[SentMessage]:
-        """By rising id."""
-        return [SentMessage(id, one) for id, one in sorted(self.facts.telecommands.items())]
+        """By rising id; none where the envelope of the link tells them."""
+        return (
+            [] if self.facts.stream else [SentMessage(id, one) for id, one in sorted(self.facts.telecommands.items())]
+        )
 
     @property
     def telemetry(self) -> list[SentMessage]:
-        """By rising id."""
-        return [SentMessage(id, one) for id, one in sorted(self.facts.telemetry.items())]
+        """By rising id; none where the envelope of the link tells them."""
+        return [] if self.facts.stream else [SentMessage(id, one) for id, one in sorted(self.facts.telemetry.items())]
 
     @property
     def error_codes(self) -> list[tuple[str, int]]:

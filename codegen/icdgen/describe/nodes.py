@@ -149,6 +149,11 @@ class NodeDescription:
         return bool(self._description.icd.protocol_of(self.model))
 
     @property
+    def has_client(self) -> bool:
+        """Whether requests can be sent on its link, which is not so of an envelope."""
+        return self.is_linked and "stream" not in self._description.icd.protocol_of(self.model)
+
+    @property
     def id_bits(self) -> int:
         """Those of the set: see `Description.id_bits`."""
         return self._description.id_bits

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from icdgen.errors import UserError
+from icdgen.errors import UserError, no_talk
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
@@ -55,6 +55,8 @@ def open_session(
     from icdgen.link.session import session
 
     node, is_can = known.node, port.startswith("can://")
+    if known.stream:
+        raise no_talk(node.name)
     if (known.can if is_can else known.framing) is None:
         what = "CAN" if is_can else "a stream of bytes"
         raise UserError(f"the ICD does not say how to talk to {node.name} over {what}", "see docs/icd-format.md")

@@ -10,6 +10,7 @@ from typing import TypeVar
 
 from icdgen.frozen import dataclass
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.protocol.envelope import Stream
 from icdgen.protocol.reading import Assumption, Reader
 from icdgen.protocol.sections import (
     Acknowledge,
@@ -68,6 +69,7 @@ class Facts:
     identification: Step | None
     statistics: Step | None
     boot_ms: int | None
+    stream: Stream | None  # then ids have up to 32 bits, and nothing else of the link is described
     assumptions: tuple[Assumption, ...]
 
     @property
@@ -103,6 +105,8 @@ class Facts:
     @property
     def longest(self) -> int:
         """Bytes of the longest message of either direction."""
+        if self.stream:
+            return self.stream.longest
         return max(self.longest_telecommand, self.longest_reply)
 
     def number(self, data: bytes) -> int:
@@ -156,5 +160,6 @@ def of(icd: Icd, node: Node) -> Facts:
         identification=reader.step(reader.section("identification")),
         statistics=reader.step(reader.section("statistics")),
         boot_ms=None if boot is None else boot * 1000,
+        stream=reader.stream(),
         assumptions=tuple(reader.assumptions()),
     )

@@ -9,7 +9,8 @@ from collections.abc import Callable
 from typing import Any
 
 from icdgen.icd.model import Icd
-from icdgen.protocol import can, crc, errors, facts, files, i2c, logs, scripts, times, uart
+from icdgen.protocol import can, crc, errors, facts, files, i2c, logs, scripts, stream, times, uart
+from icdgen.protocol.envelope import DIRECTIONS, GIVEN, Stream
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.request_keys import Refusal, Request, flag, mappings, number, octets, rows, text
 from icdgen.protocol.request_keys import hex_bytes as _hex
@@ -29,7 +30,10 @@ def answer(icd: Icd, request: Request) -> dict[str, Any]:
     except errors.Mismatch as error:
         return {"ok": False, "error": error.error, "expected": error.expected, "actual": error.actual}
     except errors.RangeError as error:
-        return {"ok": False, "error": "range"} | ({"field": error.field} if error.field in times.PARTS else {})
+        told = error.field in (*times.PARTS, *GIVEN)
+        return {"ok": False, "error": "range"} | ({"field": error.field} if told else {})
+    except errors.UnknownIdError:
+        return {"ok": False, "error": "unknown-id"}
     except OverflowError:
         return {"ok": False, "error": "range"}
 
@@ -232,11 +236,48 @@ def link_data(known: Facts, request: Request) -> dict[str, Any]:
     }
 
 
+def stream_encode(known: Facts, request: Request) -> dict[str, Any]:
+    form, direction = _envelope(known, request)
+    id, data, values = number(request, "id"), octets(request), request.get("values", {})
+    if not isinstance(values, dict) or not set(values) <= set(GIVEN):
+        raise Refusal("request", detail="`values` are those of fields that the sender chooses, by role")
+    chosen = {role: number(values, role) for role in values}
+    return {"bytes": stream.encode(form, direction, id, data, chosen).hex()}
+
+
+def stream_events(known: Facts, request: Request) -> dict[str, Any]:
+    form, direction = _envelope(known, request)
+    limit = number(request, "limit", form.header_bytes + form.trailer_bytes, form.longest, form.longest)
+    chunks = [_hex(chunk) for chunk in rows(request, "chunks")]
+    decoder = stream.Decoder(form, direction, limit)
+    events = [_stream_event(event) for chunk in chunks for event in decoder.feed(chunk)]
+    return {"events": events, "discarded": decoder.discarded, "pending": decoder.pending}
+
+
+def _envelope(known: Facts, request: Request) -> tuple[Stream, str]:
+    direction = text(request, "direction")
+    if direction not in DIRECTIONS:
+        raise Refusal("request", detail="there is no such direction")
+    return facts.need(known.stream, "stream"), direction
+
+
+def _stream_event(event: stream.Event) -> dict[str, Any]:
+    row: dict[str, Any] = {"event": event.event}
+    if event.id is not None:
+        row["id"] = event.id
+    if event.event == stream.MESSAGE:
+        row |= {"bytes": event.data.hex(), **dict(event.values)}
+    if event.event == stream.GAP:
+        row["missing"] = event.missing
+    return row
+
+
 OPS: dict[str, Callable[[Facts, Request], dict[str, Any]]] = {
     op.__name__: op
     for op in (
         crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
         log_encode, log_message_decode, log_message_encode, dos_time, hole_map, index_decode, index_encode, identify,
         link_data, scripts.client, scripts.file,
+        stream_encode, stream_events,
     )
 }  # fmt: skip

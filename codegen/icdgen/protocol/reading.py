@@ -10,6 +10,8 @@ from typing import Any, NamedTuple, TypeVar
 
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol.declared import Fact, read
+from icdgen.protocol.envelope import Stream
+from icdgen.protocol.enveloping import stream_of
 from icdgen.protocol.sections import (
     BUSES,
     PROCEDURES,
@@ -77,6 +79,8 @@ class Reader:
 
     def telemetry_ids(self) -> Direction:
         ids = self.section("message_id", "telemetry")
+        if self.section("stream"):
+            return Direction(1, 0)
         # Without telemetry there is none of them, first above last, and what comes is no reply.
         return Direction(
             ids.get("first", min(self.telemetry, default=1)), ids.get("last", max(self.telemetry, default=0))
@@ -146,6 +150,13 @@ class Reader:
             telemetry_buses=tuple(telemetry.get("buses", BUSES)) if telemetry else (),
             bytes=telecommand.get("extra_bytes", telemetry.get("extra_bytes", 1)),
         )
+
+    def stream(self) -> Stream | None:
+        section = self.section("stream")
+        if not section:
+            return None
+        made = stream_of(self.node, section, self.section("checksums"), self.telecommands, self.telemetry)
+        return Stream(**made)
 
     def mask(self) -> LogMask | None:
         slot, bits = self.section("log_mask").get("frame_bytes", 0), {}

@@ -1,6 +1,6 @@
 """The parts of a node's protocol: what the ICD says of each, declared once. See `icdgen.protocol.declared`.
 
-A part stands for a section of the ICD (`PLACES`). Times are milliseconds, sizes bytes.
+A part stands for a section of the ICD (`icdgen.protocol.places`). Times are milliseconds, sizes bytes.
 """
 
 from __future__ import annotations
@@ -388,25 +388,3 @@ class Settings:
     retries: int = number("retries", "how often a request is sent again", 0, BYTE, 3)
     poll_interval: int = time("poll_interval_ms", "time between two polls for an acknowledge", 20)
     poll_timeout: int = time("poll_timeout_ms", "how long a telecommand may take to be processed", 5000)
-
-
-PLACES: tuple[tuple[str, type[Any]], ...] = (
-    ("client", Settings),
-    ("uart.framing", Framing),
-    ("uart.acknowledge", Acknowledge),
-    ("can", Can),
-    ("can.extended", Extended),
-    ("crc8", Crc),
-    ("crc8", Checksum),
-    ("crc16", Crc),
-    ("log_mask", LogMask),
-    ("telemetry_log", LogFile),
-    ("unsolicited_log", LogMessage),
-    ("index_file", Index),
-    ("file_transfer", Files),
-    ("file_transfer.hole_map", HoleMap),
-    *((f"file_transfer.{name}", part) for name, part in PROCEDURES.items()),
-    ("program_copy", Operation),
-    ("program_information", Operation),
-)
-"""Where the facts of each part stand in the protocol section of an ICD."""

@@ -15,7 +15,7 @@ from icdgen_runtime._errors import IcdError
 from icdgen_runtime.wire.times import dos_time_pack
 
 from icdgen.backends.python.objects.links import link_of
-from icdgen.errors import UserError
+from icdgen.errors import UserError, no_talk
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts
 from icdgen.sim import control, faults, serve
@@ -53,9 +53,14 @@ def node_of(icd: Icd, name: str | None) -> Node:
     if name is None:
         if len(able) == 1:
             return able[0]
+        enveloped = [node.name for node in icd.nodes if facts.of(icd, node).stream]
+        if enveloped and not able:
+            raise no_talk(enveloped[0])
         names = ", ".join(node.name for node in able)
         raise UserError("it is not said which node is meant", f"--node NAME; nodes: {names}" if able else "")
     node = find_node(icd, name)
+    if facts.of(icd, node).stream:
+        raise no_talk(name)
     if not has_protocol(icd, node):
         text = f"the ICD does not say how messages of {node.name} are framed on a stream of bytes"
         raise UserError(text, "`protocol.uart.framing` says so, see docs/icd-format.md")

@@ -11,7 +11,7 @@ from icdgen import __version__
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts, ops
 from icdgen.protocol.facts import Facts
-from icdgen.vectors.wire import clients, files, i2c, logs, operations, packets, procedures, streams, waits
+from icdgen.vectors.wire import clients, envelopes, files, i2c, logs, operations, packets, procedures, streams, waits
 
 FORMAT = 1
 
@@ -56,6 +56,9 @@ def text(icd: Icd) -> str | None:
 def _requests(known: Facts) -> Iterator[tuple[str, dict[str, Any]]]:
     source = random.Random(known.node.name)
     yield "facts that nothing but a user's own code reads", {"op": "link_data"}
+    if known.stream:
+        yield from envelopes.requests(known, source)
+        return
     yield from streams.checksums(known, source)
     if known.framing:
         yield from streams.encoded(known, source)

@@ -651,6 +651,7 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
         ICDGEN_OF_FILES(&program_copy), /* program copy */
         ICDGEN_OF_FILES(&program_information), /* program information */
         &identification, /* identification */
+        NULL, /* envelope */
     };
     /* clang-format on */
     return &link;

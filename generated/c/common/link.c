@@ -511,6 +511,7 @@ ICDGEN_API const icd_link_t *common_link(void)
         NULL, /* program copy */
         NULL, /* program information */
         &identification, /* identification */
+        NULL, /* envelope */
     };
     /* clang-format on */
     return &link;

@@ -1106,6 +1106,7 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         NULL, /* program copy */
         NULL, /* program information */
         &identification, /* identification */
+        NULL, /* envelope */
     };
     /* clang-format on */
     return &link;

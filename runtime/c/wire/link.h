@@ -5,6 +5,7 @@
 #include "linkage.h"
 #include "forms.h"
 #include "procedure_forms.h"
+#include "stream_form.h"
 
 /** How a client waits and tries again, in milliseconds. */
 typedef struct {
@@ -61,6 +62,7 @@ typedef struct {
     const icd_operation_form_t *program_copy;
     const icd_operation_form_t *program_information;
     const icd_step_t *identification;
+    const icd_stream_form_t *stream; /**< Then ids have up to 32 bits, and nothing else of the link is described. */
 } icd_link_t;
 
 /** Whether the node has the messages of that one, which is so of itself and of those that it includes. */

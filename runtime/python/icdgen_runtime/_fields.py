@@ -186,11 +186,9 @@ class FieldInfo:
     @property
     def fresh(self) -> _lazy.Any:
         """The raw value in a new message: of a struct a new one."""
-        if self.struct is None:
-            return self.default
         made = self.struct
-        if self.is_open:
-            return ()
+        if made is None or self.is_open:
+            return self.default
         return tuple(made() for _ in range(self.elements)) if self.elements else made()
 
     def _values(self) -> tuple[_lazy.Any, ...]:
@@ -408,7 +406,8 @@ def part(
     **told: _lazy.Any,
 ) -> _lazy.Any:
     """A struct, or as many of them as there are elements: the class of one is ``factory``."""
-    return FieldInfo("", name, at, bits, "struct", struct=factory, **told)
+    told.update(default=() if told.get("is_open") else None, struct=factory)
+    return FieldInfo("", name, at, bits, "struct", **told)
 
 
 def scaled(p: int, c: int, q: int, *, default: _lazy.Any) -> _lazy.Any:

@@ -103,12 +103,12 @@ class Front:
         link = self.plan["nodes"][place]["link"] if place is not None else None
         try:
             if link is None:
-                checked = wire.Asking(lambda *words: _nothing(), {"longest": 1 << 16, "framing": None})
+                checked = wire.Asking(lambda *words: _nothing(), {"longest": 1 << 16, "around": 0, "framing": None})
             else:
                 checked = wire.Asking(lambda word, *more: self.ask(word, place, *more), link)
             return {**wire.OPS, **scripts.OPS}[op](checked, request)
         except Refusal as refusal:
-            if refusal.answer["error"] == "range" and op != "dos_time":
+            if refusal.answer["error"] == "range" and op not in ("dos_time", "stream_encode"):
                 raise Refusal("range") from None
             raise
 

@@ -52,5 +52,6 @@ def _message(message: Message) -> dict[str, Any]:
 
 def _link(icd: Icd, node: Node) -> dict[str, Any]:
     known = facts.of(icd, node)
-    framing = known.framing
-    return {"longest": known.longest, "framing": [framing.escape, framing.end] if framing else None}
+    framing, stream = known.framing, known.stream
+    around = stream.header_bytes + stream.trailer_bytes if stream else 0
+    return {"longest": known.longest, "around": around, "framing": [framing.escape, framing.end] if framing else None}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from icdgen.protocol.envelope import DIRECTIONS, GIVEN
 from icdgen.protocol.request_keys import Refusal, flag, hex_bytes, mappings, number, octets, rows, text
 from icdgen.protocol.sections import CAN_KINDS
 from tests.conformance.front.program import Facts, Reply, items
@@ -179,6 +180,30 @@ def link_data(to: Asking, request: Request) -> Answer:
     return {key: known.get(key) for key in USERS}
 
 
+def stream_encode(to: Asking, request: Request) -> Answer:
+    direction = _direction(request)
+    id, data, values = number(request, "id"), octets(request).hex(), request.get("values", {})
+    if not isinstance(values, dict) or not set(values) <= set(GIVEN):
+        raise Refusal("request", detail="`values` are those of fields that the sender chooses, by role")
+    chosen = [number(values, role) if role in values else "" for role in GIVEN]
+    return typed(to.ask("stream_encode", direction, id, data, *chosen).facts)
+
+
+def stream_events(to: Asking, request: Request) -> Answer:
+    direction, longest = _direction(request), to.link["longest"]
+    limit, chunks = number(request, "limit", to.link["around"], longest, longest), rows(request, "chunks")
+    reply = to.ask("stream_events", direction, limit, *(hex_bytes(chunk).hex() for chunk in chunks))
+    return {"events": [event(*row) for row in reply.rows], **typed(reply.facts)}
+
+
+def _direction(request: Request) -> int:
+    """Its number for the program."""
+    direction = text(request, "direction")
+    if direction not in DIRECTIONS:
+        raise Refusal("request", detail="there is no such direction")
+    return DIRECTIONS.index(direction)
+
+
 def _joined(reply: Reply) -> Answer:
     """Bytes that may come in pieces."""
     return {"bytes": "".join(items(reply.facts["bytes"]))}
@@ -193,6 +218,6 @@ OPS: dict[str, Callable[[Asking, Request], Answer]] = {
     for op in (
         crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
         log_encode, log_message_decode, log_message_encode, dos_time, hole_map, index_decode, index_encode, identify,
-        link_data,
+        link_data, stream_encode, stream_events,
     )
 }  # fmt: skip

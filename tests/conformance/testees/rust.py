@@ -21,7 +21,7 @@ from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
 
-WIRE = ("logs", "scripts", "wire")  # what answers requests about the protocol
+WIRE = ("logs", "scripts", "stream", "wire")  # what answers requests about the protocol
 
 
 class Route(NamedTuple):

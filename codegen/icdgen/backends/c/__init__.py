@@ -68,7 +68,8 @@ class CBackend:
                 link = {**_link(node, links[node.name]), **shared}
                 yield folder / "link.h", render("link.h.j2", **link)
                 yield folder / "link.c", render("link.c.j2", **link)
-                yield folder / "client.h", render("client.h.j2", **_client(node, links[node.name]), **shared)
+                if node.has_client:
+                    yield folder / "client.h", render("client.h.j2", **_client(node, links[node.name]), **shared)
             of_node = {**_node(node), "id_type": f"uint{description.id_bits}_t"}
             yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", node=node, **of_node, **shared)
 
@@ -182,7 +183,8 @@ def _node(node: NodeDescription) -> dict[str, object]:
     headers = [f"{name}.h" for name in node.model.includes]
     headers += [f"{node.name}/enums.h"] if node.enums else []
     headers += [f"{node.name}/{one.name}.h" for one in node.composites]
-    headers += [f"{node.name}/link.h", f"{node.name}/client.h"] if node.is_linked else []
+    headers += [f"{node.name}/link.h"] if node.is_linked else []
+    headers += [f"{node.name}/client.h"] if node.has_client else []
     return {
         "about": comment([FILE, f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),
         "includes": ["icdgen.h", *headers],

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
+from icdgen.backends.c import streams
 from icdgen.backends.c.facts import TYPES, boolean, or_none, spelled
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP, in_rows
 from icdgen.describe.links import CAN_PARTS, INDEX_PARTS, Assumptions, LinkDescription, SentMessage, StepDescription
 from icdgen.protocol.declared import Kind, facts_of
+from icdgen.protocol.envelope import CRC, StreamRow
 from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
@@ -42,6 +44,8 @@ class Row(NamedTuple):
 def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
     """Sizes of buffers: name, bytes, what it is."""
     known = link.facts
+    if known.stream:
+        return streams.sizes(known.stream)
     rows = [("LONGEST", known.longest, "Bytes of the longest message of either direction, with id and checksum.")]
     slot = 1 + link.joined_bytes if known.can else 0
     if known.can:
@@ -112,6 +116,7 @@ class _Tables:
             *self.optional("LOGS", self.logs()),
             *self.optional("FILES", self.of_files()),
             Row(self.named_step("identification", link.identification), "identification"),
+            Row(self.stream(), "envelope"),
         ]
         others = (f"{key}: {why}" for section, key, why in self.assumed.others() if not section.startswith("message "))
         self.add("link", "icd_link_t", rows, map(plain, others))
@@ -247,10 +252,10 @@ class _Tables:
             Row(self.part("can_extended", form, "can.extended"), "messages of several packets"),
         )
 
-    def crc(self, name: str, one: Crc) -> str:
+    def crc(self, name: str, one: Crc, is_crc: bool = True) -> str:
         """The initialiser of a CRC without its braces; the table for whole bytes is one of its own."""
         table = "NULL"
-        if one.width <= 16:
+        if is_crc and one.width <= 16:
             entries = (f"{value:#0{2 + -(-one.width // 4)}x}u" for value in crc_table(one))
             table = f"ICDGEN_TABLE({self.numbers(f'{name}_table', 'uint16_t', entries, 8)})"
             self.tables[-1] = self.tables[-1]._replace(unless="ICDGEN_NO_TABLES")
@@ -263,6 +268,35 @@ class _Tables:
     def crc16(self) -> str:
         one = self.known.crc16
         return self.add("crc16", TYPES[Crc], [Row(f"{_CRC}{self.crc('crc16', one)}")]) if one else "NULL"
+
+    def stream(self) -> str:
+        form = self.known.stream
+        if form is None:
+            return "NULL"
+        fields = self.array("envelope", "icd_envelope_field_t", streams.field_rows(form))
+        check = "NULL"
+        if form.check:
+            crc = self.crc("check", form.check.crc, form.check.kind == CRC)
+            row = Row(f"ICD_CHECK_{form.check.kind.upper()}, {{{crc}}}")
+            check = self.add("check", "icd_check_form_t", [row, Row(streams.covered(form.check), "covered")])
+        both = (("sent", form.telecommands), ("received", form.telemetry))
+        rows = [self.array(name, "icd_stream_row_t", map(self.enveloped, found)) for name, found in both]
+        sizes = f"{streams.DELIMITERS[form.delimited_by]}, {form.header_bytes}u, {form.trailer_bytes}u"
+        parts = [
+            Row(sizes, "bytes of header, trailer"),
+            Row(f"{form.length_plus}, {boolean(form.per_id)}", "length beside the data, a sequence for each id"),
+            Row(f"{fields}, {len(form.fields)}u", "fields"),
+            Row(check, "checksum"),
+            Row(f"{{{rows[0]}, {rows[1]}}}, {{{len(form.telecommands)}u, {len(form.telemetry)}u}}", "messages"),
+        ]
+        assumed = (plain(f"{key}: {why}") for key, why in self.assumed.of_section("stream"))
+        return self.add("stream", "icd_stream_form_t", parts, assumed)
+
+    @staticmethod
+    def enveloped(row: StreamRow) -> Row:
+        """A message in an envelope."""
+        numbers = f"{row.id:#x}u, {row.least}u, {row.most}u, {boolean(row.cuts_zeros)}, {row.seed}u"
+        return Row(f"{{{numbers}}}", plain(row.name))
 
     def log_mask(self) -> str:
         mask = self.known.mask

@@ -6,6 +6,7 @@ from dataclasses import fields
 from typing import Any
 
 from icdgen.backends.python.literals import Call, Noted, Verbatim, expression
+from icdgen.backends.python.streams import stream_call
 from icdgen.describe.links import Assumptions, LinkDescription, SentMessage
 from icdgen.protocol.declared import facts_of
 from icdgen.protocol.sections import (
@@ -95,6 +96,7 @@ class _Maker:
             "identification": facts.identification and self.step(facts.identification),
             "statistics": facts.statistics and self.step(facts.statistics),
             "boot_time": facts.boot_ms,
+            "stream": self.noted_rest(stream_call(facts.stream), "stream") if facts.stream else None,
             "assumptions": self.assumptions() or None,
         }
         return _call("Link", **parts, **{key: part for key, part in optional.items() if part is not None})

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from icdgen.backends.literals import Brackets, Item, written
 from icdgen.backends.rust.facts import member_name, type_name, value_of
 from icdgen.backends.rust.literals import Expression, flat, flat_rows, part, rows, some, spelled, struct
+from icdgen.backends.rust.streams import stream_of
 from icdgen.backends.rust.text import doc, integer, prose, string
 from icdgen.describe import FieldDescription
 from icdgen.describe.comments import sentence
@@ -42,6 +43,7 @@ class LinkValues(NamedTuple):
     doc: str
     literal: str
     longest: str
+    sequences: str  # empty where there is no envelope
 
 
 class Sizes(NamedTuple):
@@ -66,10 +68,11 @@ def values(link: LinkDescription) -> LinkValues:
     """The link of a node."""
     known, link_literal = link.facts, _Literal(link)
     text = written(link_literal.link(), _note)
+    sequences = integer(known.stream.sequences) if known.stream else ""
     about = [f"The protocol of node `{known.node.name}`. What the manual leaves open is marked as assumed."]
     for section, key, why in link_literal.assumed.others():
         about.append(f"Assumed (`{section}`, `{key}`): {prose(sentence(why))}")
-    return LinkValues(known.node.name, doc(about), text, integer(longest(link)))
+    return LinkValues(known.node.name, doc(about), text, integer(longest(link)), sequences)
 
 
 def longest(link: LinkDescription) -> int:
@@ -130,6 +133,7 @@ class _Literal:
             part("program_information", some(self.struct(known.program_information, "program_information"))),
             part("identification", some(_step(link.identification, "telemetry"))),
             part("boot_ms", some(known.boot_ms)),
+            part("stream", some(stream_of(known.stream) if known.stream else None)),
         )
 
     def struct(self, one: object, section: str, *made: Item) -> Brackets | None:

@@ -17,6 +17,7 @@ from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its r
     composites,
     conditional,
     duplicates,
+    envelopes,
     errata,
     formulas,
     identifiers,

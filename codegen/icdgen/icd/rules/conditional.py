@@ -51,14 +51,15 @@ def carried(ctx: Context) -> Iterator[Fault]:
     """Links, logs and composites take every field for one that is there."""
     told = {id(message.source) for _, message, _ in ctx.having["when"]}
     for node in ctx.icd.nodes if told else ():
-        linked, spoken = bool(ctx.protocol_of(node)), ctx.messages_of(node)
-        for message in spoken:
+        protocol = ctx.protocol_of(node)
+        linked = bool(protocol) and "stream" not in protocol
+        for message in ctx.messages_of(node):
             if linked and id(message.source) in told:
                 text = (
                     f"fields of {quote(message.name)} are not always there, which the links of `protocol` do not carry"
                 )
                 yield Fault(
-                    message.source, message.source.at("name"), text, "leave `protocol` out of this ICD, or `when`"
+                    message.source, message.source.at("name"), text, "leave `when` or `protocol` out of this ICD, or describe the link as a `stream`"
                 )
     for message, node in ctx.messages if told else ():
         named = {one.name for one in ctx.messages_of(node) if id(one.source) in told}

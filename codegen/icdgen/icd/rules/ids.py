@@ -20,7 +20,7 @@ KEYS = {
     TELEMETRY: (("id", TELEMETRY),),
     CONFIGURATION: (("set_id", TELECOMMAND), ("get_id", TELEMETRY)),
 }
-LINKED_BITS = 8  # of an id in every frame that a protocol section can describe
+LINKED_BITS = 8  # of an id in every frame that a protocol section can describe, but for those of `stream`
 
 
 class Use(NamedTuple):
@@ -136,10 +136,11 @@ def bytes_of_ids(ctx: Context) -> Iterator[Fault]:
 @rule("ICD112")
 def ids_that_links_carry(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        if node.id_bits > LINKED_BITS and ctx.protocol_of(node):
+        protocol = ctx.protocol_of(node)
+        if node.id_bits > LINKED_BITS and protocol and "stream" not in protocol:
             head = node.source["node"]
             message = f"ids have {node.id_bits} bits, but the links that `protocol` describes carry ids of one byte"
-            help = "leave `protocol` out: messages can be read and written without it; or correct `id_bits`"
+            help = "describe the link as a `stream`, or leave `protocol` out; or correct `id_bits`"
             yield Fault(head, head.at("id_bits"), message, help)
 
 

@@ -46,7 +46,8 @@ def at_the_end(ctx: Context) -> Iterator[Fault]:
 def carried(ctx: Context) -> Iterator[Fault]:
     """Links, logs and composites know each message by one length."""
     for node in ctx.icd.nodes:
-        linked = bool(ctx.protocol_of(node))
+        protocol = ctx.protocol_of(node)
+        linked = bool(protocol) and "stream" not in protocol
         for message in ctx.messages_of(node):
             if message.tail is not None and linked:
                 longest = f"{message.least} to {count(message.length, 'byte')}"
@@ -66,7 +67,8 @@ def carried(ctx: Context) -> Iterator[Fault]:
 @rule("ICD150")
 def ends_early(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        linked = bool(ctx.protocol_of(node))
+        protocol = ctx.protocol_of(node)
+        linked = bool(protocol) and "stream" not in protocol
         for message in ctx.messages_of(node):
             why = _never_early(message, linked) if message.may_end_early else ""
             if why:

@@ -54,6 +54,8 @@ __all__ = [
     "Session",
     "Settings",
     "Stray",
+    "StreamDecoder",
+    "StreamEvent",
     "Timeout",
     "TooLongError",
     "UartDecoder",
@@ -72,6 +74,7 @@ __all__ = [
     "read_index",
     "serial_port",
     "socket_port",
+    "stream_encode",
     "uart_encode",
     "uart_kind",
     "write_index",
@@ -130,6 +133,9 @@ if TYPE_CHECKING:
     from .programs import ProgramCopy as ProgramCopy
     from .programs import ProgramInformation as ProgramInformation
     from .session import Session as Session
+    from .stream import StreamDecoder as StreamDecoder
+    from .stream import StreamEvent as StreamEvent
+    from .stream import stream_encode as stream_encode
     from .times import DosTime as DosTime
     from .times import dos_time_pack as dos_time_pack
     from .times import dos_time_unpack as dos_time_unpack
@@ -177,6 +183,7 @@ _HOMES = {
     "procedures": ("Procedure",),
     "programs": ("ProgramCopy", "ProgramInformation"),
     "session": ("Session",),
+    "stream": ("StreamDecoder", "StreamEvent", "stream_encode"),
     "times": ("DosTime", "dos_time_pack", "dos_time_unpack"),
     "transfer": ("Download", "Erase", "FileEntry", "FileList", "Format", "Upload"),
     "uart": ("UartDecoder", "UartEvent", "uart_encode", "uart_kind"),

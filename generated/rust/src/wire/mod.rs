@@ -26,6 +26,7 @@ mod message;
 mod request;
 #[cfg(feature = "std")]
 pub mod session;
+pub mod stream;
 mod time;
 pub mod uart;
 

@@ -9,6 +9,11 @@ from typing import Generic, Literal, NamedTuple, Optional, Union
 
 from .._hints import N
 from .._lazy import Messages
+from .envelope import CheckForm as CheckForm  # noqa: PLC0414
+from .envelope import CrcForm as CrcForm  # noqa: PLC0414
+from .envelope import EnvelopeField as EnvelopeField  # noqa: PLC0414
+from .envelope import Stream as Stream  # noqa: PLC0414
+from .envelope import StreamRow as StreamRow  # noqa: PLC0414
 
 Bus = Literal["uart", "i2c", "can"]
 CanKind = Literal[
@@ -83,25 +88,6 @@ class Polled(NamedTuple):
     processed: str
     error: str
     parameter: str
-
-
-class CrcForm(NamedTuple):
-    """Parameters of a CRC, as catalogues give them. ``empty``: of no bytes at all."""
-
-    width: int
-    """Bits of the checksum."""
-    polynomial: int
-    """Generator polynomial, most significant bit first, without the leading term."""
-    init: int
-    """Value of the register at the beginning."""
-    reflect_in: bool
-    """Whether each byte enters least significant bit first."""
-    reflect_out: bool
-    """Whether the bits of the register are reversed at the end."""
-    xor_out: int
-    """What the register is combined with at the end."""
-    empty: Optional[int] = None
-    """Checksum of no bytes at all, where it is not what the algorithm gives."""
 
 
 class Checksum(NamedTuple):
@@ -433,6 +419,7 @@ class Facts(NamedTuple):
     identification: Optional[Step] = None
     statistics: Optional[Step] = None
     boot_time: Optional[int] = None
+    stream: Optional[Stream] = None
     assumptions: tuple[Assumption, ...] = ()
     """What the manual leaves open, and what is held of it."""
 

@@ -501,4 +501,5 @@ pub static LINK: NodeLink<crate::bootloader::Node> = NodeLink::new(link::Link {
         payload: None,
     }),
     boot_ms: Some(5_000),
+    stream: None,
 });

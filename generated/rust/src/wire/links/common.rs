@@ -379,4 +379,5 @@ pub static LINK: NodeLink<crate::common::Node> = NodeLink::new(link::Link {
         payload: None,
     }),
     boot_ms: Some(5_000),
+    stream: None,
 });

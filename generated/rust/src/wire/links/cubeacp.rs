@@ -634,4 +634,5 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
         payload: None,
     }),
     boot_ms: Some(5_000),
+    stream: None,
 });

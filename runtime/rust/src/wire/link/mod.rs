@@ -5,11 +5,15 @@
 mod can;
 mod logs;
 mod steps;
+mod stream;
 mod transfer;
 
 pub use self::can::{Can, CanPart, CanTypes, Extended};
 pub use self::logs::{IndexForm, LogBit, LogFile, LogMask, LogMessage, Span, TimeForm, TimePart};
 pub use self::steps::{Piece, Place, Role, Step};
+pub use self::stream::{
+    CheckForm, CheckKind, Delimiter, EnvelopeField, EnvelopeRole, Stream, StreamRow,
+};
 pub use self::transfer::{
     DownloadForm, ErasureForm, Files, HoleMapForm, ListForm, MapMessage, OperationForm, UploadForm,
 };
@@ -75,6 +79,8 @@ pub struct Link {
     pub identification: Option<Step>,
     /// How long the bootloader waits before it starts the program.
     pub boot_ms: Option<u32>,
+    /// The envelope of messages: ids then have up to 32 bits, and nothing else of the link is described.
+    pub stream: Option<Stream>,
 }
 
 impl Link {

@@ -33,6 +33,7 @@ static inline bool answers(icd_status_t status)
 icd_can_packet_t next_packet(void);
 void put_packet(const char *row, const icd_can_packet_t *packet);
 
-extern const testee_op_t testee_wire_ops[], testee_bus_ops[], testee_file_ops[], testee_log_ops[], testee_script_ops[];
+extern const testee_op_t testee_wire_ops[], testee_bus_ops[], testee_file_ops[], testee_log_ops[], testee_script_ops[],
+    testee_stream_ops[];
 
 #endif

@@ -21,12 +21,14 @@ from . import _testee_scripts
 from ._testee_scripts import packet
 from .can import CanEvent, CanJoiner, CanMessage, can_split
 from .crc import crc8, crc16
+from .envelope import Direction
 from .errors import ChecksumError, TooLongError, UnsupportedError
 from .files import HoleMap, IndexEntry, read_index, write_index
 from .i2c import i2c_read_length, i2c_reply, i2c_write
 from .identity import identify
 from .link import CanKind, Link
 from .logs import LogFrame, LogMessage, LogReader, LogWriter
+from .stream import StreamDecoder, StreamEvent, stream_encode
 from .times import DosTime, dos_time_pack, dos_time_unpack
 from .uart import UartDecoder, uart_encode, uart_kind
 
@@ -130,10 +132,7 @@ def _i2c_reply(link: Link, words: Words) -> str:
 
 
 def _frames(frames: Iterable[LogFrame]) -> str:
-    return "".join(
-        row("frame", bit=one.bit, id="" if one.id is None else one.id, bytes=one.data)
-        for one in frames
-    )
+    return "".join(row("frame", bit=one.bit, id="" if one.id is None else one.id, bytes=one.data) for one in frames)
 
 
 def _log_decode(link: Link, words: Words) -> str:
@@ -223,6 +222,31 @@ def _link_data(link: Link, words: Words) -> str:
     )
 
 
+_DIRECTIONS: tuple[Direction, ...] = ("telecommand", "telemetry")
+_VALUES = ("sequence", "source", "destination", "type", "flags", "time")
+
+
+def _stream_encode(link: Link, words: Words) -> str:
+    direction, id, data = _DIRECTIONS[number(words)], number(words), octets(words)
+    given = {role: maybe(words) for role in _VALUES}
+    values = {role: value for role, value in given.items() if value is not None}
+    return f" bytes={stream_encode(link, id, data, direction, **values).hex()}"
+
+
+def _stream_events(link: Link, words: Words) -> str:
+    decoder = StreamDecoder(link, _DIRECTIONS[number(words)], number(words))
+    said = "".join(_stream_event(event) for chunk in words for event in decoder.feed(bytes.fromhex(chunk)))
+    return f"{said} ok discarded={decoder.discarded} pending={decoder.pending}"
+
+
+def _stream_event(event: StreamEvent) -> str:
+    said = f" {event.event}" + ("" if event.id is None else f" id={event.id}")
+    if event.event == "message":
+        said += f" bytes={event.data.hex()}"
+        said += "".join(f" {role}={value}" for role, value in event.values.items())
+    return f"{said} missing={event.missing}" if event.event == "gap" else said
+
+
 _OPERATIONS = {
     "crc8": _crc8,
     "crc16": _crc16,
@@ -245,6 +269,8 @@ _OPERATIONS = {
     "index_encode": _index_encode,
     "identify": _identify,
     "link_data": _link_data,
+    "stream_encode": _stream_encode,
+    "stream_events": _stream_events,
     "client": _testee_scripts.client,
     "file": _testee_scripts.file,
 }

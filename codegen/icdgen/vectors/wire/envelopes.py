@@ -1,0 +1,180 @@
+"""Messages in the envelope of a link: sent, whole and in pieces, after noise, damaged, cut off, one within another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from random import Random
+
+from icdgen.protocol import stream
+from icdgen.protocol.envelope import DIRECTIONS, GIVEN, PACKET, Stream, StreamRow
+from icdgen.protocol.facts import Facts, need
+from icdgen.vectors.wire import Requests
+
+_SPLITS = 40  # of a message, at most
+_MARKERS = bytes((0x00, 0x7D, 0x7E, 0xC0, 0xDB, 0xDC, 0xDD, 0xFF))  # which delimiters are made of
+
+
+def requests(known: Facts, source: Random) -> Requests:
+    """All that is asked of the envelope."""
+    form = need(known.stream, "stream")
+    for direction in DIRECTIONS:
+        yield from _encoded(form, direction, source)
+        if form.rows(direction):
+            yield from _streams(form, direction, source)
+    yield "no such message", _encode(DIRECTIONS[0], _unknown(form, DIRECTIONS[0]), b"")
+
+
+def _encode(direction: str, id: int, data: bytes, **values: int) -> dict[str, object]:
+    return {"op": "stream_encode", "direction": direction, "id": id, "bytes": data.hex(), "values": values}
+
+
+def _unknown(form: Stream, direction: str) -> int:
+    """An id that no message has, of those that the envelope can carry where it can."""
+    known = {row.id for row in form.rows(direction)}
+    return next(id for id in range(len(known) + 1) if id not in known)
+
+
+def _data(row: StreamRow, source: Random) -> Iterator[tuple[str, bytes]]:
+    """Data of a message, of the lengths that it can have."""
+    for size in sorted({row.least, (row.least + row.most) // 2, row.most}):
+        yield f"{size} random bytes", source.randbytes(size)
+    yield "zeros", bytes(row.most)
+    yield "ones", b"\xff" * row.most
+    yield "what delimiters are made of", bytes(source.choices(_MARKERS, k=row.most))
+    if row.most > 2:
+        yield "zeros at the end", source.randbytes(row.most // 2) + bytes(row.most - row.most // 2)
+        yield "one byte, then zeros", b"\x01" + bytes(row.most - 1)
+
+
+def _encoded(form: Stream, direction: str, source: Random) -> Requests:
+    """Messages as they are sent; and refused ones."""
+    for row in form.rows(direction):
+        for why, data in _data(row, source):
+            yield f"{row.name}: {why}", _encode(direction, row.id, data)
+            line = stream.encode(form, direction, row.id, data)
+            yield f"{row.name}: {why}, and back", _events(direction, [line])
+        for size in {row.least - 1, row.most + 1} - {-1}:
+            yield f"{row.name}: a length that it does not have", _encode(direction, row.id, bytes(size))
+    for row in form.rows(direction)[:1]:
+        data = source.randbytes(row.most)
+        for field in form.fields:
+            if field.role in GIVEN:
+                for value in sorted({0, 1, field.mask // 3, field.mask}):
+                    yield f"{field.role} {value}", _encode(direction, row.id, data, **{field.role: value})
+                    line = stream.encode(form, direction, row.id, data, {field.role: value})
+                    yield f"{field.role} {value}, and back", _events(direction, [line])
+                if field.bits < 32:
+                    one = {field.role: field.mask + 1}
+                    yield f"a {field.role} that does not fit", _encode(direction, row.id, data, **one)
+        absent = next((role for role in GIVEN if form.of(role) is None), None)
+        if absent:
+            yield "a value that no field takes", _encode(direction, row.id, data, **{absent: 7})
+
+
+def _events(direction: str, chunks: list[bytes], **more: int) -> dict[str, object]:
+    return {"op": "stream_events", "direction": direction, "chunks": [chunk.hex() for chunk in chunks], **more}
+
+
+def _streams(form: Stream, direction: str, source: Random) -> Requests:
+    """Streams that are cut, noisy, damaged, broken off."""
+    rows = form.rows(direction)
+    short = min(rows, key=lambda row: row.most)
+    lines = [_line(form, direction, row, source, number) for number, row in enumerate(rows[:6])]
+    good = _line(form, direction, short, source, 0)
+    if form.delimited_by == PACKET:
+        yield "packets, one after the other", _events(direction, lines)
+        yield "a packet of nothing", _events(direction, [b"", good])
+        yield "two messages in a packet", _events(direction, [good + good])
+        for why, damaged in _damaged(good, source):
+            yield why, _events(direction, [damaged, good])
+        return
+    whole = [
+        ("messages, one after the other", b"".join(lines)),
+        ("noise before, between and after", b"\x00\xff\x7f" + good + b"noise" + good + b"\x55"),
+        ("random bytes before", source.randbytes(300) + good + good),
+        ("random bytes rich in delimiters before", bytes(source.choices(_MARKERS, k=300)) + good + good),
+        ("the header of a message, then whole ones", good[: max(1, form.header_bytes)] + good + good),
+        ("a message that is cut off, then whole ones", good[:-1] + good + good + good),
+        ("a message that has only begun", good + good[: len(good) // 2]),
+        *((why, damaged + good + good) for why, damaged in _damaged(good, source)),
+        *_nested(form, direction, rows, good),
+        *_strangers(form, direction, short, source, good),
+        *_gaps(form, direction, short, source),
+        ("nothing", b""),
+    ]
+    for why, line in whole:
+        yield why, _events(direction, [line])
+        yield f"{why}, byte by byte", _events(direction, [bytes([byte]) for byte in line])
+        cuts = sorted(source.sample(range(len(line) + 1), min(5, len(line))))
+        pieces = [line[a:b] for a, b in zip([0, *cuts], [*cuts, len(line)], strict=True)]
+        yield f"{why}, cut at odd places", _events(direction, pieces)
+    both = b"\x01" + good + good
+    for at in range(1, min(len(both), _SPLITS)):
+        yield f"two messages after noise, cut behind byte {at}", _events(direction, [both[:at], both[at:]])
+    for more in (-1, 0):
+        limit = form.header_bytes + short.most + form.trailer_bytes + more
+        if limit >= form.header_bytes + form.trailer_bytes:
+            why = "that it just fits" if more == 0 else "too small by one"
+            yield f"a buffer {why}", _events(direction, [good + lines[-1] + good + good], limit=limit)
+
+
+def _line(form: Stream, direction: str, row: StreamRow, source: Random, number: int) -> bytes:
+    """A message on the line, with that sequence number."""
+    values = {"sequence": number} if form.of("sequence") else {}
+    return stream.encode(form, direction, row.id, source.randbytes(row.most), values)
+
+
+def _damaged(good: bytes, source: Random) -> Iterator[tuple[str, bytes]]:
+    """The message with something wrong, one thing at a time."""
+    for at in sorted({0, 1, 2, 3, 4, len(good) // 2, len(good) - 2, len(good) - 1} & set(range(len(good)))):
+        flipped = good[at] ^ 1 << source.randrange(8)
+        yield f"byte {at} is damaged", good[:at] + bytes([flipped]) + good[at + 1 :]
+    yield "a byte is lost", good[: len(good) // 2] + good[len(good) // 2 + 1 :]
+    yield "a byte comes twice", good[: len(good) // 2] + good[max(0, len(good) // 2 - 1) :]
+
+
+def _nested(form: Stream, direction: str, rows: tuple[StreamRow, ...], good: bytes) -> Iterator[tuple[str, bytes]]:
+    """A message within the data of another one, which is whole, damaged, or cut off."""
+    outer = max(rows, key=lambda row: row.most)
+    if outer.most < len(good):
+        return
+    line = stream.encode(form, direction, outer.id, (good * outer.most)[: outer.most])
+    yield "a message within another one", line + good
+    yield "a message within a damaged one", line[:-1] + bytes([line[-1] ^ 0x10]) + good + good
+    yield "messages within one that is cut off", line[:-3] + good + good
+
+
+def _strangers(
+    form: Stream, direction: str, row: StreamRow, source: Random, good: bytes
+) -> Iterator[tuple[str, bytes]]:
+    """Messages of other lengths and ids, all else right: made by a form that has them."""
+    from dataclasses import replace
+
+    place = form.of("id")
+    id = next((one for one in range(1, 1000) if all(one != row.id for row in form.rows(direction))), 0)
+    others = [("of an unknown id", StreamRow(id, 0, row.most, False, 0, ""))] if place and id <= place.mask else []
+    if form.longest_data > row.most:
+        others.append(("that is too long by one", StreamRow(row.id, 0, row.most + 1, False, row.seed, "")))
+    if row.most:
+        others.append(("that is too short by one", StreamRow(row.id, 0, row.most - 1, False, row.seed, "")))
+    for why, one in others:
+        strange = replace(form, telecommands=(one,), telemetry=(one,))
+        data = b"\x2a" * one.most
+        yield f"a message {why}", good + stream.encode(strange, direction, one.id, data) + good
+
+
+def _gaps(form: Stream, direction: str, row: StreamRow, source: Random) -> Iterator[tuple[str, bytes]]:
+    place = form.of("sequence")
+    if place is None:
+        return
+    for why, numbers in (
+        ("sequence numbers that run over", (place.mask - 1, place.mask, 0, 1)),
+        ("a gap in the sequence", (3, 4, 9, 10)),
+        ("the same message twice", (3, 3, 4)),
+        ("the sequence begins anew", (7, 0, 1)),
+    ):
+        fitting = [number & place.mask for number in numbers]
+        yield why, b"".join(_line(form, direction, row, source, number) for number in fitting)
+    others = form.rows(direction)[:2]
+    turns = [_line(form, direction, one, source, number) for number in (1, 2, 3) for one in others]
+    yield "messages in turn", b"".join(turns)

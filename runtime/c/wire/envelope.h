@@ -1,0 +1,139 @@
+#ifndef ICDGEN_WIRE_ENVELOPE_H
+#define ICDGEN_WIRE_ENVELOPE_H
+
+#include "stream.h"
+
+/* Fields and checksum of a frame, for both encoder and decoder. */
+
+static inline uint32_t icdgen_envelope_mask(const icd_envelope_field_t *field)
+{
+    return UINT32_C(0xFFFFFFFF) >> (32u - field->bits);
+}
+
+/* The field of a role; NULL if there is none. */
+static inline const icd_envelope_field_t *icdgen_envelope_field(const icd_stream_form_t *form, icd_envelope_role_t role)
+{
+    for (size_t i = 0; i < form->field_count; ++i) {
+        if (form->fields[i].role == role) {
+            return &form->fields[i];
+        }
+    }
+    return NULL;
+}
+
+/* `bytes` begin with the header, or the trailer, that the field stands in. */
+static inline uint32_t icdgen_envelope_get(const icd_envelope_field_t *field, const uint8_t *bytes)
+{
+    uint32_t number = 0;
+    for (size_t i = 0; i < field->size; ++i) {
+        number = (number << 8) | bytes[field->at + (field->little ? field->size - 1u - i : i)];
+    }
+    return (number >> field->shift) & icdgen_envelope_mask(field);
+}
+
+static inline void icdgen_envelope_put(const icd_envelope_field_t *field, uint8_t *bytes, uint32_t value)
+{
+    uint32_t rest = value << field->shift;
+    for (size_t i = 0; i < field->size; ++i) {
+        uint8_t *const byte = &bytes[field->at + (field->little ? i : field->size - 1u - i)];
+        *byte = ICDGEN_U8(*byte | (rest & 0xFFu));
+        rest >>= 8;
+    }
+}
+
+/* A checksum that is fed piece by piece. */
+typedef struct {
+    const icd_check_form_t *form;
+    icd_crc_t crc;
+    uint32_t first;
+    uint32_t second;
+} icdgen_check_t;
+
+static inline void icdgen_check_begin(icdgen_check_t *check, const icd_check_form_t *form)
+{
+    const bool pair = form->kind == ICD_CHECK_FLETCHER || form->kind == ICD_CHECK_FLETCHER_255;
+    check->form = form;
+    icd_crc_init(&check->crc, &form->crc);
+    check->first = pair ? form->crc.init & 0xFFu : form->crc.init;
+    check->second = form->crc.init >> 8;
+}
+
+static inline void icdgen_check_feed(icdgen_check_t *check, const uint8_t *bytes, size_t length)
+{
+    const icd_check_kind_t kind = check->form->kind;
+    const uint32_t modulus = kind == ICD_CHECK_FLETCHER_255 ? 255u : 256u;
+    if (kind == ICD_CHECK_CRC) {
+        icd_crc_feed(&check->crc, bytes, length);
+        return;
+    }
+    for (size_t i = 0; i < length; ++i) {
+        if (kind == ICD_CHECK_SUM) {
+            check->first += bytes[i];
+        } else if (kind == ICD_CHECK_XOR) {
+            check->first ^= bytes[i];
+        } else {
+            check->first = (check->first + bytes[i]) % modulus;
+            check->second = (check->second + check->first) % modulus;
+        }
+    }
+}
+
+static inline uint32_t icdgen_check_result(const icdgen_check_t *check)
+{
+    const icd_crc_form_t *const form = &check->form->crc;
+    switch (check->form->kind) {
+    case ICD_CHECK_CRC:
+        return icd_crc_result(&check->crc);
+    case ICD_CHECK_SUM:
+    case ICD_CHECK_XOR:
+        return (check->first & (UINT32_C(0xFFFFFFFF) >> (32u - form->width))) ^ form->xor_out;
+    case ICD_CHECK_FLETCHER:
+    case ICD_CHECK_FLETCHER_255:
+    default:
+        return ((check->second << 8) | check->first) ^ form->xor_out;
+    }
+}
+
+/* Of a message in three pieces. `row` may be NULL where the checksum has no seed. */
+static inline uint32_t icdgen_envelope_check(
+    const icd_stream_form_t *form,
+    const icd_stream_row_t *row,
+    const uint8_t *header,
+    const uint8_t *data,
+    size_t length,
+    const uint8_t *trailer)
+{
+    const icd_check_form_t *const given = form->check;
+    icdgen_check_t check;
+    icdgen_check_begin(&check, given);
+    icdgen_check_feed(&check, header + given->covered_from, ICDGEN_SIZE(form->header_bytes) - given->covered_from);
+    icdgen_check_feed(&check, data, length);
+    icdgen_check_feed(&check, trailer, given->covered_trailer);
+    if (given->is_seeded && row != NULL) {
+        icdgen_check_feed(&check, &row->seed, 1);
+    }
+    return icdgen_check_result(&check);
+}
+
+/* The message of an id; NULL if there is none. */
+static inline const icd_stream_row_t *icdgen_stream_row(
+    const icd_stream_form_t *form, icd_direction_t direction, uint32_t id)
+{
+    size_t low = 0;
+    size_t high = form->row_counts[direction];
+    while (low < high) {
+        const size_t middle = low + ((high - low) / 2u);
+        const icd_stream_row_t *const row = &form->rows[direction][middle];
+        if (row->id == id) {
+            return row;
+        }
+        if (row->id < id) {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    return NULL;
+}
+
+#endif /* ICDGEN_WIRE_ENVELOPE_H */

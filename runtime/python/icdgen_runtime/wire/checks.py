@@ -1,0 +1,28 @@
+"""The checksums of envelopes."""
+
+from __future__ import annotations
+
+from functools import reduce
+from operator import xor
+
+from .crc import Crc
+from .envelope import CheckForm
+
+
+def check(form: CheckForm, data: bytes) -> int:
+    """The checksum of all that it covers, as a number."""
+    crc = form.crc
+    if form.kind == "crc":
+        return Crc(crc).feed(data).result()
+    if form.kind == "sum":
+        found = (crc.init + sum(data)) & ((1 << crc.width) - 1)
+    elif form.kind == "xor":
+        found = reduce(xor, data, crc.init)
+    else:
+        modulus = 255 if form.kind == "fletcher_255" else 256
+        first, second = crc.init & 0xFF, crc.init >> 8
+        for byte in data:
+            first += byte
+            second += first
+        found = second % modulus << 8 | first % modulus
+    return found ^ crc.xor_out

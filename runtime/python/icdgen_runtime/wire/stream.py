@@ -1,0 +1,279 @@
+"""Messages in the envelope that the ICD describes, in a stream of bytes or in packets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Literal, NamedTuple, Optional, TypeVar, Union, cast
+
+from .._base import Message
+from .._errors import LengthError, RangeError, UnknownIdError
+from .._hints import Buffer
+from .checks import check
+from .envelope import Direction, EnvelopeField, Stream, StreamRow
+from .errors import need
+from .link import Link
+from .stuffing import Unstuffer, stuffed
+
+M = TypeVar("M", bound=Message)
+MessageClass = type[Message]
+MessageClassOf = type[M]
+Found = Literal[
+    "message", "gap", "checksum", "length", "unknown_id", "overrun", "framing"
+]
+_GIVEN = ("sequence", "source", "destination", "type", "flags", "time")
+
+
+class StreamEvent(NamedTuple):
+    """A message, or what was dropped and why.
+
+    ``gap``: before this message ``missing`` others did not come; none: it came again.
+    ``checksum``: it is wrong. ``length``: no message, or not that one, has such a length.
+    ``unknown_id``: the node has no such message. ``overrun``: longer than the buffer.
+    ``framing``: a constant or a delimiter is not what it must be.
+    """
+
+    event: Found
+    id: Optional[int] = None
+    data: bytes = b""
+    values: Mapping[str, int] = {}
+    """Of a message: the fields of the envelope that its sender chose, by role."""
+    missing: int = 0
+    kind: Optional[MessageClass] = None
+    """What the message is, of a message."""
+
+    def of(self, message: MessageClassOf[M]) -> Optional[M]:
+        """The message, if it is one of these."""
+        if self.kind is not message:
+            return None
+        return message.from_bytes(self.data)
+
+
+def stream_encode(
+    link: Link,
+    message: Union[Message, int],
+    data: Buffer = b"",
+    direction: Direction = "telecommand",
+    **values: int,
+) -> bytes:
+    """A message, or the data of that id, as it is sent.
+
+    ``values`` are those of ``sequence``, ``source``, ``destination``, ``type``, ``flags``
+    and ``time``; of what is not given, the ICD's. Raises `UnknownIdError`, `LengthError`,
+    `RangeError`.
+    """
+    form = need(link.stream, "stream")
+    if isinstance(message, Message):
+        known = link.TELECOMMANDS if direction == "telecommand" else link.TELEMETRY
+        id = message.IDS[0 if direction == "telecommand" else -1]
+        if id not in known or known[id] is not type(message):
+            raise UnknownIdError(link.node, direction, message.NAME)
+        data = message.to_bytes()
+    else:
+        id, data = message, bytes(data)
+    row = next((row for row in form.rows(direction) if row.id == id), None)
+    if row is None:
+        raise UnknownIdError(link.node, direction, id)
+    if not row.least <= len(data) <= row.most:
+        nearest = row.most if len(data) > row.most else row.least
+        raise LengthError("a message", nearest, len(data))
+    if row.cuts_zeros:
+        data = data[:1] + data[1:].rstrip(b"\0")
+    head, tail = bytearray(form.header_bytes), bytearray(form.trailer_bytes)
+    made = {"id": id, "length": len(data) + form.length_plus}
+    for field in form.fields:
+        if field.role != "checksum":
+            value = made.get(field.role, field.values[direction == "telemetry"])
+            if field.role in _GIVEN:
+                value = values.get(field.role, value)
+            _put(field, tail if field.in_trailer else head, value)
+    place = form.of("checksum")
+    if place and form.check:
+        value = _checksum(form, row, bytes(head) + data + bytes(tail))
+        _put(place, tail if place.in_trailer else head, value)
+    return stuffed(form.delimited_by, bytes(head) + data + bytes(tail))
+
+
+def _put(field: EnvelopeField, into: bytearray, value: int) -> None:
+    if not 0 <= value < 1 << field.bits:
+        raise RangeError(field.role, f"0 to {(1 << field.bits) - 1}", value)
+    order: Literal["little", "big"] = "little" if field.little else "big"
+    span = slice(field.at, field.at + field.size)
+    number = int.from_bytes(into[span], order) | value << field.shift
+    into[span] = number.to_bytes(field.size, order)
+
+
+def _get(form: Stream, field: EnvelopeField, frame: Buffer, size: int) -> int:
+    at = field.at + (size - form.trailer_bytes if field.in_trailer else 0)
+    order: Literal["little", "big"] = "little" if field.little else "big"
+    number = int.from_bytes(frame[at : at + field.size], order)
+    return number >> field.shift & ((1 << field.bits) - 1)
+
+
+def _checksum(form: Stream, row: Optional[StreamRow], frame: bytes) -> int:
+    given = need(form.check, "checksums")
+    end = len(frame) - form.trailer_bytes + given.covered_trailer
+    seed = bytes((row.seed,)) if given.is_seeded and row else b""
+    return check(given, frame[given.covered_from : end] + seed)
+
+
+class StreamDecoder:
+    """Finds the messages of a direction, however the stream is cut into pieces.
+
+    It keeps at most ``limit`` bytes: the longest message, unless less are wanted. Where the
+    packet delimits a message, each is fed by itself. Raises `LengthError` if header and
+    trailer are more than the limit.
+    """
+
+    def __init__(
+        self,
+        link: Link,
+        direction: Direction = "telemetry",
+        limit: Optional[int] = None,
+    ) -> None:
+        self._form = form = need(link.stream, "stream")
+        self._limit = link.longest if limit is None else min(limit, link.longest)
+        self._longest = link.longest
+        around = form.header_bytes + form.trailer_bytes
+        if self._limit < around:
+            raise LengthError("the buffer of header and trailer", around, self._limit)
+        self._types = link.TELEMETRY if direction == "telemetry" else link.TELECOMMANDS
+        self._rows = {row.id: row for row in form.rows(direction)}
+        self._only = min(self._rows, default=0)  # where messages have no id
+        self._constants = [
+            (field, field.values[direction == "telemetry"])
+            for field in form.fields
+            if field.role == "constant"
+        ]
+        self._values = [field for field in form.fields if field.role in _GIVEN]
+        self._id, self._length, self._sequence, self._checksum = map(
+            form.of, ("id", "length", "sequence", "checksum")
+        )
+        self._buffer = bytearray()
+        self._line = (
+            None
+            if form.delimited_by in ("length", "none")
+            else Unstuffer(form.delimited_by, self._limit)
+        )
+        self._last: dict[Optional[int], int] = {}  # sequence numbers
+        self.discarded = 0
+        """Bytes of the stream that became part of no message."""
+
+    @property
+    def pending(self) -> int:
+        """Bytes of the stream about which nothing is decided yet."""
+        return self._line.pending if self._line else len(self._buffer)
+
+    def feed(self, data: Buffer) -> list[StreamEvent]:
+        """Takes the next bytes of the stream, or a packet."""
+        data, events = bytes(data), list[StreamEvent]()
+        if self._line:
+            for frame in self._line.feed(data):
+                self._frame(frame.bytes, frame.size, frame.fault, events)
+        elif self._form.delimited_by == "none":
+            fault = "overrun" if len(data) > self._limit else None
+            self._frame(data, len(data), fault, events)
+        else:
+            self._buffer += data
+            at = 0
+            while (count := self._front(at, events)) is not None:
+                at += count
+            del self._buffer[:at]
+        return events
+
+    def _frame(
+        self, frame: bytes, size: int, fault: Optional[str], events: list[StreamEvent]
+    ) -> None:
+        """Something that is delimited from both sides."""
+        if fault:
+            events.append(StreamEvent(cast(Found, fault)))
+        elif self._judge(frame, events) == "message":
+            return
+        self.discarded += size
+
+    def _front(self, at: int, events: list[StreamEvent]) -> Optional[int]:
+        """What stands at a place of the buffer: bytes to go on, None while undecided."""
+        form, left = self._form, len(self._buffer) - at
+        if not left:
+            return None
+        front = self._buffer[at : at + form.header_bytes]
+        for field, value in self._constants:
+            came = not field.in_trailer and field.at + field.size <= left
+            if came and _get(form, field, front, 0) != value:
+                self.discarded += 1
+                return 1
+        if left < form.header_bytes:
+            return None
+        length = need(self._length, "length")
+        data = _get(form, length, front, 0) - form.length_plus
+        size = form.header_bytes + data + form.trailer_bytes
+        if data < 0 or size > self._limit:
+            is_overrun = 0 <= data and size <= self._longest
+            events.append(StreamEvent("overrun" if is_overrun else "length"))
+            self.discarded += 1
+            return 1
+        if left < size:
+            return None
+        told = self._judge(bytes(self._buffer[at : at + size]), events)
+        if told != "message":
+            size = size if told == "proven" else 1
+            self.discarded += size
+        return size
+
+    def _judge(
+        self, frame: bytes, events: list[StreamEvent]
+    ) -> Literal["message", "proven", "doubtful"]:
+        """Tells of a frame; proven is what is one beyond doubt, though of no use."""
+        form, size = self._form, len(frame)
+        count = size - form.header_bytes - form.trailer_bytes
+        if count < 0:
+            return self._doubtful("length", None, events)
+        for field, value in self._constants:
+            if _get(form, field, frame, size) != value:
+                return self._doubtful("framing", None, events)
+        told = count if self._length is None else self._told(self._length, frame)
+        if told != count:
+            return self._doubtful("length", None, events)
+        id = _get(form, self._id, frame, size) if self._id else self._only
+        row = self._rows.get(id)
+        if self._checksum and form.check:
+            if form.check.is_seeded and row is None:
+                return self._doubtful("unknown_id", id, events)
+            given = _get(form, self._checksum, frame, size)
+            if given != _checksum(form, row, frame):
+                return self._doubtful("checksum", id, events)
+        if row is None:
+            events.append(StreamEvent("unknown_id", id))
+            return "proven"
+        if not row.least <= count <= row.most:
+            events.append(StreamEvent("length", id))
+            return "proven"
+        data = frame[form.header_bytes : form.header_bytes + count]
+        values = {one.role: _get(form, one, frame, size) for one in self._values}
+        self._count(id, values, events)
+        events.append(StreamEvent("message", id, data, values, 0, self._types[id]))
+        return "message"
+
+    def _told(self, length: EnvelopeField, frame: Buffer) -> int:
+        """Bytes of the data, as the field of the length says."""
+        form = self._form
+        return _get(form, length, frame, len(frame)) - form.length_plus
+
+    def _doubtful(
+        self, why: Found, id: Optional[int], events: list[StreamEvent]
+    ) -> Literal["doubtful"]:
+        events.append(StreamEvent(why, id))
+        return "doubtful"
+
+    def _count(
+        self, id: int, values: Mapping[str, int], events: list[StreamEvent]
+    ) -> None:
+        """Tells of sequence numbers that did not come."""
+        if not self._sequence:
+            return
+        number, mask = values["sequence"], (1 << self._sequence.bits) - 1
+        key = id if self._form.per_id else None
+        last = self._last.get(key)
+        self._last[key] = number
+        if last is not None and number != (last + 1) & mask:
+            missing = 0 if number == last else (number - last - 1) & mask
+            events.append(StreamEvent("gap", id, missing=missing))

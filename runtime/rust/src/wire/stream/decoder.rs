@@ -1,0 +1,275 @@
+//! Finds messages in a stream.
+
+use super::encoder::{
+    COBS_WHOLE, HDLC_ESCAPE, HDLC_FLAG, HDLC_FLIP, SLIP_END, SLIP_ESCAPE, SLIP_ESCAPED_END,
+    SLIP_ESCAPED_ESCAPE,
+};
+use super::judge::{Event, Judge, Sequences, Verdict};
+use crate::wire::link::{Delimiter, EnvelopeRole, Link, Stream};
+use crate::wire::{Direction, Error};
+
+/// Finds the messages of a direction in a stream. `N` is the size of its buffer: the node's `LONGEST` holds
+/// every message. `S` sequence numbers are remembered, by which gaps are noticed: the node's `SEQUENCES`.
+///
+/// ```
+/// use icdgen_runtime::wire::stream::{Decoder, Event};
+/// use icdgen_runtime::wire::{Direction, Error, Link};
+///
+/// /// The ids of the messages in what a line recorder kept.
+/// fn ids(link: &'static Link, recorded: &[u8]) -> Result<Vec<u32>, Error> {
+///     let mut found = Vec::new();
+///     let mut decoder = Decoder::<512, 1>::new(link, Direction::Telemetry)?;
+///     decoder.feed(recorded, |event| {
+///         if let Event::Message { id, .. } = event {
+///             found.push(id);
+///         }
+///     });
+///     Ok(found)
+/// }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Decoder<const N: usize, const S: usize> {
+    form: &'static Stream,
+    direction: Direction,
+    longest: usize,
+    limit: usize,
+    buffer: [u8; N],
+    length: usize,
+    sequences: Sequences<S>,
+    pending: u64,
+    discarded: u64,
+    is_escaped: bool,
+    is_zero: bool, // whether a zero follows the block of COBS
+    left: u8,      // bytes that the block of COBS still has
+    fault: Option<Event<'static>>,
+}
+
+impl<const N: usize, const S: usize> Decoder<N, S> {
+    /// A decoder for messages of at most `N` bytes.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unsupported`] if the ICD describes no envelope, [`Error::Length`] if header and trailer do
+    /// not fit.
+    pub fn new(link: &'static Link, direction: Direction) -> Result<Self, Error> {
+        Self::with_limit(link, direction, N)
+    }
+
+    /// A decoder for messages of at most `limit` bytes, and of `N`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unsupported`] if the ICD describes no envelope, [`Error::Length`] if header and trailer do
+    /// not fit.
+    pub fn with_limit(
+        link: &'static Link,
+        direction: Direction,
+        limit: usize,
+    ) -> Result<Self, Error> {
+        let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
+        let (expected, actual) = (form.header_bytes + form.trailer_bytes, limit.min(N));
+        if actual < expected {
+            return Err(Error::Length { expected, actual });
+        }
+        Ok(Self {
+            form,
+            direction,
+            longest: link.longest,
+            limit: actual.min(link.longest),
+            buffer: [0; N],
+            length: 0,
+            sequences: Sequences::new(),
+            pending: 0,
+            discarded: 0,
+            is_escaped: false,
+            is_zero: false,
+            left: 0,
+            fault: None,
+        })
+    }
+
+    /// Bytes of the stream that became part of no message.
+    #[must_use]
+    pub const fn discarded(&self) -> u64 {
+        self.discarded
+    }
+
+    /// Bytes of the stream about which nothing is decided yet.
+    #[must_use]
+    pub const fn pending(&self) -> u64 {
+        self.pending
+    }
+
+    /// Takes the next bytes of the stream, or a packet.
+    pub fn feed(&mut self, bytes: &[u8], mut on_event: impl FnMut(Event<'_>)) {
+        let end = match self.form.delimited_by {
+            Delimiter::Packet => return self.packet(bytes, &mut on_event),
+            Delimiter::Length => {
+                for byte in bytes {
+                    self.append(*byte, &mut on_event);
+                }
+                return;
+            }
+            Delimiter::Slip => SLIP_END,
+            Delimiter::Hdlc => HDLC_FLAG,
+            Delimiter::Cobs => 0,
+        };
+        for &byte in bytes {
+            self.pending = self.pending.wrapping_add(1);
+            if byte == end {
+                self.end(&mut on_event);
+            } else if self.fault.is_none() {
+                self.inside(byte);
+            }
+        }
+    }
+
+    fn packet(&mut self, bytes: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
+        let is_taken = if bytes.len() > self.limit {
+            on_event(Event::Overrun);
+            false
+        } else {
+            let judge = Judge::new(self.form, self.direction);
+            judge.judge(bytes, &mut self.sequences, on_event) == Verdict::Taken
+        };
+        if !is_taken {
+            self.drop_bytes(bytes.len());
+        }
+    }
+
+    fn drop_bytes(&mut self, count: usize) {
+        let count = u64::try_from(count).unwrap_or(0);
+        self.discarded = self.discarded.wrapping_add(count);
+    }
+
+    /// A byte where a field of the length delimits messages. A full buffer is always decided.
+    fn append(&mut self, byte: u8, on_event: &mut dyn FnMut(Event<'_>)) {
+        if let Some(place) = self.buffer.get_mut(self.length) {
+            *place = byte;
+            self.length += 1;
+        }
+        let mut at = 0;
+        while let Some(count) = self.front(at, on_event) {
+            at += count;
+        }
+        if at > 0 {
+            self.buffer.copy_within(at..self.length, 0);
+            self.length -= at;
+        }
+        self.pending = u64::try_from(self.length).unwrap_or(0);
+    }
+
+    /// What the buffer has from `at` on: bytes to go on, none while that is not decided.
+    fn front(&mut self, at: usize, on_event: &mut dyn FnMut(Event<'_>)) -> Option<usize> {
+        let form = self.form;
+        let judge = Judge::new(form, self.direction);
+        let frame = self.buffer.get(at..self.length)?;
+        if frame.is_empty() {
+            return None;
+        }
+        if !judge.header_is_right(frame) {
+            self.drop_bytes(1);
+            return Some(1);
+        }
+        let field = form.field(EnvelopeRole::Length)?;
+        if frame.len() < form.header_bytes {
+            return None;
+        }
+        let around = form.header_bytes + form.trailer_bytes;
+        let length = judge.length(field.get(form, frame));
+        let size = length.map_or(usize::MAX, |length| length.saturating_add(around));
+        if size > self.limit {
+            on_event(if size > self.longest {
+                Event::Length { id: None }
+            } else {
+                Event::Overrun
+            });
+            self.drop_bytes(1);
+            return Some(1);
+        }
+        let whole = frame.get(..size)?;
+        let verdict = judge.judge(whole, &mut self.sequences, on_event);
+        let taken = if verdict == Verdict::Doubtful {
+            1
+        } else {
+            size
+        };
+        if verdict != Verdict::Taken {
+            self.drop_bytes(taken);
+        }
+        Some(taken)
+    }
+
+    /// A delimiter came.
+    fn end(&mut self, on_event: &mut dyn FnMut(Event<'_>)) {
+        if self.is_escaped || self.left > 0 {
+            self.fail(Event::Framing);
+        }
+        let frame = self.buffer.get(..self.length).unwrap_or(&[]);
+        let is_taken = if let Some(fault) = self.fault {
+            on_event(fault);
+            false
+        } else if frame.is_empty() {
+            true
+        } else {
+            let judge = Judge::new(self.form, self.direction);
+            judge.judge(frame, &mut self.sequences, on_event) == Verdict::Taken
+        };
+        if !is_taken {
+            self.discarded = self.discarded.wrapping_add(self.pending);
+        }
+        self.pending = 0;
+        self.length = 0;
+        self.is_escaped = false;
+        self.is_zero = false;
+        self.left = 0;
+        self.fault = None;
+    }
+
+    fn fail(&mut self, fault: Event<'static>) {
+        self.fault = self.fault.or(Some(fault));
+    }
+
+    fn put(&mut self, byte: u8) {
+        let has_room = self.length < self.limit;
+        match self.buffer.get_mut(self.length) {
+            Some(place) if has_room => {
+                *place = byte;
+                self.length += 1;
+            }
+            _ => self.fail(Event::Overrun),
+        }
+    }
+
+    /// A byte of a frame between delimiters.
+    fn inside(&mut self, byte: u8) {
+        match self.form.delimited_by {
+            Delimiter::Cobs if self.left > 0 => {
+                self.left -= 1;
+                self.put(byte);
+            }
+            Delimiter::Cobs => {
+                if self.is_zero {
+                    self.put(0);
+                }
+                self.left = byte.wrapping_sub(1);
+                self.is_zero = byte != COBS_WHOLE;
+            }
+            Delimiter::Hdlc if self.is_escaped => {
+                self.is_escaped = false;
+                self.put(byte ^ HDLC_FLIP);
+            }
+            Delimiter::Hdlc if byte == HDLC_ESCAPE => self.is_escaped = true,
+            Delimiter::Slip if self.is_escaped => {
+                self.is_escaped = false;
+                match byte {
+                    SLIP_ESCAPED_END => self.put(SLIP_END),
+                    SLIP_ESCAPED_ESCAPE => self.put(SLIP_ESCAPE),
+                    _ => self.fail(Event::Framing),
+                }
+            }
+            Delimiter::Slip if byte == SLIP_ESCAPE => self.is_escaped = true,
+            _ => self.put(byte),
+        }
+    }
+}

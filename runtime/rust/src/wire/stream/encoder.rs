@@ -1,0 +1,281 @@
+//! Messages as they are sent.
+
+use super::check;
+use crate::wire::link::{Delimiter, EnvelopeRole, Link, Stream};
+use crate::wire::{Direction, Error};
+
+pub(super) const SLIP_END: u8 = 0xc0;
+pub(super) const SLIP_ESCAPE: u8 = 0xdb;
+pub(super) const SLIP_ESCAPED_END: u8 = 0xdc;
+pub(super) const SLIP_ESCAPED_ESCAPE: u8 = 0xdd;
+pub(super) const HDLC_FLAG: u8 = 0x7e;
+pub(super) const HDLC_ESCAPE: u8 = 0x7d;
+pub(super) const HDLC_FLIP: u8 = 0x20;
+/// A block of COBS that has no zero behind it.
+pub(super) const COBS_WHOLE: u8 = 0xff;
+/// Bytes of a header or trailer, at most.
+const ENVELOPE_BYTES: usize = 64;
+
+/// Values of the fields that the sender chooses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Values {
+    /// Counts messages.
+    pub sequence: u32,
+    /// Who sends.
+    pub source: u32,
+    /// Who it is for.
+    pub destination: u32,
+    /// What kind of message it is.
+    pub kind: u32,
+    /// Bits of any meaning.
+    pub flags: u32,
+    /// When it was sent.
+    pub time: u32,
+}
+
+impl Values {
+    /// Those of the ICD, and 0.
+    #[must_use]
+    pub fn new(link: &Link, direction: Direction) -> Self {
+        let mut values = Self::default();
+        let fields = link.stream.as_ref().map_or(&[][..], |form| form.fields);
+        for field in fields {
+            if let Some(place) = values.place(field.role) {
+                *place = field.value(direction);
+            }
+        }
+        values
+    }
+
+    pub(super) fn place(&mut self, role: EnvelopeRole) -> Option<&mut u32> {
+        match role {
+            EnvelopeRole::Sequence => Some(&mut self.sequence),
+            EnvelopeRole::Source => Some(&mut self.source),
+            EnvelopeRole::Destination => Some(&mut self.destination),
+            EnvelopeRole::Type => Some(&mut self.kind),
+            EnvelopeRole::Flags => Some(&mut self.flags),
+            EnvelopeRole::Time => Some(&mut self.time),
+            _ => None,
+        }
+    }
+}
+
+/// Writes a message as it is sent, and says how many bytes it has.
+///
+/// # Errors
+///
+/// [`Error::Unsupported`] if the ICD describes no envelope, [`Error::UnknownId`] if there is no such
+/// message, [`Error::Length`] if its data have another length or `out` is too small, [`Error::Range`]
+/// if a value does not fit its field.
+///
+/// ```
+/// use icdgen_runtime::wire::stream::{encode, Values};
+/// use icdgen_runtime::wire::{Direction, Error, Link};
+///
+/// fn sent(link: &Link, id: u32, data: &[u8], port: &mut Vec<u8>) -> Result<(), Error> {
+///     let mut line = [0; 600];
+///     let values = Values::new(link, Direction::Telecommand);
+///     let size = encode(link, Direction::Telecommand, id, data, &values, &mut line)?;
+///     port.extend_from_slice(&line[..size]);
+///     Ok(())
+/// }
+/// ```
+pub fn encode(
+    link: &Link,
+    direction: Direction,
+    id: u32,
+    data: &[u8],
+    values: &Values,
+    out: &mut [u8],
+) -> Result<usize, Error> {
+    let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
+    let (_, row) = form.row(direction, id).ok_or(Error::UnknownId {
+        id: u8::try_from(id).unwrap_or(u8::MAX),
+    })?;
+    if data.len() < row.least || data.len() > row.most {
+        return Err(Error::Length {
+            expected: if data.len() > row.most {
+                row.most
+            } else {
+                row.least
+            },
+            actual: data.len(),
+        });
+    }
+    let data = if row.cuts_zeros {
+        without_zeros(data)
+    } else {
+        data
+    };
+    let (mut header, mut trailer) = ([0; ENVELOPE_BYTES], [0; ENVELOPE_BYTES]);
+    let mut values = *values;
+    for field in form.fields {
+        let length = i64::try_from(data.len()).unwrap_or(i64::MAX);
+        let value = match field.role {
+            EnvelopeRole::Checksum => continue,
+            EnvelopeRole::Id => i64::from(id),
+            EnvelopeRole::Length => length.wrapping_add(i64::from(form.length_plus)),
+            role => i64::from(*values.place(role).unwrap_or(&mut field.value(direction))),
+        };
+        let fitting = u32::try_from(value).ok();
+        let value = fitting.filter(|value| *value <= field.mask());
+        let value = value.ok_or(Error::Range {
+            field: name(field.role),
+        })?;
+        let into = if field.in_trailer {
+            &mut trailer
+        } else {
+            &mut header
+        };
+        field.put(into, value);
+    }
+    if let (Some(field), Some(check)) = (form.field(EnvelopeRole::Checksum), &form.check) {
+        let sum = check::whole(form, check, Some(row), [&header, data, &trailer]);
+        let into = if field.in_trailer {
+            &mut trailer
+        } else {
+            &mut header
+        };
+        field.put(into, sum);
+    }
+    line(form, [&header, data, &trailer], out)
+}
+
+/// The data without the zeros at their end, but for one.
+fn without_zeros(data: &[u8]) -> &[u8] {
+    let mut left = data;
+    while let [rest @ .., 0] = left {
+        if rest.is_empty() {
+            break;
+        }
+        left = rest;
+    }
+    left
+}
+
+const fn name(role: EnvelopeRole) -> &'static str {
+    match role {
+        EnvelopeRole::Sequence => "sequence",
+        EnvelopeRole::Source => "source",
+        EnvelopeRole::Destination => "destination",
+        EnvelopeRole::Type => "type",
+        EnvelopeRole::Flags => "flags",
+        EnvelopeRole::Time => "time",
+        EnvelopeRole::Constant => "constant",
+        EnvelopeRole::Id => "id",
+        EnvelopeRole::Length => "length",
+        EnvelopeRole::Checksum => "checksum",
+    }
+}
+
+/// Writes the pieces of a message with what delimits it.
+fn line(form: &Stream, pieces: [&[u8]; 3], out: &mut [u8]) -> Result<usize, Error> {
+    let [header, data, trailer] = pieces;
+    let header = header.get(..form.header_bytes).unwrap_or(header);
+    let trailer = trailer.get(..form.trailer_bytes).unwrap_or(trailer);
+    let actual = out.len();
+    let mut line = Line {
+        out,
+        count: 0,
+        block: 0,
+        is_whole: false,
+    };
+    match form.delimited_by {
+        Delimiter::Slip => line.byte(SLIP_END),
+        Delimiter::Hdlc => line.byte(HDLC_FLAG),
+        Delimiter::Cobs => line.byte(0),
+        Delimiter::Length | Delimiter::Packet => (),
+    }
+    for byte in header.iter().chain(data).chain(trailer) {
+        match form.delimited_by {
+            Delimiter::Slip => line.slip(*byte),
+            Delimiter::Hdlc => line.hdlc(*byte),
+            Delimiter::Cobs => line.cobs(*byte),
+            Delimiter::Length | Delimiter::Packet => line.byte(*byte),
+        }
+    }
+    match form.delimited_by {
+        Delimiter::Slip => line.byte(SLIP_END),
+        Delimiter::Hdlc => line.byte(HDLC_FLAG),
+        Delimiter::Cobs => line.end(),
+        Delimiter::Length | Delimiter::Packet => (),
+    }
+    let expected = line.count;
+    if expected > actual {
+        return Err(Error::Length { expected, actual });
+    }
+    Ok(expected)
+}
+
+/// Where a message is written; it counts on where there is no more room.
+struct Line<'a> {
+    out: &'a mut [u8],
+    count: usize,
+    block: usize, // of COBS: where its length stands
+    is_whole: bool,
+}
+
+impl Line<'_> {
+    fn byte(&mut self, byte: u8) {
+        if let Some(place) = self.out.get_mut(self.count) {
+            *place = byte;
+        }
+        self.count = self.count.saturating_add(1);
+    }
+
+    fn slip(&mut self, byte: u8) {
+        match byte {
+            SLIP_END => {
+                self.byte(SLIP_ESCAPE);
+                self.byte(SLIP_ESCAPED_END);
+            }
+            SLIP_ESCAPE => {
+                self.byte(SLIP_ESCAPE);
+                self.byte(SLIP_ESCAPED_ESCAPE);
+            }
+            _ => self.byte(byte),
+        }
+    }
+
+    fn hdlc(&mut self, byte: u8) {
+        if matches!(byte, HDLC_FLAG | HDLC_ESCAPE) {
+            self.byte(HDLC_ESCAPE);
+            self.byte(byte ^ HDLC_FLIP);
+        } else {
+            self.byte(byte);
+        }
+    }
+
+    fn cobs(&mut self, byte: u8) {
+        if self.is_whole {
+            self.byte(0);
+            self.is_whole = false;
+        }
+        if byte == 0 {
+            self.close();
+            self.byte(0);
+        } else {
+            self.byte(byte);
+            if self.count.wrapping_sub(self.block) == usize::from(COBS_WHOLE) {
+                self.close();
+                self.is_whole = true;
+            }
+        }
+    }
+
+    /// Ends a block, whose length stands before it.
+    fn close(&mut self) {
+        let length = u8::try_from(self.count.wrapping_sub(self.block)).unwrap_or(0);
+        if let Some(place) = self.out.get_mut(self.block) {
+            *place = length;
+        }
+        self.block = self.count;
+    }
+
+    fn end(&mut self) {
+        if !self.is_whole {
+            self.close();
+        }
+        self.byte(0);
+    }
+}

@@ -1,0 +1,72 @@
+//! Fields of the header and trailer.
+
+use crate::wire::link::{EnvelopeField, EnvelopeRole, Stream, StreamRow};
+use crate::wire::Direction;
+
+impl EnvelopeField {
+    /// The greatest value.
+    pub(super) const fn mask(&self) -> u32 {
+        u32::MAX.wrapping_shr(32_u32.wrapping_sub(self.bits))
+    }
+
+    /// The value of a constant, or unless another is chosen.
+    pub(super) const fn value(&self, direction: Direction) -> u32 {
+        let [telecommand, telemetry] = self.values;
+        match direction {
+            Direction::Telecommand => telecommand,
+            Direction::Telemetry => telemetry,
+        }
+    }
+
+    /// Its value in a frame; 0 if that ends before.
+    pub(super) fn get(&self, form: &Stream, frame: &[u8]) -> u32 {
+        let behind = frame.len().saturating_sub(form.trailer_bytes);
+        let at = self.at + if self.in_trailer { behind } else { 0 };
+        let bytes = frame.get(at..at + self.size).unwrap_or(&[]);
+        let join = |number: u32, byte: &u8| (number << 8) | u32::from(*byte);
+        let number = if self.little {
+            bytes.iter().rev().fold(0, join)
+        } else {
+            bytes.iter().fold(0, join)
+        };
+        number.wrapping_shr(self.shift) & self.mask()
+    }
+
+    /// Puts a value into the header or trailer, where there are zeros.
+    pub(super) fn put(&self, bytes: &mut [u8], value: u32) {
+        let value = value.wrapping_shl(self.shift);
+        let places = bytes.get_mut(self.at..self.at + self.size);
+        let count = u32::try_from(self.size).unwrap_or(0);
+        for (place, number) in places.unwrap_or(&mut []).iter_mut().zip(0_u32..) {
+            let byte = if self.little {
+                number
+            } else {
+                count.wrapping_sub(number).wrapping_sub(1)
+            };
+            let [low, ..] = value.wrapping_shr(byte.wrapping_mul(8)).to_le_bytes();
+            *place |= low;
+        }
+    }
+}
+
+impl Stream {
+    /// The messages of a direction, by rising id.
+    pub(super) const fn rows(&self, direction: Direction) -> &'static [StreamRow] {
+        match direction {
+            Direction::Telecommand => self.telecommands,
+            Direction::Telemetry => self.telemetry,
+        }
+    }
+
+    /// The place and the row of a message.
+    pub(super) fn row(&self, direction: Direction, id: u32) -> Option<(usize, &'static StreamRow)> {
+        let rows = self.rows(direction);
+        let at = rows.binary_search_by_key(&id, |row| row.id).ok()?;
+        Some((at, rows.get(at)?))
+    }
+
+    /// The field of a role that there is at most once.
+    pub(super) fn field(&self, role: EnvelopeRole) -> Option<&'static EnvelopeField> {
+        self.fields.iter().find(|field| field.role == role)
+    }
+}

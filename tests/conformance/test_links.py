@@ -1,0 +1,25 @@
+"""Links that are described as envelopes: every language answers as the reference does, of examples and of odd links."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.conformance import ROOT, wire
+from tests.conformance.icds import icd_of
+from tests.conformance.languages import all_languages
+
+FOLDERS = [ROOT / "examples" / "links", ROOT / "tests" / "conformance" / "links"]
+
+
+@pytest.fixture(scope="module")
+def links():
+    icd = icd_of(FOLDERS)
+    return icd, wire.vectors_of(icd)
+
+
+@pytest.mark.parametrize("name", ["reference", "python", "c-sanitizers", "rust-debug"])
+def test_a_language_agrees_with_the_reference_on_links_of_all_kinds(links, name, tmp_path):
+    icd, files = links
+    (result,) = wire.run([all_languages()[name]], icd, files, tmp_path)
+    assert result.differences == 0, "\n".join(result.shown)
+    assert result.vectors == sum(len(node["cases"]) for node in files["nodes"]) > 2500
