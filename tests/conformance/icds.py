@@ -13,6 +13,7 @@ from icdgen.vectors.write import text
 from tests.conformance import ROOT
 
 SHIPPED = ROOT / "icd"
+LINKS = ROOT / "tests" / "conformance" / "links"
 COMMITTED = ROOT / "generated" / "vectors"
 
 

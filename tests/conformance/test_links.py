@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from tests.conformance import ROOT, wire
-from tests.conformance.icds import icd_of
+from tests.conformance.icds import LINKS, icd_of
 from tests.conformance.languages import all_languages
 
-FOLDERS = [ROOT / "examples" / "links", ROOT / "tests" / "conformance" / "links"]
+FOLDERS = [ROOT / "examples" / "links", LINKS]
 
 
 @pytest.fixture(scope="module")

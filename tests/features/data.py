@@ -20,7 +20,8 @@ _HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 class Feature:
     """``uses``: by the list in which it stands, the keys and values (regular expressions) of what has the feature.
 
-    ``change`` and ``wrong``: by turns what is replaced in the example, and by what; ``without``: by output, why it has it not.
+    ``alike``: keys of which another entry of the list must have the same values. ``change`` and ``wrong``: by turns what is
+    replaced in the example, and by what; ``without``: by output, why it has it not.
     """
 
     name: str
@@ -29,6 +30,7 @@ class Feature:
     change: tuple[str, ...]
     wrong: tuple[str, ...]
     without: dict[str, str] = field(default_factory=dict)
+    alike: tuple[str, ...] = ()
 
     @property
     def example(self) -> str:
@@ -56,7 +58,7 @@ class Feature:
 
     def places(self, tree: object) -> list[object]:
         """What a tree of an ICD says of the feature: the values at the keys, in order."""
-        return list(_places(tree, self.uses))
+        return list(_places(tree, self.uses, self.alike))
 
 
 def features() -> list[Feature]:
@@ -72,10 +74,15 @@ def unmeasured() -> list[str]:
 
 
 def _feature(
-    reasons: dict[str, str], change: list[str], wrong: list[str], without: dict[str, str] | None = None, **row: Any
+    reasons: dict[str, str],
+    change: list[str],
+    wrong: list[str],
+    without: dict[str, str] | None = None,
+    alike: tuple[str, ...] = (),
+    **row: Any,
 ) -> Feature:
     why = {output: reasons[key] for output, key in (without or {}).items()}
-    return Feature(change=tuple(change), wrong=tuple(wrong), without=why, **row)
+    return Feature(change=tuple(change), wrong=tuple(wrong), without=why, alike=tuple(alike), **row)
 
 
 def examples() -> dict[str, list[str]]:
@@ -92,16 +99,27 @@ def _blank(match: re.Match[str]) -> str:
     return " " * len(match[0])
 
 
-def _places(tree: object, uses: dict[str, dict[str, str]]) -> Iterator[object]:
+def _places(tree: object, uses: dict[str, dict[str, str]], alike: tuple[str, ...]) -> Iterator[object]:
     if isinstance(tree, dict):
         for key, value in tree.items():
-            for one in value if isinstance(value, list) else [value]:
-                if isinstance(one, dict) and key in uses and (has := _having(one, uses[key])):
+            among = value if isinstance(value, list) else [value]
+            for one in among:
+                if (
+                    isinstance(one, dict)
+                    and key in uses
+                    and (has := _having(one, uses[key]))
+                    and _alike(one, among, alike)
+                ):
                     yield has
-                yield from _places(one, uses)
+                yield from _places(one, uses, alike)
     elif isinstance(tree, list):
         for one in tree:
-            yield from _places(one, uses)
+            yield from _places(one, uses, alike)
+
+
+def _alike(entry: dict[str, object], among: list[Any], keys: tuple[str, ...]) -> bool:
+    """Whether another entry has the same values of the keys, if there are any."""
+    return not keys or any(one is not entry and all(one.get(key) == entry.get(key) for key in keys) for one in among)
 
 
 def _having(entry: dict[str, object], wanted: dict[str, str]) -> list[object]:

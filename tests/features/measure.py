@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from icdgen.icd.model import Icd
 from tests.conformance import odd
-from tests.conformance.icds import SHIPPED
+from tests.conformance.icds import LINKS, SHIPPED
 from tests.conformance.strategies import icds as random_icds
 from tests.features.data import Feature
 from tests.features.outputs import LINKED, SAYS, Refused, Subject, differs, frames_of, icd_of, laid_out, words_of
@@ -93,7 +93,8 @@ def _trees(what: str) -> list[object]:
     """The ICDs that are tried elsewhere, as trees: those of the tests of conformance and of fuzzing."""
     files = sorted(SHIPPED.glob("*.yaml"))
     with tempfile.TemporaryDirectory() as folder:
-        files += sorted(odd.write(Path(folder)).glob("*.yaml")) if what == "conformance" else []
+        if what == "conformance":
+            files += sorted((*odd.write(Path(folder)).glob("*.yaml"), *LINKS.glob("*.yaml")))
         return [yaml.load(file.read_bytes(), yaml.CSafeLoader) for file in files]
 
 

@@ -20,6 +20,7 @@ from icdgen.diff.compare import compare
 from icdgen.errors import UserError
 from icdgen.icd.fmt import format_text
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.variants import ids_of
 from icdgen.loading import load
 from icdgen.logfile import parquet, source, text
 from icdgen.protocol import facts, logs
@@ -65,6 +66,12 @@ class Subject:
     def node(self) -> Node:
         return self.icd.nodes[-1]
 
+    def sharing(self, message: Message) -> list[Message]:
+        """The messages that have an id of its, in its direction: itself alone, if it has its own."""
+        found = ids_of(self.icd, self.node)
+        known = found.telecommand if message.telecommand_id is not None else found.telemetry
+        return [one.message for one in known[message.ids[0]]]
+
     def messages(self) -> Iterator[tuple[Message, bytes]]:
         """Each message and each of its frames."""
         for message in self.node.messages:
@@ -76,7 +83,8 @@ class Subject:
         """The ICD with a line on which it is spoken and a log; what does not fit these is not in the log. Raises `Refused`."""
         tree, link = yaml.safe_load(self.content), yaml.safe_load(LINK)
         spoken = [one for one in tree["messages"] if one["kind"] != "telecommand"]
-        size = next((one["length"] for one in spoken if self.feature.places({"messages": [one]})), spoken[0]["length"])
+        size = next((one["length"] for one in spoken if self.feature.places({"messages": [one]})), None)
+        size = size or next((one["length"] for one in spoken), 1)
         logged = [one for one in spoken if one["length"] == size]
         link["protocol"]["log_mask"]["frame_bytes"] = size
         link["loggable"] = [
@@ -127,11 +135,18 @@ def _codec(subject: Subject) -> object:
         try:
             raw = codec.decode(subject.node, message, data)
             assert codec.decode(subject.node, message, codec.encode(subject.node, message, raw)) == raw
-            physical = {f.name: codec.physical_double(f, raw[f.name]) for f in message.fields if f.has_formula}
-            said.append((message.name, message.ids, raw, physical))
+            scaled = [field for field in message.fields if field.has_formula and field.name in raw]
+            physical = {field.name: codec.physical_double(field, raw[field.name]) for field in scaled}
+            known = subject.sharing(message)
+            said.append((message.name, message.ids, raw, physical, len(known) > 1 and _which(subject, known, data)))
         except codec.CodecError as error:
             said.append((message.name, str(error)))
     return said
+
+
+def _which(subject: Subject, known: list[Message], data: bytes) -> str | None:
+    found = codec.which(subject.icd, known, data)
+    return found.name if found else None
 
 
 def _show(subject: Subject) -> object:
@@ -154,7 +169,8 @@ def _decode(subject: Subject) -> object:
     said: list[object] = []
     for message, data in subject.messages():
         with suppress(UserError):
-            found = recognize(subject.icd, data.hex(), subject.node.name, message.name)
+            key = message.name if len(subject.sharing(message)) == 1 else str(message.ids[0])
+            found = recognize(subject.icd, data.hex(), subject.node.name, key)
             said += [(values_text.to_text(one.frame), one.frame.to_json()) for one in found]
     return said
 
@@ -247,7 +263,7 @@ def _columns(subject: Subject) -> object:
             if message.telemetry_id is not None
             else (module.TELECOMMANDS, message.telecommand_id)
         )
-        cls = known[id]
+        cls = next(one for one in known.of(id) if message.name == one.NAME)
         frames = [
             frame for frame in subject.frames.get(message.name, ()) if frame and _taken(cls, frame, errors.LengthError)
         ]

@@ -58,7 +58,7 @@ def page(rows: Mapping[str, tuple[Feature, dict[str, Cell]]]) -> str:
         shown = [_shown(feature, output, cells[output], reasons) for output in OUTPUTS]
         lines.append(f"| [{feature.name}](icd-format.md#{anchor_of(feature.section)}) | {' | '.join(shown)} |")
     lines += ["", *(f"{number}. {reason[0].upper()}{reason[1:]}." for number, reason in enumerate(reasons, 1))]
-    lines += ["", f"Not measured yet: {', '.join(unmeasured()).lower()}."]
+    lines += ["", f"Not measured yet: {', '.join(unmeasured()).lower()}."] if unmeasured() else []
     lines += ["", "| output | what is asked of it |", "|---|---|"]
     lines += [f"| {head} | {asked} |" for head, asked in OUTPUTS.values()]
     return "\n".join(lines) + "\n"

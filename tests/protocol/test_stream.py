@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from icdgen.protocol import facts, stream
 from icdgen.protocol.envelope import PACKET, Stream
 from tests.conformance import ROOT
-from tests.conformance.icds import icd_of
+from tests.conformance.icds import LINKS, icd_of
 
-FOLDERS = [ROOT / "examples" / "links", ROOT / "tests" / "conformance" / "links"]
+FOLDERS = [ROOT / "examples" / "links", LINKS]
 
 
 @cache
