@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from icdgen.icd.model import Message, Node
+from icdgen.icd.variants import Ids, Variant
 from icdgen.protocol.envelope import DATA, DIRECTIONS, ROLES, Check, EnvelopeField, StreamRow
 from icdgen.protocol.sections import Crc
 
@@ -38,12 +39,15 @@ def values_of(row: Section, little: bool) -> tuple[int, int]:
     return first, second
 
 
-def rows_of(messages: Mapping[int, Message], seeds: Mapping[str, int]) -> tuple[StreamRow, ...]:
-    """The messages of a direction."""
-    return tuple(
-        StreamRow(id, one.least, one.length, bool(one.may_end_early), seeds.get(one.name, 0), one.name)
-        for id, one in sorted(messages.items())
-    )
+def rows_of(ids: Mapping[int, tuple[Variant, ...]], seeds: Mapping[str, int]) -> tuple[StreamRow, ...]:
+    """The messages of a direction, those that share an id as one: in the envelope they are alike (ICD174)."""
+    return tuple(_row(id, [one.message for one in those], seeds) for id, those in sorted(ids.items()))
+
+
+def _row(id: int, messages: list[Message], seeds: Mapping[str, int]) -> StreamRow:
+    least, most = min(one.least for one in messages), max(one.length for one in messages)
+    first, name = messages[0], " or ".join(one.name for one in messages)
+    return StreamRow(id, least, most, bool(first.may_end_early), seeds.get(first.name, 0), name)
 
 
 def place_of(rows: Iterable[Section], name: str, last: bool) -> Section | None:
@@ -78,8 +82,7 @@ def stream_of(
     node: Node,
     section: Section,
     checksums: Section,
-    telecommands: Mapping[int, Message],
-    telemetry: Mapping[int, Message],
+    ids: Ids,
 ) -> dict[str, Any]:
     """What code makes of the section, beside its declared facts."""
     header, trailer = section.get("header", ()), section.get("trailer", ())
@@ -98,6 +101,6 @@ def stream_of(
         "per_id": sequence.get("per", "link") == "id",
         "fields": tuple(fields),
         "check": check_of(section, checksums),
-        "telecommands": rows_of(telecommands, seeds),
-        "telemetry": rows_of(telemetry, seeds),
+        "telecommands": rows_of(ids.telecommand, seeds),
+        "telemetry": rows_of(ids.telemetry, seeds),
     }

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple, TypeVar
 
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.variants import ids_of
 from icdgen.protocol.declared import Fact, read
 from icdgen.protocol.envelope import Stream
 from icdgen.protocol.enveloping import stream_of
@@ -155,7 +156,7 @@ class Reader:
         section = self.section("stream")
         if not section:
             return None
-        made = stream_of(self.node, section, self.section("checksums"), self.telecommands, self.telemetry)
+        made = stream_of(self.node, section, self.section("checksums"), ids_of(self.icd, self.node))
         return Stream(**made)
 
     def mask(self) -> LogMask | None:

@@ -148,7 +148,11 @@ def _open_lines(info: FieldInfo) -> list[_Line]:
         for lines in (part.lines for part in info.parts)
     ]
     physical = [
-        f"{line.physical}[{index}]" if line.elements and line.physical else line.physical
+        (
+            f"{line.physical}[{index}]"
+            if line.elements and line.physical
+            else line.physical
+        )
         for line in info.parts[0].lines
         for index in range(len(line.parts))
     ]

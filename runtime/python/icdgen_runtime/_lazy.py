@@ -122,6 +122,13 @@ class Messages:
         found: _lazy.Any = self[id]
         return tuple(one for one, _, _ in getattr(found, "FRAMES", ())) or (found,)
 
+    def which(self, id: int, frame: bytes) -> _lazy.Optional[type[_lazy.Message]]:
+        """The message that a frame of an id is; None if it is none of those that share it."""
+        known: _lazy.Any = self[id]
+        found: _lazy.Optional[type[Message]]
+        found = known.which(frame) if hasattr(known, "FRAMES") else known
+        return found
+
     def __contains__(self, id: object) -> bool:
         return isinstance(id, int) and id in self._names
 

@@ -22,12 +22,9 @@ class Shared(Message):
     def from_bytes(cls, data: _lazy.Buffer) -> _lazy.Any:
         """The message in a frame. Raises `UnknownIdError` if it is none of them, `LengthError` if all have another length."""
         frame = bytes(data)
-        for message, lengths, signs in cls.FRAMES:
-            whole = frame.ljust(lengths[-1], b"\0")
-            if len(frame) in lengths and all(
-                whole[byte] & mask == value for byte, mask, value in signs
-            ):
-                return message.from_bytes(frame)
+        found = cls.which(frame)
+        if found is not None:
+            return found.from_bytes(frame)
         ends = ((lengths[0], lengths[-1]) for _, lengths, _ in cls.FRAMES)
         length, *others = {length for both in ends for length in both}
         if not others and len(frame) != length:
@@ -35,6 +32,17 @@ class Shared(Message):
         raise UnknownIdError(
             cls.NODE, cls.KIND, cls.IDS[0], f"the frame is no {cls.NAME}"
         )
+
+    @classmethod
+    def which(cls, frame: bytes) -> _lazy.Optional[type[Message]]:
+        """The message that a frame is; None if it is none of them."""
+        for message, lengths, signs in cls.FRAMES:
+            whole = frame.ljust(lengths[-1], b"\0")
+            if len(frame) in lengths and all(
+                whole[byte] & mask == value for byte, mask, value in signs
+            ):
+                return message
+        return None
 
 
 def shared(

@@ -59,7 +59,10 @@ def carried(ctx: Context) -> Iterator[Fault]:
                     f"fields of {quote(message.name)} are not always there, which the links of `protocol` do not carry"
                 )
                 yield Fault(
-                    message.source, message.source.at("name"), text, "leave `when` or `protocol` out of this ICD, or describe the link as a `stream`"
+                    message.source,
+                    message.source.at("name"),
+                    text,
+                    "leave `when` or `protocol` out of this ICD, or describe the link as a `stream`",
                 )
     for message, node in ctx.messages if told else ():
         named = {one.name for one in ctx.messages_of(node) if id(one.source) in told}

@@ -109,7 +109,7 @@ def _missing(ctx: Context, link: Link) -> Iterator[Fault]:
             message = "the length that delimits messages stands behind their data"
             yield Fault(row, row.at("role"), message, "it stands in `header`")
     for direction in ("telecommand", "telemetry"):
-        if len(_ids(ctx, link.node, direction)) > 1 and not link.of("id"):
+        if len({id for id, _ in _ids(ctx, link.node, direction)}) > 1 and not link.of("id"):
             message = f"no field has the role `id`, and there are several messages in one direction ({direction})"
             yield Fault(section, place, message, "add one: nothing else tells them apart")
             return
@@ -288,3 +288,24 @@ def _seeds(ctx: Context, link: Link, known: Map) -> Iterator[Fault]:
     if lacking:
         message = f"{quote(lacking[0])} has no seed" + (f", nor have {len(lacking) - 1} others" if lacking[1:] else "")
         yield Fault(known, known.key_at("seeds"), message, "give every message one, or none")
+
+
+@rule("ICD174")
+def alike_under_an_id(ctx: Context) -> Iterator[Fault]:
+    """Messages that share an id are told apart by their data, which the envelope is around."""
+    for link in links(ctx):
+        given = link.node.source["protocol"].get("checksums")
+        checksums = [one for one in given.values() if isinstance(one, Map)] if isinstance(given, Map) else []
+        seeds = [found for one in checksums if isinstance(found := one.get("seeds"), Map)]
+        for direction in ("telecommand", "telemetry"):
+            first: dict[int, Message] = {}
+            for id, one in _ids(ctx, link.node, direction):
+                other = first.setdefault(id, one)
+                if bool(one.may_end_early) != bool(other.may_end_early):
+                    whose = one if one.may_end_early else other
+                    message = f"zeros of {quote(whose.name)} may be cut off, and those of another message of its id not"
+                    yield Fault(whose.source, whose.source.at("may_end_early"), message, "let both end early, or none")
+                for known in seeds:
+                    if one.name in known and other.name in known and known[one.name] != known[other.name]:
+                        message = f"{quote(one.name)} has another seed than {quote(other.name)}, which has the same id"
+                        yield Fault(known, known.at(one.name), message, "give both the same seed, or other ids")

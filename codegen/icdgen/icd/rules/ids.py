@@ -59,17 +59,23 @@ def _is_id(value: object) -> bool:
 @rule("ICD055")
 def ids_told_apart(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        is_linked = bool(ctx.protocol_of(node))
+        is_linked = _goes_by_ids(ctx, node)
         seen: dict[tuple[str, int], list[Use]] = {}
         for use in (u for n in ctx.scope(node) for u in _uses(n)):
             before = seen.setdefault((use.direction, use.id), [])
             for first in before:
                 if not is_linked and _are_told_apart(first, use):
                     continue
-                if is_news(ctx, node, first.node, use.node) or (is_linked and not ctx.protocol_of(use.node)):
+                if is_news(ctx, node, first.node, use.node) or (is_linked and not _goes_by_ids(ctx, use.node)):
                     yield _same_id(node, first, use, is_linked)
                     break
             before.append(use)
+
+
+def _goes_by_ids(ctx: Context, node: Node) -> bool:
+    """Whether its link tells a message by its id alone: an envelope tells an id and the data."""
+    protocol = ctx.protocol_of(node)
+    return bool(protocol) and "stream" not in protocol
 
 
 def _are_told_apart(one: Use, other: Use) -> bool:

@@ -40,7 +40,7 @@ class StreamEvent(NamedTuple):
     """Of a message: the fields of the envelope that its sender chose, by role."""
     missing: int = 0
     kind: Optional[MessageClass] = None
-    """What the message is, of a message."""
+    """What the message is, of a message; None if it is none of those that share its id."""
 
     def of(self, message: MessageClassOf[M]) -> Optional[M]:
         """The message, if it is one of these."""
@@ -66,7 +66,7 @@ def stream_encode(
     if isinstance(message, Message):
         known = link.TELECOMMANDS if direction == "telecommand" else link.TELEMETRY
         id = message.IDS[0 if direction == "telecommand" else -1]
-        if id not in known or known[id] is not type(message):
+        if id not in known or type(message) not in known.of(id):
             raise UnknownIdError(link.node, direction, message.NAME)
         data = message.to_bytes()
     else:
@@ -251,7 +251,8 @@ class StreamDecoder:
         data = frame[form.header_bytes : form.header_bytes + count]
         values = {one.role: _get(form, one, frame, size) for one in self._values}
         self._count(id, values, events)
-        events.append(StreamEvent("message", id, data, values, 0, self._types[id]))
+        kind = self._types.which(id, bytes(data))
+        events.append(StreamEvent("message", id, data, values, 0, kind))
         return "message"
 
     def _told(self, length: EnvelopeField, frame: Buffer) -> int:

@@ -1,0 +1,59 @@
+"""Messages in envelopes, as classes of the generated package."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.conformance.icds import LINKS
+from tests.python import packages
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("packets")
+    return packages.write(packages.read(LINKS / "packets.yaml"), folder, "packets_messages")
+
+
+@pytest.fixture(scope="module")
+def node(package):
+    return package.module("datagram")
+
+
+@pytest.fixture(scope="module")
+def stream(package):
+    return package.module("wire.stream")
+
+
+def events(stream, node, message):
+    decoder = stream.StreamDecoder(node.LINK)
+    return decoder.feed(stream.stream_encode(node.LINK, message, direction="telemetry"))
+
+
+def test_the_data_tell_which_message_of_a_shared_id_it_is(node, stream):
+    for message in (
+        node.ShortLevel(level=7),
+        node.LevelOfTheFirst(level=1000),
+        node.LevelOfAnother(which=2, level=-1000),
+    ):
+        (event,) = events(stream, node, message)
+        assert (event.id, event.kind) == (3, type(message))
+        assert event.of(type(message)) == message == node.decode_telemetry(event.id, event.data)
+        assert event.of(node.Least) is None
+
+
+def test_data_that_are_of_no_message_of_their_id_have_no_class(package, node, stream):
+    line = stream.stream_encode(node.LINK, 3, bytes(2), direction="telemetry")
+    (event,) = stream.StreamDecoder(node.LINK).feed(line)
+    assert (event.event, event.kind, event.of(node.ShortLevel)) == ("message", None, None)
+    with pytest.raises(package.module("_errors").UnknownIdError):
+        node.decode_telemetry(event.id, event.data)
+
+
+def test_fields_that_are_not_always_there_and_open_ends_of_structs_travel_in_envelopes(node, stream):
+    choice = node.Choice(mode=1, level=5)
+    (event,) = events(stream, node, choice)
+    assert event.of(node.Choice) == choice and event.of(node.Choice).rate is None
+    points = node.Points(points_count=2, points=(node.Point(east=1, north=-1), node.Point(east=2)))
+    line = stream.stream_encode(node.LINK, points)
+    (event,) = stream.StreamDecoder(node.LINK, "telecommand").feed(line)
+    assert event.of(node.Points) == points
