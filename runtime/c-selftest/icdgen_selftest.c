@@ -432,7 +432,8 @@ static void dispatcher(run_t *run, const icdgen_selftest_dispatcher_t *one)
         check(run, status == row->status, "dispatcher", "a frame of a shared id");
         check(
             run,
-            status != ICD_OK || row->name == NULL || strcmp(one->name(row->id, row->frame, row->length), row->name) == 0,
+            status != ICD_OK || row->name == NULL ||
+                strcmp(one->name(row->id, row->frame, row->length), row->name) == 0,
             "dispatcher", row->name);
     }
 }
