@@ -123,12 +123,11 @@ impl Judge {
             frame.get(form.header_bytes..behind),
             frame.get(behind..),
         );
-        let (header, data, trailer) = match parts {
-            (Some(header), Some(data), Some(trailer)) => (header, data, trailer),
-            _ => {
-                on_event(Event::Length { id: None });
-                return Verdict::Doubtful;
-            }
+        let (header, data, trailer) = if let (Some(header), Some(data), Some(trailer)) = parts {
+            (header, data, trailer)
+        } else {
+            on_event(Event::Length { id: None });
+            return Verdict::Doubtful;
         };
         if !form.fields.iter().all(|field| self.is_right(field, frame)) {
             on_event(Event::Framing);
@@ -154,12 +153,11 @@ impl Judge {
                 return Verdict::Doubtful;
             }
         }
-        let (place, row) = match known {
-            Some(known) => known,
-            None => {
-                on_event(Event::UnknownId { id });
-                return Verdict::Proven;
-            }
+        let (place, row) = if let Some(known) = known {
+            known
+        } else {
+            on_event(Event::UnknownId { id });
+            return Verdict::Proven;
         };
         if data.len() < row.least || data.len() > row.most {
             on_event(Event::Length { id: Some(id) });
