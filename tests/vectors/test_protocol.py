@@ -14,7 +14,7 @@ from icdgen.loading import load
 from icdgen.protocol import ops
 from icdgen.vectors import protocol
 from tests.conformance import odd, wire
-from tests.conformance.icds import icd_of
+from tests.conformance.icds import LINKS, icd_of
 from tests.conformance.languages import all_languages
 from tests.conformance.reference import Reference
 
@@ -31,21 +31,28 @@ def files(icd):
     return wire.vectors_of(icd)
 
 
-def test_the_file_follows_the_published_schema(files):
+@pytest.fixture(scope="module")
+def enveloped():
+    return wire.vectors_of(icd_of([LINKS]))
+
+
+def test_the_file_follows_the_published_schema(files, enveloped):
     validator = jsonschema_rs.validator_for(SCHEMA)
     validator.validate(files)
+    validator.validate(enveloped)
     broken = json.loads(json.dumps(files))
     case = next(c for c in broken["nodes"][0]["cases"] if c["request"]["op"] == "uart_events")
     case["answer"]["events"] = [{"event": "surprise"}]
     assert not validator.is_valid(broken)
 
 
-def test_every_operation_is_shown_with_success_and_where_it_can_fail_with_failure(files):
-    seen = Counter((c["request"]["op"], c["answer"]["ok"]) for n in files["nodes"] for c in n["cases"])
+def test_every_operation_is_shown_with_success_and_where_it_can_fail_with_failure(files, enveloped):
+    nodes = (*files["nodes"], *enveloped["nodes"])
+    seen = Counter((c["request"]["op"], c["answer"]["ok"]) for n in nodes for c in n["cases"])
     assert {op for op, ok in seen if ok} == set(ops.OPS)
     assert {op for op, ok in seen if not ok} >= {
         "uart_encode", "can_split", "i2c_reply", "log_encode", "log_message_decode", "dos_time", "hole_map",
-        "index_encode", "identify",
+        "index_encode", "identify", "stream_encode",
     }  # fmt: skip
 
 

@@ -132,7 +132,10 @@ def _i2c_reply(link: Link, words: Words) -> str:
 
 
 def _frames(frames: Iterable[LogFrame]) -> str:
-    return "".join(row("frame", bit=one.bit, id="" if one.id is None else one.id, bytes=one.data) for one in frames)
+    return "".join(
+        row("frame", bit=one.bit, id="" if one.id is None else one.id, bytes=one.data)
+        for one in frames
+    )
 
 
 def _log_decode(link: Link, words: Words) -> str:
@@ -235,7 +238,11 @@ def _stream_encode(link: Link, words: Words) -> str:
 
 def _stream_events(link: Link, words: Words) -> str:
     decoder = StreamDecoder(link, _DIRECTIONS[number(words)], number(words))
-    said = "".join(_stream_event(event) for chunk in words for event in decoder.feed(bytes.fromhex(chunk)))
+    said = "".join(
+        _stream_event(event)
+        for chunk in words
+        for event in decoder.feed(bytes.fromhex(chunk))
+    )
     return f"{said} ok discarded={decoder.discarded} pending={decoder.pending}"
 
 
