@@ -450,7 +450,7 @@ typedef struct {
     uint16_t programs_count;
 } icd_operation_form_t;
 
-/* ---- the envelope of a link, as fields with roles around the data -------------------------------------------------- */
+/* ---- the envelope of a link, as fields with roles around the data ------------------------------------------------ */
 
 /** What tells where a message ends; ICD_DELIMITED_BY_PACKET: whatever carries it. */
 typedef enum {
@@ -727,7 +727,7 @@ ICDGEN_API void icd_uart_feed(
 /** What a message from the node is, as far as its id and its length tell. `length` is not 0. */
 ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *message, size_t length);
 
-/* ---- messages in an envelope, in a stream of bytes or in packets ---------------------------------------------------- */
+/* ---- messages in an envelope, in a stream of bytes or in packets ------------------------------------------------- */
 
 /** Values of the fields that the sender chooses, by icd_envelope_role_t. */
 typedef struct {

@@ -6,7 +6,7 @@
 #include "link.h"
 #include "crc.h"
 
-/* ---- messages in an envelope, in a stream of bytes or in packets ---------------------------------------------------- */
+/* ---- messages in an envelope, in a stream of bytes or in packets ------------------------------------------------- */
 
 /** Values of the fields that the sender chooses, by icd_envelope_role_t. */
 typedef struct {

@@ -4,7 +4,7 @@
 #include "../icdgen.h"
 #include "forms.h"
 
-/* ---- the envelope of a link, as fields with roles around the data -------------------------------------------------- */
+/* ---- the envelope of a link, as fields with roles around the data ------------------------------------------------ */
 
 /** What tells where a message ends; ICD_DELIMITED_BY_PACKET: whatever carries it. */
 typedef enum {
