@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hypothesis import strategies as st
 
 WAYS = ("lengths", "constants", "constants", "general")
@@ -39,7 +41,8 @@ def sharing(draw, first: dict, names, made, open_end) -> list[dict]:
     kind = draw(st.sampled_from(("uint", "int")))
     for message, value in zip(group, values, strict=True):
         const = value - (value >> bits - 1 << bits) if kind == "int" else value
-        selector = {**place, **names.one("selector"), "type": kind, "const": const}
+        taken = {part["name"] for field in message.get("fields", ()) for part in (field, *field.get("bitfields", ()))}
+        selector = {**place, **replace(names, seen=taken).one("selector"), "type": kind, "const": const}
         moved = [{**field, "at": field["at"] + 8 * size} for field in message.get("fields", ())]
         if message is first and way == "general":
             moved = [{key: value for key, value in field.items() if key != "const"} for field in moved]

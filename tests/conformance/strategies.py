@@ -106,11 +106,10 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         else:
             message["id"] = ids(first_id + number + (0 if message["kind"] == "telecommand" else 40))
         message["length"] = length
-        if draw(st.integers(0, 2)) == 0 and length:
-            room = length + draw(st.integers(0, 9))
-            alternatives = draw(_alternatives(fields, length, room, enums, orders | own))
-            if alternatives:
-                fields, message["length"] = [*fields, *alternatives], room
+        if draw(st.integers(0, 2)) == 0:
+            alternatives = draw(_alternatives(fields, length, enums, orders | own))
+            ends = (one["at"] + one["bits"] + 7 for one in alternatives)
+            fields, message["length"] = [*fields, *alternatives], max([length, *(end // 8 for end in ends)])
         if not any("when" in field for field in fields) and draw(st.integers(0, 3)) == 0:
             fields = [*fields, draw(_open_end(fields, message["length"], enums, structs))]
         elif draw(st.integers(0, 4)) == 0:
@@ -245,27 +244,34 @@ def _fields(
 
 
 @st.composite
-def _alternatives(draw, fields: list[dict], length: int, room: int, enums: list[dict], orders: dict) -> list[dict]:
-    """Fields of ``room`` bytes that are there or not by the value of another, some of them in the same bits."""
+def _alternatives(draw, fields: list[dict], length: int, enums: list[dict], orders: dict) -> list[dict]:
+    """Fields that are there or not by the value of another, some of them in the same bits; and that one, if there is none."""
     selectors = [field for field in fields if _decides(field)]
-    if not selectors:
-        return []
+    room = length + draw(st.integers(1, 9))
     used = (1 << 8 * length) - 1 if any("struct" in field for field in fields) else 0
     for field in fields:
         used |= 0 if field.get("view") or "struct" in field else _bits_of(field, {**orders, **field})
     names = Names(draw, {part["name"] for field in fields for part in (field, *field.get("bitfields", ()))})
-    selector = draw(st.sampled_from(selectors))
+    made = (
+        []
+        if selectors
+        else [{"at": 8 * length, **names.one("selector"), "bits": draw(st.integers(1, 8)), "type": "uint"}]
+    )
+    for one in made:
+        used |= _bits_of(one, orders)
+    selector = draw(st.sampled_from(selectors or made))
     values = draw(st.lists(st.integers(0, min(7, (1 << selector["bits"]) - 1)), min_size=1, max_size=4, unique=True))
     found: list[dict] = []
-    for at in draw(st.lists(st.integers(0, 8 * room - 1), min_size=1, max_size=4)):
+    for near in draw(
+        st.lists(st.integers(0, 8 * room - 1) | st.integers(8 * length, 8 * room - 1), min_size=1, max_size=4)
+    ):
         for value in values:
             field = {**draw(_field(enums)), **draw(_own_orders())}
             if field["type"] in ("bytes", "text"):
                 continue
             dropped = ("count", "byte_order", "bit_order") if field["type"] == "bool" else ("count",)
             field = {key: given for key, given in field.items() if key not in dropped}
-            if at + field["bits"] > 8 * room:
-                continue
+            at = max(0, min(near, 8 * room - field["bits"]))
             when = {selector["name"]: draw(st.sampled_from((value, [value])))}
             place = {"at": at, "bits": field.pop("bits"), **names.one("alternative"), **field, "when": when}
             taken = used
@@ -274,7 +280,7 @@ def _alternatives(draw, fields: list[dict], length: int, room: int, enums: list[
                 taken |= _bits_of(other, {**orders, **other}) if same else 0
             if not _bits_of(place, {**orders, **place}) & taken:
                 found.append(place)
-    return found
+    return [*made, *found]
 
 
 def _listed(when: dict) -> list[list[int]]:
