@@ -8,8 +8,9 @@ The words are described with icdgen's conformance tests.
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from importlib import import_module
-from typing import Any, Iterator, NamedTuple, Optional
+from typing import Any, NamedTuple, Optional
 
 from . import _floats
 from ._base import FieldInfo, Message
