@@ -87,7 +87,7 @@ def test_a_physical_value_computed_by_multiplication_is_found_out(tmp_path, demo
     icd = icd_of([demo])
     field = icd.nodes[0].messages[0].fields[0]
     total, notes = physical.Total("any"), []
-    (chunk,) = physical.chunks(field, 0)
+    (chunk,) = physical.chunks(field, 0, 16)
     monkeypatch.setattr(codec, "physical_double", lambda field, raw: raw * 0.01)
     physical.sweep(InProcess(Reference(icd).answer), total, icd.nodes[0].messages[0], field, chunk, notes)
     assert total.values == 65536
