@@ -169,6 +169,6 @@ def test_the_table_has_a_line_for_each_language(icd, files):
     results = run([all_languages()["reference"]], icd, files)
     assert table(results).splitlines()[1].split()[:3] == [
         "reference",
-        f"{results[0].messages}",
-        f"{results[0].vectors}",
+        f"{results[0].messages:,}",
+        f"{results[0].vectors:,}",
     ]
