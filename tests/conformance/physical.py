@@ -58,16 +58,16 @@ def scaled_fields(icd: Icd) -> Iterator[tuple[Message, Field]]:
                     yield message, field
 
 
-def chunks(field: Field, count: int) -> list[Chunk]:
+def chunks(field: Field, count: int, whole: int) -> list[Chunk]:
     """Everything to ask of a field; fields of one kind share it."""
-    return _chunks(field.scale, field.curve, field.type, field.bits, count)
+    return _chunks(field.scale, field.curve, field.type, field.bits, count, whole)
 
 
 @cache
-def _chunks(scale, curve, type_: str, bits: int, count: int) -> list[Chunk]:
+def _chunks(scale, curve, type_: str, bits: int, count: int, whole: int) -> list[Chunk]:
     field = Field("any", 0, bits, type_, scale=scale, curve=curve)
     low, high = field.raw_min, field.raw_max
-    if bits <= 16:
+    if bits <= whole:
         return [_chunk(field, {"from": low, "to": high}, tuple(range(low, high + 1)))]
     source = random.Random(f"{scale or curve}/{type_}/{bits}")
     near = [raw for middle in (low, 0, high) for raw in range(middle - 1000, middle + 1001) if low <= raw <= high]
@@ -109,15 +109,18 @@ def sweep(testee: Testee, total: Total, message: Message, field: Field, chunk: C
         notes.append(f"{where}: {answer['failures']} values do not come back, expected {chunk.failures}")
 
 
-def run(names: list[str], icd: Icd, count: int, folder: Path | None = None) -> tuple[list[Total], list[str]]:
-    """The totals, and the first differences in words. Raises `BuildError`."""
+def run(names: list[str], icd: Icd, count: int, whole: int = 16) -> tuple[list[Total], list[str]]:
+    """The totals, and the first differences in words. Raises `BuildError`.
+
+    Fields of up to ``whole`` bits are asked for all their values, wider ones for ``count`` random ones.
+    """
     languages = all_languages()
     totals, notes = [Total(name) for name in names], []
-    testees = [Testee(build(languages[name], icd, folder)) for name in names]
+    testees = [Testee(build(languages[name], icd)) for name in names]
     for message, field in scaled_fields(icd):
         for total, testee in zip(totals, testees, strict=True):
             total.fields += 1
-            for chunk in chunks(field, count):
+            for chunk in chunks(field, count, whole):
                 found: list[str] = []
                 sweep(testee, total, message, field, chunk, found)
                 notes += [f"{total.name}: {note}" for note in found[:5]]

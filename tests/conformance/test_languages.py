@@ -28,33 +28,32 @@ def strange(tmp_path_factory):
     return icd, vectors_of(icd)
 
 
-def agree(language, icd, files, frames, folder):
+def agree(language, icd, files, frames):
     assert not language.missing(), f"scripts/test installs {', '.join(language.missing())}"
-    (result,) = run([language], icd, files, frames, folder=folder)
+    (result,) = run([language], icd, files, frames)
     assert result.differences == 0, "\n".join(result.shown)
     assert result.vectors >= sum(len(m["vectors"]) for data in files.values() for m in data["messages"])
 
 
 @pytest.mark.parametrize("name", [language.name for language in LANGUAGES if language.name not in OPTIONAL])
-def test_a_language_agrees_with_the_reference_codec_on_odd_icds(strange, name, tmp_path):
-    agree(all_languages()[name], *strange, 50, tmp_path)
+def test_a_language_agrees_with_the_reference_codec_on_odd_icds(strange, name):
+    agree(all_languages()[name], *strange, 50)
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_a_language_agrees_with_the_reference_codec_on_the_shipped_icds(shipped, name, tmp_path):
-    agree(all_languages()[name], *shipped, 2, tmp_path)
+def test_a_language_agrees_with_the_reference_codec_on_the_shipped_icds(shipped, name):
+    agree(all_languages()[name], *shipped, 2)
 
 
-@pytest.mark.parametrize("name", ["c", "javascript", "python", "rust"])
-def test_physical_values_are_the_same_to_the_last_bit(strange, name, tmp_path):
-    totals, notes = physical.run([name], strange[0], 2000, tmp_path)
+def test_physical_values_are_the_same_to_the_last_bit(strange):
+    totals, notes = physical.run(["c", "javascript", "python", "rust"], strange[0], 400, whole=12)
     assert notes == []
     scaled = [f for node in strange[0].nodes for m in node.messages for f in m.owners if f.has_formula and f.leads_back]
-    assert totals[0].fields == len(scaled) > 20 and totals[0].values > 20_000
+    assert all(total.fields == len(scaled) > 20 and total.values > 20_000 for total in totals)
 
 
 def test_random_icds_agree_in_all_languages():
-    totals = check(10, ["c", "javascript", "python", "rust-debug"], start=1)
+    totals = check(6, ["c", "javascript", "python", "rust-debug"], start=1)
     assert all(total.vectors > 100 and total.differences == 0 for total in totals.values())
 
 

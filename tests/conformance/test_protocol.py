@@ -87,7 +87,7 @@ def test_a_physical_value_computed_by_multiplication_is_found_out(tmp_path, demo
     icd = icd_of([demo])
     field = icd.nodes[0].messages[0].fields[0]
     total, notes = physical.Total("any"), []
-    (chunk,) = physical.chunks(field, 0)
+    (chunk,) = physical.chunks(field, 0, 16)
     monkeypatch.setattr(codec, "physical_double", lambda field, raw: raw * 0.01)
     physical.sweep(InProcess(Reference(icd).answer), total, icd.nodes[0].messages[0], field, chunk, notes)
     assert total.values == 65536
@@ -169,6 +169,6 @@ def test_the_table_has_a_line_for_each_language(icd, files):
     results = run([all_languages()["reference"]], icd, files)
     assert table(results).splitlines()[1].split()[:3] == [
         "reference",
-        f"{results[0].messages}",
-        f"{results[0].vectors}",
+        f"{results[0].messages:,}",
+        f"{results[0].vectors:,}",
     ]

@@ -18,7 +18,7 @@ from tests.features.data import Feature
 from tests.features.outputs import LINKED, SAYS, Refused, Subject, differs, frames_of, icd_of, laid_out, words_of
 from tests.mutation.mutants import mutants, unchanged
 
-AT_ONCE, DRAWS = 15, 10  # random ICDs: in so many a feature must turn up; most do in the first
+AT_ONCE, DRAWS = 15, 60  # random ICDs: in so many a feature must turn up; most do in the first
 BUILT = ("c", "python", "rust", "javascript")  # whose code is built and asked, of the odd ICDs, by the conformance run
 
 

@@ -79,8 +79,8 @@ def test_elements_are_values_and_an_index_is_held_to_the_count(arrays, toolchain
 
 
 @pytest.mark.parametrize("level", ["3", "z"])
-def test_no_way_to_a_panic_is_left_in_arrays(arrays, level, tmp_path):
-    assert suspicious(symbols(arrays, "default", level, tmp_path)) == []
+def test_no_way_to_a_panic_is_left_in_arrays(libraries, arrays, level, tmp_path):
+    assert suspicious(symbols(libraries, arrays, "default", level, tmp_path)) == []
 
 
 def test_sources_of_arrays_are_formatted_and_clippy_has_nothing_to_say(arrays, tmp_path):

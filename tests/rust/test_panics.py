@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
 
 import pytest
@@ -65,17 +64,6 @@ def everything(icd: Icd) -> Iterator[str]:
         for enum in node.enums:
             name, type_ = f"{node.name}_{type_name(enum)}", f"icd::{node.name}::enums::{type_name(enum)}"
             yield ENUM.format(name=name, type=type_, raw=f"{'i' if enum.storage.signed else 'u'}{enum.storage.bits}")
-
-
-@pytest.fixture(scope="module")
-def libraries(tmp_path_factory):
-    """Crates as libraries, each compiled once."""
-
-    @cache
-    def library(crate: Path, toolchain: str, level: str) -> Path:
-        return Toolchain(toolchain).library(crate, tmp_path_factory.mktemp("library"), level)
-
-    return library
 
 
 def symbols(libraries, subject, toolchain: str, level: str, folder: Path, more: str = "") -> set[str]:

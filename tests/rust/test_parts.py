@@ -47,8 +47,8 @@ def test_parts_are_what_the_reference_reads_there(request, which, toolchain, tmp
 
 
 @pytest.mark.parametrize("level", ["3", "z"])
-def test_no_way_to_a_panic_is_left_in_parts(odd, level, tmp_path):
-    assert suspicious(symbols(odd, "default", level, tmp_path)) == []
+def test_no_way_to_a_panic_is_left_in_parts(libraries, odd, level, tmp_path):
+    assert suspicious(symbols(libraries, odd, "default", level, tmp_path)) == []
 
 
 def test_sources_with_parts_are_tidy(odd, tmp_path):

@@ -56,8 +56,8 @@ def test_a_struct_is_a_value_of_its_own_wherever_it_stands(structs, toolchain, t
 
 
 @pytest.mark.parametrize("level", ["3", "z"])
-def test_no_way_to_a_panic_is_left_in_structs(structs, level, tmp_path):
-    assert suspicious(symbols(structs, "default", level, tmp_path)) == []
+def test_no_way_to_a_panic_is_left_in_structs(libraries, structs, level, tmp_path):
+    assert suspicious(symbols(libraries, structs, "default", level, tmp_path)) == []
 
 
 def test_sources_of_structs_are_formatted_and_clippy_has_nothing_to_say(structs, tmp_path):

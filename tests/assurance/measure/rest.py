@@ -55,27 +55,30 @@ def _message(message: MessageDescription) -> dict[str, Any]:
         "length": message.model.length,
         "beyond": beyond,
         "rows": [_row(message, row, wholes) for row in (rows if wholes else rows[:2])],
-        "parts": list(_parts(message)),
         "fields": [literal(field.model.name) for field in message.members],
     }
 
 
-def _parts(message: MessageDescription) -> Iterator[dict[str, Any]]:
-    """Each part: the call that gives it, and where its bytes begin; nowhere where these are no whole ones."""
+def _parts(message: MessageDescription, frame: bytes) -> Iterator[dict[str, Any]]:
+    """Each part: the call that gives it, and its bytes where these are whole ones of the frame.
+
+    What the part reserves may hold something of the whole message: encoding the part leaves it out.
+    """
     for part in parts_of(message):
         for index, begin in enumerate(part.begins):
             which = f"{index}u, " if len(part.begins) > 1 else ""
             call = f"{stem(message)}_{part_name(part.message)}(&message, {which}&part)"
-            length = part.message.model.length
-            yield {
-                "stem": stem(part.message),
-                "call": call,
-                "begin": None if begin % 8 else begin // 8,
-                "length": length,
-            }
+            yield {"stem": stem(part.message), "call": call, "bytes": _part(part.message, frame, begin)}
             if which and begin == part.begins[-1]:
                 beyond = call.replace(which, f"{len(part.begins)}u, ")
-                yield {"stem": stem(part.message), "call": f"CHECK({beyond} == ICD_ERROR_RANGE)", "begin": None}
+                yield {"stem": stem(part.message), "call": f"CHECK({beyond} == ICD_ERROR_RANGE)", "bytes": ""}
+
+
+def _part(part: MessageDescription, frame: bytes, begin: int) -> str:
+    if begin % 8:
+        return ""
+    own = frame[begin // 8 :][: part.model.length]
+    return _bytes(codec.encode(part.node, part.model, codec.decode(part.node, part.model, own)))
 
 
 def _row(message: MessageDescription, row: Row, wholes: dict[str, Any]) -> dict[str, Any]:
@@ -85,7 +88,12 @@ def _row(message: MessageDescription, row: Row, wholes: dict[str, Any]) -> dict[
         assert exact.denominator == 1
         values.append((accessor, physical.int64(int(exact))))
     encoded = "" if row.encoded == row.frame else _bytes(row.encoded)
-    return {"bytes": _bytes(row.frame), "encoded": encoded, "wholes": values}
+    return {
+        "bytes": _bytes(row.frame),
+        "encoded": encoded,
+        "wholes": values,
+        "parts": list(_parts(message, row.encoded)),
+    }
 
 
 def _bytes(data: bytes) -> str:
