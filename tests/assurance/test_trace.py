@@ -202,7 +202,7 @@ def test_changed_lines_of_the_shipped_icds_fail_the_vectors_that_the_trace_names
             hold(shipped, change, tmp_path / f"{kind}{number}")
 
 
-@settings(max_examples=4)
+@settings(max_examples=3)
 @given(icds())
 def test_changed_lines_of_any_icd_fail_the_vectors_that_the_trace_names(tmp_path_factory, trees):
     folder = tmp_path_factory.mktemp("random")

@@ -12,7 +12,7 @@ from tests.conformance.run import run
 
 LANGUAGES = [language for language in all_languages().values() if language.kind in (TESTEE, SELFTEST)]
 # Built for the shipped ICDs too; the others, variants of these, for the odd ones only.
-SHIPPED = ("c", "c-clang", "c-s390x", "c-cortex-m", "c-cortex-m-no-double", "javascript", "python", "rust")
+SHIPPED = ("c", "c-s390x", "c-cortex-m", "javascript", "python", "rust")
 OPTIONAL = {"python3.9"}  # not every machine has an interpreter that old
 
 
@@ -53,7 +53,7 @@ def test_physical_values_are_the_same_to_the_last_bit(strange):
 
 
 def test_random_icds_agree_in_all_languages():
-    totals = check(6, ["c", "javascript", "python", "rust-debug"], start=1)
+    totals = check(4, ["c", "javascript", "python", "rust-debug"], start=1)
     assert all(total.vectors > 100 and total.differences == 0 for total in totals.values())
 
 
