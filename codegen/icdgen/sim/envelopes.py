@@ -71,7 +71,7 @@ class EnvelopeLine:
         due = []
         while self._queue and self._queue[0][0] <= now:
             due.append(heapq.heappop(self._queue)[2])
-        return due if self.keeps_packets else [b"".join(due)]
+        return due
 
     @property
     def deadline(self) -> int | None:

@@ -19,7 +19,6 @@ from .exchanges import (
     T,
     client_of,
     executed,
-    messages_in,
     outcome_of,
 )
 from .link import Link, Settings
@@ -88,7 +87,9 @@ class AsyncSession(Exchanges[N]):
         return class_of(reply).from_bytes(executed(outcome, name).data)
 
     @overload
-    def messages(self, *, seconds: Optional[float] = None) -> AsyncIterator[Message]: ...
+    def messages(
+        self, *, seconds: Optional[float] = None
+    ) -> AsyncIterator[Message]: ...
 
     @overload
     def messages(
@@ -108,7 +109,7 @@ class AsyncSession(Exchanges[N]):
         """
         end = None if seconds is None else self._now() + 1000 * seconds
         while end is None or self._now() < end:
-            for message in messages_in(await self.wait(end), kinds):
+            for message in self._messages_in(await self.wait(end), kinds):
                 yield message
 
     async def start(self, request: Request) -> Outcome:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Generic, Literal, Optional, TypeVar, Union, cast
 
 from .._base import Message
+from .._errors import IcdError
 from .._hints import KindOf, N, SpokenBy
 from .client import Client, Request
 from .errors import UnsupportedError
@@ -15,6 +16,7 @@ from .events import (
     Arrived,
     Done,
     Event,
+    Malformed,
     Outcome,
     OutcomeOf,
     R_co,
@@ -96,6 +98,21 @@ class Exchanges(Generic[N]):
             raise UnsupportedError(what)
         return self._exchange(self.client.send, message, repeat, reply)
 
+    def _messages_in(
+        self, events: list[Event], kinds: tuple[KindOf[N, Message], ...]
+    ) -> Iterator[Message]:
+        """The messages of these kinds that came unasked; without kinds all."""
+        for event in events:
+            if not isinstance(event, Arrived) or (kinds and event.type not in kinds):
+                continue
+            try:
+                message = event.message
+            except IcdError:  # what the frame counts does not fit its length
+                self._tell(Malformed(event.id))
+                continue
+            if message is not None:
+                yield message
+
     def _exchange(
         self, start: Callable[..., list[Event]], *arguments: Any
     ) -> Exchange[Outcome]:
@@ -157,19 +174,6 @@ class Exchanges(Generic[N]):
                 raise FailedError(procedure.result, why)
             if not events:
                 events = yield procedure.deadline
-
-
-def messages_in(
-    events: list[Event], kinds: tuple[KindOf[Any, Message], ...]
-) -> Iterator[Message]:
-    """The messages of these kinds that came unasked; without kinds all."""
-    for event in events:
-        if (
-            isinstance(event, Arrived)
-            and event.type
-            and not (kinds and event.type not in kinds)
-        ):
-            yield event.type.from_bytes(event.data)
 
 
 def executed(outcome: Outcome, name: str) -> AnyDone:

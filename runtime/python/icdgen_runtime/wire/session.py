@@ -18,7 +18,6 @@ from .exchanges import (
     T,
     client_of,
     executed,
-    messages_in,
     outcome_of,
 )
 from .link import Link, Settings
@@ -82,7 +81,7 @@ class BusSession(Exchanges[N]):
         """
         end = None if seconds is None else self._now() + 1000 * seconds
         while end is None or self._now() < end:
-            for message in messages_in(self.wait(end), kinds):
+            for message in self._messages_in(self.wait(end), kinds):
                 yield message
 
     def start(self, request: Request) -> Outcome:
