@@ -321,7 +321,9 @@ def alike_under_an_id(ctx: Context) -> Iterator[Fault]:
 def replies_that_can_come(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         replies = link.section.get("replies")
-        for sent, came in replies.items() if isinstance(replies, Map) else ():
+        if not isinstance(replies, Map):
+            continue
+        for sent, came in replies.items():
             for direction, name, place in (
                 ("telecommand", sent, replies.key_at(sent)),
                 ("telemetry", came, replies.at(sent)),
