@@ -7,7 +7,6 @@ import random
 from functools import cache
 
 import pytest
-from icdgen_runtime.wire.stream import StreamDecoder
 
 from icdgen.backends.python.objects.links import link_of
 from icdgen.protocol import facts, stream
@@ -59,6 +58,8 @@ def came(answer: dict) -> list[tuple[int, str]]:
 @cache
 def found(node: str, line: bytes) -> tuple[list[tuple[int, str]], int, int]:
     """What the decoder of the Python runtime makes of it: messages, bytes discarded and pending."""
+    from icdgen_runtime.wire.stream import StreamDecoder  # which `icdgen` makes importable
+
     decoder = StreamDecoder(link_of(ICD, facts.of(ICD, ICD.node(node))))
     events = [event for event in decoder.feed(line) if event.event == "message"]
     return [(event.id or 0, event.data.hex()) for event in events], decoder.discarded, decoder.pending

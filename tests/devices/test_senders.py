@@ -5,7 +5,6 @@ from __future__ import annotations
 import subprocess
 
 import pytest
-from icdgen_runtime.wire.sender import Sender
 
 from icdgen.backends.python.objects.links import link_of
 from icdgen.protocol import facts
@@ -104,6 +103,7 @@ fn main() -> Result<(), Error> {
 @pytest.fixture(scope="module")
 def expected() -> list[str]:
     """As Python sends them."""
+    from icdgen_runtime.wire.sender import Sender  # which `icdgen` makes importable
 
     def sender(node: str, **values: int) -> Sender:
         return Sender(link_of(ICD, facts.of(ICD, ICD.node(node))), "telecommand", values)
