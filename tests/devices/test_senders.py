@@ -35,8 +35,10 @@ int main(void)
     uint8_t data[AUTOPILOT_SET_MODE_LENGTH];
     uint8_t line[AUTOPILOT_LINE_BYTES];
     size_t size = 0;
-    autopilot_set_mode_t mode = autopilot_set_mode_init();
-    payload_set_exposure_t exposure = payload_set_exposure_init();
+    autopilot_set_mode_t mode;
+    payload_set_exposure_t exposure;
+    autopilot_set_mode_init(&mode);
+    payload_set_exposure_init(&exposure);
     mode.target_system = 1;
     exposure.exposure = 7;
     if (icd_stream_sender_init(&sender, autopilot_link(), ICD_TELECOMMAND, sequences, AUTOPILOT_SEQUENCES) != ICD_OK) {
