@@ -32,6 +32,7 @@ int main(void)
 {
     icd_stream_sender_t sender;
     uint32_t sequences[AUTOPILOT_SEQUENCES + PAYLOAD_SEQUENCES];
+    static const uint8_t seven[7] = {0};
     uint8_t data[AUTOPILOT_SET_MODE_LENGTH];
     uint8_t line[AUTOPILOT_LINE_BYTES];
     size_t size = 0;
@@ -53,7 +54,7 @@ int main(void)
             return 2;
         }
     }
-    if (icd_stream_send(&sender, AUTOPILOT_SET_MODE_ID, data, 1, line, sizeof line, &size) != ICD_ERROR_LENGTH ||
+    if (icd_stream_send(&sender, AUTOPILOT_SET_MODE_ID, seven, sizeof seven, line, sizeof line, &size) != ICD_ERROR_LENGTH ||
         icd_stream_sender_init(&sender, payload_link(), ICD_TELECOMMAND, sequences, PAYLOAD_SEQUENCES) != ICD_OK) {
         return 3;
     }
@@ -89,7 +90,7 @@ fn main() -> Result<(), Error> {
         let size = sender.send(&mode, &mut line)?;
         put(&line[..size]);
     }
-    assert!(sender.put(11, &[0], &mut line).is_err());
+    assert!(sender.put(11, &[0; 7], &mut line).is_err());
     let mut sender = Sender::<payload::Node, { payload::SEQUENCES }>::new(&payload::LINK)?;
     let mut exposure = payload::SetExposure::default();
     exposure.exposure = 7;
