@@ -5,8 +5,8 @@ use crate::wire::link::{EnvelopeRole, Link};
 use crate::wire::{Direction, Error, Linked, TelecommandOf};
 use core::marker::PhantomData;
 
-/// Puts the telecommands of node `T` into their envelopes, and counts them where the link has sequence numbers: `S` of
-/// them are remembered, the node's `SEQUENCES`.
+/// Puts the telecommands of node `T` into their envelopes, and counts them where the link has sequence
+/// numbers: `S` of them are remembered, the node's `SEQUENCES`.
 ///
 /// ```
 /// use icdgen_runtime::wire::stream::Sender;
@@ -21,7 +21,8 @@ use core::marker::PhantomData;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Sender<T, const S: usize> {
-    /// Values of the fields that the sender chooses: those of the ICD, until others are set; `sequence` is the first one.
+    /// Values of the fields that the sender chooses: those of the ICD, until others are set; `sequence` is
+    /// the first one.
     pub values: Values,
     link: &'static Link,
     next: [Option<u32>; S],
@@ -65,8 +66,8 @@ impl<T, const S: usize> Sender<T, S> {
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownId`] if there is no such telecommand, [`Error::Length`] if its data have another length or `out`
-    /// is too small, [`Error::Range`] if a value of the envelope does not fit.
+    /// [`Error::UnknownId`] if there is no such telecommand, [`Error::Length`] if its data have another
+    /// length or `out` is too small, [`Error::Range`] if a value of the envelope does not fit.
     pub fn put(&mut self, id: u32, data: &[u8], out: &mut [u8]) -> Result<usize, Error> {
         let form = self.link.stream.as_ref().ok_or(Error::Unsupported)?;
         let row = form.row(Direction::Telecommand, id);
