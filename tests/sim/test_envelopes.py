@@ -121,6 +121,12 @@ def test_values_that_the_envelope_cannot_have_are_refused(values, error):
         talking("autopilot", values=values)
 
 
+def test_an_envelope_leaves_no_choice_of_a_checksum():
+    port = Port("receiver")
+    with pytest.raises(UnsupportedError, match="no choice"):
+        Session(link_of(ICD, facts.of(ICD, ICD.node("receiver"))), port.write, port.read, crc=True)
+
+
 def damaged(data: bytes) -> bytes:
     return data[:-1] + bytes([data[-1] ^ 1]) if data else data
 

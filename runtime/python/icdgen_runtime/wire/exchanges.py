@@ -50,6 +50,10 @@ def client_of(
 ) -> AnyClient[N]:
     """The client for a stream of bytes. Raises `UnsupportedError`."""
     if link.stream:
+        if crc:
+            raise UnsupportedError(
+                "the envelope has the checksum, and leaves no choice"
+            )
         from .envelope_client import EnvelopeClient
 
         return EnvelopeClient(link, settings, values)
