@@ -1,7 +1,7 @@
 //! Sends telecommands one after the other.
 
 use super::encoder::{encode, Values};
-use crate::wire::link::{EnvelopeRole, Link};
+use crate::wire::link::{EnvelopeField, EnvelopeRole, Link};
 use crate::wire::{Direction, Error, Linked, TelecommandOf};
 use core::marker::PhantomData;
 
@@ -77,9 +77,8 @@ impl<T, const S: usize> Sender<T, S> {
             values.sequence = *next;
         }
         let size = encode(self.link, Direction::Telecommand, id, data, &values, out)?;
-        let mask = form
-            .field(EnvelopeRole::Sequence)
-            .map_or(0, |field| field.mask());
+        let field = form.field(EnvelopeRole::Sequence);
+        let mask = field.map_or(0, EnvelopeField::mask);
         if let Some(next) = self.next.get_mut(place) {
             *next = Some(values.sequence.wrapping_add(1) & mask);
         }
