@@ -61,7 +61,7 @@ def monitor(
             try:
                 with open_session(icd, watched.known, **options, on_event=watched.event) as session:
                     reached = True
-                    if strange := stranger(session):
+                    if strange := stranger(session, watched.faults):
                         say(f"icdgen: {strange}", err=True)
                     elif lost:
                         say("icdgen: the line is back", err=True)

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from icdgen_runtime.wire.events import Done, Log, Outcome
+from icdgen_runtime.wire.events import Done, LineError, Log, Malformed, Outcome
 
 from icdgen import tables
 from icdgen.errors import UserError
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 _COLUMNS = ("frame", "field", "value", "unit", "remarks")
+_NO_ANSWER = "no answer"
+_FAULTS = {"checksum": "wrong checksum", "unchecked": "no checksum"}  # of what came, though no use could be made of it
 
 
 class Monitor:
@@ -40,11 +42,13 @@ class Monitor:
             self.messages.append(self.known.identification.message)
         self.last: dict[str, bytes] = {}
         self.silent: set[str] = set()  # what was not answered in this round
+        self.faults: dict[int, str] = {}  # what was wrong with what came, by id
 
     def took(self, message: Message, outcome: Outcome) -> None:
         """What became of a request for the frame."""
         if isinstance(outcome, Done):
             self.silent.discard(message.name)
+            self.faults.pop(outcome.id, None)
             self.last[message.name] = outcome.data
         else:
             self.silent.add(message.name)
@@ -52,9 +56,14 @@ class Monitor:
     def miss(self) -> None:
         """There is no line: nothing was answered."""
         self.silent = {message.name for message in self.messages}
+        self.faults.clear()
 
     def event(self, event: Event) -> None:
-        """Takes what came unasked: frames of a log."""
+        """Takes what came unasked: frames of a log, and those of which no use can be made."""
+        if isinstance(event, Malformed):
+            self.faults[event.id] = "wrong length"
+        elif isinstance(event, LineError) and event.id is not None and event.error in _FAULTS:
+            self.faults[event.id] = _FAULTS[event.error]
         if not isinstance(event, Log):
             return
         for one in event.log.frames:
@@ -72,9 +81,14 @@ class Monitor:
     def rows(self) -> Iterator[tuple[str, str, str, str, str]]:
         """Frame, field, value, unit, remarks."""
         found = {one.message.name: one for one in self.frames()}
+        ids = {message.name: message.telemetry_id for message in self.messages}
+
+        def why(name: str) -> str:
+            return self.faults.get(ids.get(name) or 0, _NO_ANSWER)
+
         for name in self._names():
             if name in self.silent:
-                yield name, "", "", "", "no answer"
+                yield name, "", "", "", why(name)
             elif name in found:
                 for number, row in enumerate(found[name].rows):
                     unit = row.field.unit.symbol if row.field.unit else ""
@@ -122,6 +136,6 @@ class Screen:
         for title in _COLUMNS:
             table.add_column(title, justify="right" if title == "value" else "left")
         for row in self.monitor.rows():
-            style = "red" if row[4] == "no answer" else ""
+            style = "red" if row[0] in self.monitor.silent else ""
             table.add_row(*(Text(clean(cell), style=style) for cell in row))
         return table

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -28,7 +28,7 @@ def session_options(command: Callable[..., Any]) -> Callable[..., Any]:
             metavar="PORT",
             help="tcp://HOST:PORT, udp://HOST:PORT, a terminal or serial port (/dev/ttyUSB0, COM3), can://INTERFACE/CHANNEL.",
         ),
-        click.option("--crc", is_flag=True, help="Send checksums, where the ICD has them."),
+        click.option("--crc", is_flag=True, help="Use checksums where the ICD leaves that to the client."),
         click.option("--address", type=click.IntRange(0), default=0, help="Our address, on CAN."),
         click.option("--timeout", type=click.IntRange(1), metavar="MS", help="How long a reply is waited for."),
         click.option("--retries", type=click.IntRange(0, 255), help="How often a request is sent again."),
@@ -72,8 +72,11 @@ def open_session(
         yield opened
 
 
-def stranger(session: BusSession) -> str | None:
-    """What is to be said if the node is another one than the ICD describes, or does not answer."""
+def stranger(session: BusSession, faults: Mapping[int, str]) -> str | None:
+    """What is to be said if the node is another one than the ICD describes, or does not answer.
+
+    ``faults``: what was wrong with what came, by id.
+    """
     from icdgen_runtime.wire.client import Request
     from icdgen_runtime.wire.events import Done
     from icdgen_runtime.wire.identity import identify
@@ -83,7 +86,8 @@ def stranger(session: BusSession) -> str | None:
         return None
     outcome = session.start(Request("telemetry", link.identification.telemetry))
     if not isinstance(outcome, Done):
-        return "the device does not answer"
+        fault = faults.get(link.identification.telemetry)
+        return f"the device answers, but: {fault}" if fault else "the device does not answer"
     found = identify(link, outcome.data)
     if found.matches:
         return None

@@ -11,6 +11,7 @@ from icdgen.icd.rules.context import Context, mappings, section_of
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, listing, quote
+from icdgen.suggest import close_to
 
 PARTS = ("header", "trailer")
 FIXED = ("sync", "constant")
@@ -309,3 +310,19 @@ def alike_under_an_id(ctx: Context) -> Iterator[Fault]:
                     if one.name in known and other.name in known and known[one.name] != known[other.name]:
                         message = f"{quote(one.name)} has another seed than {quote(other.name)}, which has the same id"
                         yield Fault(known, known.at(one.name), message, "give both the same seed, or other ids")
+
+
+@rule("ICD176")
+def replies_that_can_come(ctx: Context) -> Iterator[Fault]:
+    for link in links(ctx):
+        replies = link.section.get("replies")
+        for sent, came in replies.items() if isinstance(replies, Map) else ():
+            for direction, name, place in (
+                ("telecommand", sent, replies.key_at(sent)),
+                ("telemetry", came, replies.at(sent)),
+            ):
+                names = {one.name for _, one in _ids(ctx, link.node, direction)}
+                if isinstance(name, str) and name not in names:
+                    message = f"there is no {direction} {quote(name)}"
+                    help = f"did you mean {quote(near)}?" if (near := close_to(name, names)) else "correct the name"
+                    yield Fault(replies, place, message, help)

@@ -93,7 +93,11 @@ class Stray:
 
 @dataclass(frozen=True)
 class LineError:
-    """What the UART decoder or the CAN joiner found wrong; on CAN, with the id."""
+    """What the UART decoder or the CAN joiner found wrong; on CAN, with the id.
+
+    ``checksum``: that of a frame is wrong; ``unchecked``: it has none, though it must. With
+    the id; the frame is waited on.
+    """
 
     error: str
     id: Optional[int] = None
