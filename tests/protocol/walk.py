@@ -1,7 +1,7 @@
 """Every key of the protocol section, changed: what of it is heeded, and how.
 
 `outcomes` changes a key of an ICD to each of a few other values that the format allows, and tells what that makes of the golden
-vectors, of the findings, and of what the documentation says of the node.
+vectors or of the findings. `python -m tests.protocol.walk` does so with all keys, and writes `keys/table.yaml`.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from itertools import zip_longest
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import yaml
@@ -22,10 +23,21 @@ from icdgen.loading import load
 from icdgen.protocol import facts, ops
 from icdgen.protocol.facts import Facts
 from icdgen.vectors import protocol as vectors
+from tests.conftest import ROOT
 
 WIRE, FINDING, NOTHING = "wire", "finding", "nothing"
 BESIDES = ("source", "assumptions", "summary")  # of every section: where it stands, why it is assumed, prose
 Path_ = tuple[str | int, ...]
+
+KEYS = ROOT / "tests" / "protocol" / "keys"
+TABLE = KEYS / "table.yaml"
+_HEAD = """\
+# What each key of the protocol section makes a difference to; `python -m tests.protocol.walk` writes wire and finding.
+#
+# wire: another value makes other golden vectors      port: the port is opened with it
+# finding: another value is refused                   simulator: the simulated device does it
+# only: there is one value                            told: a fact of the manual, which documents and the diff tell
+"""
 
 
 class Key(NamedTuple):
@@ -38,7 +50,7 @@ class Key(NamedTuple):
         return ".".join(self.path)
 
 
-def keys() -> list[Key]:
+def all_keys() -> list[Key]:
     """All keys of the protocol section that hold a value, by the JSON Schema."""
     return list(_keys(schema._schema()["$defs"]["protocol"], ()))
 
@@ -133,9 +145,9 @@ class Source:
         if isinstance(value, bool):
             return [not value]
         if isinstance(value, int):
-            near = (value + 1, value * 2, value - 1, value ^ 0x10)
+            near = (value + 1, value * 2 or 16, value - 1)
             least, most = form.get("minimum", 0), form.get("maximum", 1 << 32)
-            return [one for one in near if least <= one <= most][:2]
+            return [one for one in near if least <= one <= most][:3]
         if isinstance(value, list):
             return self._other_lists(value, form)
         if isinstance(value, dict):
@@ -145,11 +157,15 @@ class Source:
     def _other_lists(self, value: list[Any], form: dict[str, Any]) -> list[Any]:
         choices = form.get("items", {}).get("enum", ())
         if choices:
-            return [[one for one in choices if one != first] for first in value] + [list(choices)] * (value != list(choices))
+            return [[one for one in choices if one != first] for first in value] + [list(choices)] * (
+                value != list(choices)
+            )
         if all(isinstance(one, int) for one in value):
             return [[*value[:-1], value[-1] + 1], value[:-1] or [value[0] + 1]]
         if all(one in self.messages for one in value):
-            return [[*value[:-1], name] for name in self.messages if name not in value][:1] + [value[::-1]] * (len(value) > 1)
+            return [[*value[:-1], name] for name in self.messages if name not in value][:1] + [value[::-1]] * (
+                len(value) > 1
+            )
         nodes = [content["node"]["name"] for content in self.texts.values()]
         if all(one in nodes for one in value):
             return [[one] for one in nodes if [one] != value]
@@ -161,12 +177,13 @@ class Source:
             return [name for name in (*alike, *self.messages) if name != value][:12]
         if value in self.enums:
             return [name for name in self.enums if name != value]
+        nodes = [content["node"]["name"] for content in self.texts.values()]
+        if value in nodes and key.path[0] == "program_start":
+            return [name for name in nodes if name != value]
         message = next((self.messages[one] for one in self._named(place) if one in self.messages), None)
         if message:
-            return [one["name"] for one in message.get("fields", ()) if one["name"] != value]
-        nodes = [content["node"]["name"] for content in self.texts.values()]
-        if value in nodes:
-            return [name for name in nodes if name != value]
+            others = [one["name"] for one in message.get("fields", ()) if one["name"] != value]
+            return others or [f"{value} other"]
         types = [one["name"] for one in self.section.get("can", {}).get("message_types", {}).get("values", ())]
         if value in types and key.path[-1] != "name":
             return [name for name in types if name != value]
@@ -227,3 +244,42 @@ def outcomes(source: Source, key: Key, whole: bool) -> Iterator[tuple[Path_, Any
             yield place, other, found
             if not whole and found != NOTHING:
                 return
+
+
+def sources(work: Path) -> Iterator[Source]:
+    """ICDs that have all keys between them."""
+    groups = [[KEYS / "board.yaml", KEYS / "app.yaml"], [KEYS / "link.yaml"]]
+    groups += [
+        [path]
+        for folder in ("examples/links", "tests/conformance/links")
+        for path in sorted((ROOT / folder).glob("*.yaml"))
+    ]
+    for number, files in enumerate(groups):
+        folder = work / str(number)
+        folder.mkdir()
+        yield Source(files, folder)
+
+
+def walked(work: Path, whole: bool) -> dict[str, set[str]]:
+    """What came of the changes of each key, in any of the ICDs; nothing, where it does not stand or has but one value."""
+    found: dict[str, set[str]] = {str(key): set() for key in all_keys()}
+    for source in sources(work):
+        for key in all_keys():
+            for _, _, what in outcomes(source, key, whole):
+                found[str(key)].add(what)
+    return found
+
+
+def main() -> None:
+    with TemporaryDirectory() as folder:
+        found = walked(Path(folder), True)
+    table = yaml.safe_load(TABLE.read_text(encoding="utf-8")) if TABLE.exists() else {}
+    lines = []
+    for key, outcome_ in found.items():
+        heeded = [one for one in (WIRE, FINDING) if one in outcome_]
+        lines.append(f"{key}: {heeded[0] if heeded else table.get(key, NOTHING)}\n")
+    TABLE.write_text(_HEAD + "".join(lines), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

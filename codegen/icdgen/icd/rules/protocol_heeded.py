@@ -9,7 +9,7 @@ from icdgen.icd.model import TELECOMMAND, TELEMETRY, Field, Message, Node
 from icdgen.icd.rules.context import Context, mappings, section_of
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.protocol import sections
-from icdgen.icd.rules.protocol_limits import in_force, roles_stand_once
+from icdgen.icd.rules.protocol_limits import roles_stand_once
 from icdgen.icd.rules.protocol_names import FIELDS
 from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
@@ -35,7 +35,6 @@ def nothing_is_passed_over(ctx: Context) -> Iterator[Fault]:
         yield from _acknowledges(node)
         yield from _can_data(node)
         yield from _unsolicited(node)
-        yield from _checksums(ctx, node)
 
 
 def _acknowledges(node: Node) -> Iterator[Fault]:
@@ -69,31 +68,6 @@ def _unsolicited(node: Node) -> Iterator[Fault]:
     for bus, place in buses.placed() if isinstance(buses, Seq) else ():
         if bus in BUSES and bus != "uart":
             yield Fault(log, place, "logs that come unasked are looked for on the UART only", f"remove `{bus}`")
-
-
-def _checksums(ctx: Context, node: Node) -> Iterator[Fault]:
-    crc8 = section_of(node, "crc8")
-    if crc8 is None:
-        return
-    forms = {direction: found for direction in (TELECOMMAND, TELEMETRY) if isinstance(found := crc8.get(direction), Map)}
-    for form in forms.values():
-        if form.get("optional") is False:
-            message = "`crc8` is a checksum that a client may leave out: this says that it may not"
-            help = "describe the link as a `stream`, whose checksum no message lacks; or say `optional: true`"
-            yield Fault(form, form.at("optional"), message, f"{help} and always connect with checksums")
-    frames = forms.get(TELEMETRY)
-    if frames is not None:
-        given = frames.get("buses")
-        named = [one for one, _ in given.placed()] if isinstance(given, Seq) else []
-        found = named if isinstance(given, Seq) else [one for one in BUSES if in_force(ctx, node, one) is not None]
-        for bus in (one for one in found if one in ("uart", "can")):
-            message = f"the checksum of telemetry is looked at on I2C only, not on {str(bus).upper()}"
-            help = "say `buses: [i2c]`, or describe the link as a `stream`"
-            yield Fault(frames, frames.at("buses") if named else crc8.key_at(TELEMETRY), message, help)
-    sizes = {form.get("extra_bytes", 1) for form in forms.values()}
-    if len(sizes) > 1 and frames is not None and "extra_bytes" in frames:
-        message = "telecommands and telemetry have one checksum, and so one number of bytes for it"
-        yield Fault(frames, frames.at("extra_bytes"), message, "make both `extra_bytes` agree")
 
 
 @rule("ICD116", whole=True)
@@ -180,5 +154,5 @@ def rows_are_read_as_they_are(ctx: Context) -> Iterator[Fault]:
                         message = f"the {role} is read as {' or '.join(wanted)}, not as {type}"
                         yield Fault(row, row.at("type"), message, "correct `type` or `role`")
     for index in ctx.sections("index_file"):
-        if isinstance(index.get("entry"), Seq):
+        if any("role" in row for row in mappings(index.get("entry"))):
             yield from roles_stand_once(index, "entry", INDEX_ROLES, "an entry of the index has no part for")
