@@ -6,6 +6,7 @@ import json
 import random
 import struct
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -75,41 +76,57 @@ def compare(node: str, messages: list[Definition], testee: Answering, frames: in
             continue
         if told != one.name:
             into.differences.append(f"{about}: taken for {told}")
-        for part in one.fields:
-            name = part["name"]
-            if name in raw:
+        formulas = {}
+        for name, part, ours in _values(one, said["raw"]):
+            formulas[name] = part.get("formula", "")
+            if "when" in part and (ours is None) != (name not in raw):
+                into.differences.append(f"{about}: {name} is {ours!r}, the library says {raw.get(name, 'nothing')!r}")
+            elif name in raw:
                 into.values += 1
                 value = raw[name]
                 if value is None or (isinstance(value, int) and _means_something(value, part)):
                     into.special += 1
                 if value is None:
-                    if not _means_something(_ours(said["raw"], part), part):
+                    if not _means_something(ours, part):
                         into.differences.append(f"{about}: {name} is a number, the library says it is none")
                 elif isinstance(value, int) and value.bit_length() > part["bits"]:
                     into.impossible += 1
-                elif not _same(_ours(said["raw"], part), value, part):
-                    into.differences.append(
-                        f"{about}: {name} is {_ours(said['raw'], part)!r}, the library says {value!r}"
-                    )
+                elif not _same(ours, value, part):
+                    into.differences.append(f"{about}: {name} is {ours!r}, the library says {value!r}")
         for name, bits in said["physical"].items():
-            if name in physical:
+            if name in physical and bits is not None:
                 into.values += 1
-                formula = next(part["formula"] for part in one.fields if part["name"] == name)
-                _physical(about, name, _double(bits), physical[name], _exact(formula, said["raw"][name]), into)
+                _physical(about, name, _double(bits), physical[name], _exact(formulas[name], said["raw"][name]), into)
+        elements = _there(one.end, said["raw"]) if one.end else 0
+        extra = [name for name in raw if one.end and name.startswith(f"{one.end['name']}[{elements}]")]
+        into.differences += [f"{about}: {elements} elements, the library says more" for _ in extra[:1]]
     into.messages += len(messages)
     into.unread |= {one.name for one in messages} - read
 
 
-def _ours(raw: dict[str, object], part: dict) -> object:
-    """A raw value of an answer; of an array a list, of what is open at the end as much as there is."""
-    name, count = part["name"], part.get("count")
-    if "up_to" in part:
-        said = count or part["size"]
-        counter = f"{name} {'Count' if count else 'Size'}" if said == "rest" else said
-        count = int(str(raw[counter]))
+def _values(one: Definition, raw: dict[str, object]) -> Iterator[tuple[str, dict, object]]:
+    """Name, field and value of all that an answer has; of an array a list, of what is open at the end as much as there is."""
+    for part in one.fields:
+        name, parts = part["name"], one.parts(part)
+        count = _there(part, raw) if "up_to" in part else part.get("count")
         if "size" in part:
-            return str(raw[name])[: 2 * count]
+            yield name, part, str(raw[name])[: 2 * count]
+        for index in range(count) if parts else ():
+            for inner in parts:
+                whole = f"{name}[{index}].{inner['name']}"
+                yield whole, inner, _value(raw, whole, inner.get("count"))
+        if not parts and "size" not in part:
+            yield name, part, _value(raw, name, count)
+
+
+def _value(raw: dict[str, object], name: str, count: int | None) -> object:
     return raw[name] if count is None else [raw[f"{name}[{index}]"] for index in range(count)]
+
+
+def _there(end: dict, raw: dict[str, object]) -> int:
+    """How many elements, or bytes, of an open end are there."""
+    said = end.get("count") or end["size"]
+    return int(str(raw[f"{end['name']} {'Size' if 'size' in end else 'Count'}" if said == "rest" else said]))
 
 
 def _means_something(raw: object, part: dict) -> bool:
@@ -140,17 +157,29 @@ def random_frames(one: Definition, chance: random.Random, count: int) -> list[by
     found = []
     for number in range(count):
         elements = _elements(end, number, chance)
-        length = one.length + elements * (end.get("bits", 8) // 8 if end else 0)
+        length = one.length + elements * (one.element(end) if end else 0)
         data = bytes(length) if number == 0 else b"\xff" * length if number == 1 else chance.randbytes(length)
-        if end is not None and end["type"] == "text":
+        if end is not None and end.get("type") == "text":
             data = data[: one.length] + bytes(chance.choices(range(32, 127), k=elements))
         for part in one.fields:
             if "const" in part:
                 data = _put(data, part, part["const"])
             if end is not None and part["name"] in (end.get("count"), end.get("size")):
                 data = _put(data, part, elements)
-        found.append(data)
+        found.append(_chosen(one, data, chance) if number % 4 else data)
     return found
+
+
+def _chosen(one: Definition, data: bytes, chance: random.Random) -> bytes:
+    """The frame with a value on which others depend, for each field that some depend on."""
+    wanted: dict[str, list[int]] = {}
+    for part in one.fields:
+        for name, values in part.get("when", {}).items():
+            wanted.setdefault(name, []).extend(values)
+    for part in one.fields:
+        if part["name"] in wanted:
+            data = _put(data, part, chance.choice(wanted[part["name"]]))
+    return data
 
 
 def _elements(end: dict | None, number: int, chance: random.Random) -> int:
@@ -160,10 +189,13 @@ def _elements(end: dict | None, number: int, chance: random.Random) -> int:
 
 
 def _put(data: bytes, part: dict, value: int) -> bytes:
-    """The frame with another value in a field, of a node that counts bits from the least significant one."""
-    mask = (1 << part["bits"]) - 1 << part["at"]
-    bits = int.from_bytes(data, "little") & ~mask | value << part["at"] & mask
-    return bits.to_bytes(len(data), "little")
+    """The frame with another value in a field, whose bits are counted from the least significant one unless it says so."""
+    at, is_big = part["at"], part.get("bit_order") == "msb0"
+    if is_big:  # and the most significant byte first: the frame is one number that begins with its highest bit
+        at = 8 * len(data) - at - part["bits"]
+    mask = (1 << part["bits"]) - 1 << at
+    bits = int.from_bytes(data, "big" if is_big else "little") & ~mask | value << at & mask
+    return bits.to_bytes(len(data), "big" if is_big else "little")
 
 
 def _exact(formula: str, raw: int) -> float:

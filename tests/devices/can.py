@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.resources
 from collections.abc import Callable, Iterator
 from decimal import Decimal
+from functools import reduce
+from operator import or_
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +37,7 @@ def files() -> list[Path]:
 
 
 def _definition(message: Any) -> Definition:
-    fields, enums, cause = [], [], ""
+    fields, enums = [], []
     for signal in message.signals:
         one = {"at": _first(signal), "bits": signal.length, "name": signal.name, **_kind(signal), **unit(signal.unit)}
         if signal.byte_order == "big_endian":
@@ -49,41 +52,56 @@ def _definition(message: Any) -> Definition:
             one = {**one, "type": "enum", "enum": name}
             one.pop("unit", None)
             enums.append({"name": name, "members": [{"value": value, "name": name} for value, name in named]})
+        if signal.multiplexer_signal is not None:
+            one["when"] = {signal.multiplexer_signal: sorted(signal.multiplexer_ids)}
         fields.append(one | scale)
-    if message.is_multiplexed():
-        cause = "fields that are there under a condition"
     fields = sorted(_with_views(fields), key=lambda one: int(one["at"]))
-    read = _reader(message, any("view" in one for one in fields))
+    read = _reader(message, message.is_multiplexed() or any("view" in one for one in fields))
     return Definition(
         message.name, message.frame_id, "telemetry", message.length, fields, enums,
-        cause, lambda data: read(data, False), lambda data: read(data, True),
+        "", lambda data: read(data, False), lambda data: read(data, True),
     )  # fmt: skip
 
 
-def _reader(message: Any, is_overlapping: bool) -> Callable[[bytes, bool], Values]:
-    """The library's reading, raw or scaled; signals that overlap it reads only one by one."""
+def _reader(message: Any, is_by_signal: bool) -> Callable[[bytes, bool], Values]:
+    """The library's reading, raw or scaled; signals that overlap, or that no selector has, it reads only one by one."""
     from cantools.database import Message
+    from cantools.database.errors import DecodeError
 
-    parts = [message]
-    if is_overlapping:
-        head = message.frame_id, message.name, message.length
-        parts = [Message(*head, [signal], is_extended_frame=True, strict=False) for signal in message.signals]
-    return lambda data, scaled: {
-        name: value for part in parts for name, value in part.decode(data, False, scaled).items()
-    }
+    parts, head = [message], (message.frame_id, message.name, message.length)
+    if is_by_signal:
+        selectors = {signal.name: signal for signal in message.signals if signal.is_multiplexer}
+        groups = [[*filter(None, [selectors.get(one.multiplexer_signal)]), one] for one in message.signals]
+        parts = [Message(*head, group, is_extended_frame=True, strict=False) for group in groups]
+
+    def read(data: bytes, scaled: bool) -> Values:
+        found: Values = {}
+        for part in parts:
+            with contextlib.suppress(DecodeError):  # of a value of the selector that no signal has
+                found |= part.decode(data, False, scaled)
+        return found
+
+    return read
 
 
 def _with_views(fields: list[dict]) -> list[dict]:
     """The fields, those that overlap larger ones as views; bits of these that no signal has by itself become fields."""
-    owned, left = 0, 0
-    for one in sorted(fields, key=lambda one: -int(one["bits"])):
-        mask = _mask(one)
-        if mask & owned:
+    owners: list[dict] = []
+    left = 0
+    for one in sorted(fields, key=lambda one: ("when" in one, -int(one["bits"]))):
+        if any(_mask(one) & _mask(other) and not _exclude(one, other) for other in owners):
             one["view"] = True
-            left |= mask
+            left |= _mask(one)
         else:
-            owned |= mask
+            owners.append(one)
+    owned = reduce(or_, map(_mask, owners), 0)
     return [*fields, *_remaining(left & ~owned)]
+
+
+def _exclude(one: dict, other: dict) -> bool:
+    """Whether two fields are never both there."""
+    there, beside = one.get("when", {}), other.get("when", {})
+    return any(name in beside and not set(values) & set(beside[name]) for name, values in there.items())
 
 
 def _mask(one: dict) -> int:
