@@ -30,7 +30,7 @@ def test_the_table_has_the_keys_of_the_format():
 
 
 def test_each_key_makes_a_difference_or_a_finding(found):
-    """Here of the facts that vectors are made of, as every key costs a check of the ICDs; `python -m tests.protocol.walk` compares all vectors, and takes minutes."""
+    """Here of the facts that vectors are made of: each key costs a check of the ICDs. The walk by hand compares all vectors."""
     heeded = {key for key, what in found.items() if what & {walk.WIRE, walk.FINDING}}
     assert heeded >= {key for key, what in TABLE.items() if what in ("wire", "finding")}
     assert not {key for key in heeded if TABLE[key] in ("port", "only")}
