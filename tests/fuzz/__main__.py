@@ -233,7 +233,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--jobs", type=int, default=1, help="processes (default: %(default)s)")
     parser.add_argument("--odd", action="store_true", help="the odd ICDs of the conformance tests")
     parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
-    options = parser.parse_args(arguments)
+    options = parser.parse_intermixed_args(arguments)
     folder = cache_folder().resolve() / f"fuzz-{options.lang}"
     corpus = folder / "corpus"
     shutil.rmtree(corpus, ignore_errors=True)  # inputs mean something for these ICDs only

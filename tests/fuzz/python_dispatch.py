@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from types import ModuleType
 
 DIRECTION, FIT, AS_ID = 1, 2, 4
+LONGEST = 65535  # bytes of a frame; a field that counts may tell of more
 EXACT_BITS = 52  # physical values of wider fields need not lead back to the same raw value
 
 
@@ -29,7 +30,7 @@ class Dispatch:
             message = decode(id, frame)
         except self.package.LengthError as error:
             assert error.actual == len(frame) != error.expected
-            if not flags & FIT:
+            if not flags & FIT or error.expected > LONGEST:
                 return
             frame = (frame or b"\0") * (error.expected // (len(frame) or 1) + 1)
             frame = frame[: error.expected]

@@ -13,7 +13,6 @@ from tests.conformance import odd
 from tests.conformance.build import execute
 from tests.conformance.icds import icd_of
 from tests.conformance.languages import Language
-from tests.conftest import ROOT
 from tests.fuzz.__main__ import HERE, c_wire_seeds, seeds, sources, stream_seeds
 from tests.fuzz.python_dispatch import Dispatch
 from tests.fuzz.python_streams import Streams
@@ -27,7 +26,7 @@ def icd():
 @pytest.fixture(scope="module")
 def odd_icd(tmp_path_factory):
     """Messages of variable length, shared ids, conditions: what the shipped ICDs do not have."""
-    return icd_of([*(ROOT / "examples" / "devices").iterdir(), odd.write(tmp_path_factory.mktemp("odd"))])
+    return icd_of(odd.variable(tmp_path_factory.mktemp("odd")))
 
 
 @pytest.fixture(scope="module")
