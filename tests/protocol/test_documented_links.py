@@ -61,7 +61,12 @@ def test_an_example_is_checked_generated_and_run(name, tmp_path):
     node = loaded.icd.nodes[0].name
     package = packages.write(loaded.icd, tmp_path / "made", f"documented_{node}")
     link, wire = package.module(node).LINK, package.module("wire")
-    kinds = [one for one in vars(package.module(node)).values() if hasattr(one, "from_bytes") and hasattr(one, "NAME")]
+    module = package.module(node)
+    kinds = [
+        one
+        for one in (getattr(module, name) for name in module.__all__)
+        if hasattr(one, "from_bytes") and hasattr(one, "NAME")
+    ]
     assert {kind.NAME for kind in kinds} == {message.name for message in loaded.icd.nodes[0].messages}
     for kind in kinds:
         sent = kind()

@@ -94,7 +94,9 @@ def _fields(owner: Map, keys: tuple[str, ...], message: Message) -> Iterator[Fau
             continue
         other = seen.setdefault(field.name, key)
         if other != key:
-            yield Fault(owner, owner.at(key), f"{quote(field.name)} is `{other}` already", "name the field of each part")
+            yield Fault(
+                owner, owner.at(key), f"{quote(field.name)} is `{other}` already", "name the field of each part"
+            )
         elif problem := _unfit(key, field):
             yield Fault(owner, owner.at(key), f"{quote(field.name)} cannot be `{key}`: {problem}", "name another field")
 
