@@ -52,6 +52,12 @@ class Line:
         if message is not None:
             self._send(now, "log", message)
 
+    keeps_packets = False  # its bytes may be cut anywhere
+
+    def pieces(self, now: int) -> list[bytes]:
+        """The bytes that are due, as they go to the port."""
+        return [self.take(now)]
+
     def take(self, now: int) -> bytes:
         """The bytes that are due."""
         out = bytearray()

@@ -85,8 +85,8 @@ static inline void icdgen_client_replied(const icdgen_client_call_t *call, const
     size_t frame = client->message->length;
     icd_event_kind_t fault = ICD_EVENT_DONE;
     if (form != NULL && icdgen_on_bus(form->telemetry_buses, client->bus) && length == frame + form->bytes) {
-        fault = icd_i2c_reply(client->link, id, data, length, true, &frame) == ICD_OK ? ICD_EVENT_DONE
-                                                                                       : ICD_EVENT_CHECKSUM;
+        fault =
+            icd_i2c_reply(client->link, id, data, length, true, &frame) == ICD_OK ? ICD_EVENT_DONE : ICD_EVENT_CHECKSUM;
     } else if (length != frame) {
         fault = ICD_EVENT_MALFORMED;
     } else if (client->checks_telemetry) {

@@ -4,8 +4,6 @@
 #include "envelope.h"
 #include "stream_encode.c"
 
-#define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF)
-
 /* What a frame turned out to be: taken; one beyond doubt, though of no use; perhaps none at all. */
 typedef enum { ICDGEN_TAKEN, ICDGEN_PROVEN, ICDGEN_DOUBTFUL } icdgen_verdict_t;
 

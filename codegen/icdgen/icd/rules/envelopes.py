@@ -20,7 +20,7 @@ MOST_SEQUENCE_BITS = 31
 MOST_SPAN = 4  # bytes that a field may have part in
 DATA = "data"
 ONLY_WITH = {"counts": "length", "plus": "length", "per": "sequence", "checksum": "checksum"}  # keys of one role
-BESIDE = ("stream", "checksums", "uart", "boot")  # what else may be said of such a link
+BESIDE = ("stream", "checksums", "client", "uart", "boot")  # what else may be said of such a link
 BITS_OF = {"fletcher": 16, "fletcher_255": 16, "xor": 8}
 
 
@@ -63,6 +63,11 @@ def described_once(ctx: Context) -> Iterator[Fault]:
                 message = f"`{key}` is of another kind of link than `stream`, and nothing would heed it"
                 yield Fault(protocol, protocol.key_at(key), message, f"remove `{key}` or `stream`")
         uart = protocol.get("uart")
+        client = protocol.get("client")
+        for key in ("poll_interval_ms", "poll_timeout_ms"):
+            if isinstance(client, Map) and key in client:
+                message = f"nothing is polled where messages travel in envelopes, and nothing would heed `{key}`"
+                yield Fault(client, client.key_at(key), message, "remove it")
         for key in ("framing", "acknowledge"):
             if isinstance(uart, Map) and key in uart:
                 message = f"`uart: {key}` and `stream` describe how messages are delimited, each in another way"
@@ -316,7 +321,9 @@ def alike_under_an_id(ctx: Context) -> Iterator[Fault]:
 def replies_that_can_come(ctx: Context) -> Iterator[Fault]:
     for link in links(ctx):
         replies = link.section.get("replies")
-        for sent, came in replies.items() if isinstance(replies, Map) else ():
+        if not isinstance(replies, Map):
+            continue
+        for sent, came in replies.items():
             for direction, name, place in (
                 ("telecommand", sent, replies.key_at(sent)),
                 ("telemetry", came, replies.at(sent)),

@@ -68,7 +68,9 @@ impl<const N: usize> Machine<N> {
     /// What came as the frame: with a checksum where there may be one, without where there need not.
     fn replied(&mut self, now: u32, data: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
         let id = self.id.into();
-        let length = self.form(self.direction, self.id).map_or(0, |form| form.length);
+        let length = self
+            .form(self.direction, self.id)
+            .map_or(0, |form| form.length);
         let checksum = self.link.checksum.as_ref();
         let may_have = checksum.filter(|form| form.telemetry_buses.of(self.bus));
         if may_have.map_or(false, |form| data.len() == length + form.bytes) {
