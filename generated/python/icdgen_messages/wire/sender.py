@@ -30,7 +30,8 @@ class Sender:
         values: Optional[Mapping[str, int]] = None,
     ) -> None:
         form = need(link.stream, "stream")
-        self._link, self._direction = link, direction
+        self._link = link
+        self._direction: Direction = direction
         self._values = dict(values or {})
         for role, value in self._values.items():
             field = form.of(role) if role in GIVEN else None

@@ -82,8 +82,7 @@ class BusSession(Exchanges[N]):
         """
         end = None if seconds is None else self._now() + 1000 * seconds
         while end is None or self._now() < end:
-            for message in self._messages_in(self.wait(end), kinds):
-                yield message
+            yield from self._messages_in(self.wait(end), kinds)
 
     def start(self, request: Request) -> Outcome:
         """Any request; its outcome. Raises what `Client.start` does."""
