@@ -135,8 +135,11 @@ def packets_have_their_message(ctx: Context) -> Iterator[Fault]:
         messages = {one.name: one for one in ctx.messages_of(node)}
         for bus in BUSES:
             section = section_of(node, "file_transfer", "download", bus)
-            for key in ("packet", "id_of") if section is not None else ():
-                message = messages.get(section.get(key, ""))
+            if section is None:
+                continue
+            for key in ("packet", "id_of"):
+                name = section.get(key)
+                message = messages.get(name) if isinstance(name, str) else None
                 if message is None or (key == "id_of" and bus == "uart"):
                     continue  # on the UART any id can head the packets
                 if message.telemetry_id is None or message.length != sum(sizes):
