@@ -11,6 +11,7 @@ from icdgen.backends.python.objects.links import link_of
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.variants import Ids, ids_of
+from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
 from icdgen.values.find import KINDS, describe
 from icdgen.values.frame import Frame
@@ -40,6 +41,21 @@ class Speaker:
         """The id that bytes begin with, and the rest; None if there are too few."""
         size = wire_ids.size(self.node.id_bits)
         return (wire_ids.number(body[:size]), body[size:]) if len(body) >= size else None
+
+
+_last: list[tuple[Icd, tuple[Speaker, ...]]] = []
+
+
+def all_speakers(icd: Icd) -> tuple[Speaker, ...]:
+    """Every node of the set. Those of the last set are kept: text of many frames is read frame by frame."""
+    if not _last or _last[0][0] is not icd:
+        _last[:] = [(icd, tuple(Speaker(icd, node, facts.of(icd, node)) for node in icd.nodes))]
+    return _last[0][1]
+
+
+def speaker_of(icd: Icd, node: Node) -> Speaker:
+    """That node of the set."""
+    return next(one for one in all_speakers(icd) if one.node is node)
 
 
 @dataclass(frozen=True, slots=True)
