@@ -9,6 +9,7 @@ from icdgen_runtime.wire.link import Link
 
 from icdgen.backends.python.objects.links import link_of
 from icdgen.icd import wire_ids
+from icdgen.icd.kept import kept
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.variants import Ids, ids_of
 from icdgen.protocol import facts
@@ -43,19 +44,15 @@ class Speaker:
         return (wire_ids.number(body[:size]), body[size:]) if len(body) >= size else None
 
 
-_last: list[tuple[Icd, tuple[Speaker, ...]]] = []
-
-
-def all_speakers(icd: Icd) -> tuple[Speaker, ...]:
-    """Every node of the set. Those of the last set are kept: text of many frames is read frame by frame."""
-    if not _last or _last[0][0] is not icd:
-        _last[:] = [(icd, tuple(Speaker(icd, node, facts.of(icd, node)) for node in icd.nodes))]
-    return _last[0][1]
-
-
+@kept
 def speaker_of(icd: Icd, node: Node) -> Speaker:
     """That node of the set."""
-    return next(one for one in all_speakers(icd) if one.node is node)
+    return Speaker(icd, node, facts.of(icd, node))
+
+
+def all_speakers(icd: Icd) -> list[Speaker]:
+    """Every node of the set."""
+    return [speaker_of(icd, node) for node in icd.nodes]
 
 
 @dataclass(frozen=True, slots=True)
