@@ -8,13 +8,15 @@ import struct
 from collections import Counter
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Literal
 
 from icdgen import codec
+from icdgen.definitions.frames import BIG, LITTLE, Place
 from icdgen.icd.build import special
 from icdgen.icd.formula import parse
 from icdgen.icd.model import Field
 from tests.conformance.driver import Answering
-from tests.devices.definition import Definition, NotHeld
+from tests.devices.definition import Definition, NotHeld, Values
 
 ROUNDS_OFF = 1e-9  # as far as a library's double may be from the exact value, relative to it or as so many units
 
@@ -29,6 +31,7 @@ class Agreement:
     rounded: int = 0  # ours is the double nearest to the exact value, the library's is not
     impossible: int = 0  # the library's value has more bits than the field
     special: int = 0  # values that have a meaning, where the library has a value or says that there is none
+    encoded: int = 0  # frames of the library's, from its raw values and from its physical ones
     refused: int = 0  # frames that the library takes for another message
     unread: set[str] = field(default_factory=set)  # messages of which the library reads no frame at all
     differences: list[str] = field(default_factory=list)
@@ -37,7 +40,8 @@ class Agreement:
         return (
             f"{self.messages} messages, {self.frames} frames, {self.values} values, {len(self.differences)} differences, "
             f"{self.special} special values, "
-            f"{self.rounded} rounded wrongly by the library, {self.impossible} of it wider than the field, "
+            + (f"{self.encoded} frames encoded, " if self.encoded else "")
+            + f"{self.rounded} rounded wrongly by the library, {self.impossible} of it wider than the field, "
             f"{self.refused} frames of other layouts"
             + (f"; the library reads no frame of {', '.join(sorted(self.unread))}" if self.unread else "")
         )
@@ -48,16 +52,14 @@ def compare(node: str, messages: list[Definition], testee: Answering, frames: in
     chance = random.Random(f"{seed} {node}")
     asked = [(one, data) for one in messages for data in random_frames(one, chance, frames)]
     sharing = Counter((one.kind, one.id) for one in messages)
-    requests = [
-        {"op": "decode", "node": node, "kind": one.kind, "id": one.id, "bytes": data.hex()} for one, data in asked
-    ]
-    plain = testee.ask([json.dumps(request).encode() for request in requests])  # of a shared id: which message it is
-    named = [{**request, "message": one.name} for request, (one, _) in zip(requests, asked, strict=True)]
+    requests = [{**request(node, one, "decode"), "bytes": data.hex()} for one, data in asked]
+    plain = testee.ask([json.dumps(each).encode() for each in requests])  # of a shared id: which message it is
+    named = [{**each, "message": one.name} for each, (one, _) in zip(requests, asked, strict=True)]
     shared = [sharing[one.kind, one.id] > 1 for one, _ in asked]
     of_shared = iter(
         testee.ask([json.dumps(one).encode() for one, is_shared in zip(named, shared, strict=True) if is_shared])
     )
-    read = set()
+    read, again = set(), []
     for (one, data), answer, is_shared in zip(asked, plain, shared, strict=True):
         told = json.loads(answer or b"{}").get("message") if is_shared else one.name
         answer = next(of_shared) if is_shared else answer
@@ -91,13 +93,44 @@ def compare(node: str, messages: list[Definition], testee: Answering, frames: in
                     into.differences.append(
                         f"{about}: {name} is {_ours(said['raw'], part)!r}, the library says {value!r}"
                     )
+            elif "when" in part and said["raw"][name] is not None:
+                into.differences.append(f"{about}: {name} is {said['raw'][name]!r}, the library says it is not there")
+        if one.encoded is not None:
+            expected = one.encoded(data).hex()
+            if said["bytes"] != expected:
+                into.differences.append(f"{about}: is encoded as {said['bytes']}, by the library as {expected}")
+            again.append(({**request(node, one, "encode"), **_to_encode(one, said["raw"], physical)}, expected))
         for name, bits in said["physical"].items():
             if name in physical:
                 into.values += 1
                 formula = next(part["formula"] for part in one.fields if part["name"] == name)
                 _physical(about, name, _double(bits), physical[name], _exact(formula, said["raw"][name]), into)
+    made = testee.ask([json.dumps(each).encode() for each, _ in again])
+    for (each, expected), answer in zip(again, made, strict=True):
+        into.encoded += 1
+        if json.loads(answer or b"{}").get("bytes") != expected:
+            into.differences.append(f"{node} {each}: is encoded as {answer!r}, by the library as {expected}")
     into.messages += len(messages)
     into.unread |= {one.name for one in messages} - read
+
+
+def request(node: str, one: Definition, op: str) -> dict[str, object]:
+    """What a testee is asked of a message."""
+    return {"op": op, "node": node, "kind": one.kind, "id": one.id}
+
+
+def _to_encode(one: Definition, raw: dict[str, object], physical: Values) -> dict[str, dict[str, object]]:
+    """The values of a frame to be encoded: physical ones as the library has them, where they can be set."""
+    scaled = {
+        part["name"] for part in one.fields if "formula" in part and "view" not in part and part["type"] != "float"
+    }
+    views = {part["name"] for part in one.fields if "view" in part}
+    given = {
+        name: struct.pack(">d", value).hex()
+        for name, value in physical.items()
+        if name in scaled and isinstance(value, (int, float))
+    }
+    return {"raw": {name: raw[name] for name in raw if name not in given and name not in views}, "physical": given}
 
 
 def _ours(raw: dict[str, object], part: dict) -> object:
@@ -137,7 +170,7 @@ def random_frames(one: Definition, chance: random.Random, count: int) -> list[by
     end = one.end
     if end is None and not one.length:
         return [b""]
-    found = []
+    found, alternatives = [], _alternatives(one)
     for number in range(count):
         elements = _elements(end, number, chance)
         length = one.length + elements * (end.get("bits", 8) // 8 if end else 0)
@@ -149,8 +182,21 @@ def random_frames(one: Definition, chance: random.Random, count: int) -> list[by
                 data = _put(data, part, part["const"])
             if end is not None and part["name"] in (end.get("count"), end.get("size")):
                 data = _put(data, part, elements)
+        if number > 1 and alternatives:
+            for part, value in chance.choice(alternatives):
+                data = _put(data, part, value)
         found.append(data)
     return found
+
+
+def _alternatives(one: Definition) -> list[list[tuple[dict, int]]]:
+    """What fields must be for others to be there: their values, for each of these."""
+    by_name = {part["name"]: part for part in one.fields}
+    whens = [part["when"] for part in one.fields if "when" in part]
+    return [
+        [(by_name[name], int(said[0] if isinstance(said, list) else said)) for name, said in when.items()]
+        for when in whens
+    ]
 
 
 def _elements(end: dict | None, number: int, chance: random.Random) -> int:
@@ -160,10 +206,13 @@ def _elements(end: dict | None, number: int, chance: random.Random) -> int:
 
 
 def _put(data: bytes, part: dict, value: int) -> bytes:
-    """The frame with another value in a field, of a node that counts bits from the least significant one."""
-    mask = (1 << part["bits"]) - 1 << part["at"]
-    bits = int.from_bytes(data, "little") & ~mask | value << part["at"] & mask
-    return bits.to_bytes(len(data), "little")
+    """The frame with another value in a field, of a node that counts bits from the least significant one unless it says so."""
+    big = part.get("bit_order") == "msb0"
+    mask = Place(part["at"], part["bits"], BIG if big else LITTLE).mask
+    order: Literal["big", "little"] = "big" if big else "little"
+    shift = 8 * len(data) - part["at"] - part["bits"] if big else part["at"]
+    moved = int.from_bytes((value << shift).to_bytes(len(data), order), "little")
+    return (int.from_bytes(data, "little") & ~mask | moved & mask).to_bytes(len(data), "little")
 
 
 def _exact(formula: str, raw: int) -> float:

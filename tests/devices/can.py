@@ -1,27 +1,30 @@
-"""CAN databases of the opendbc package; cantools reads them and judges."""
+"""CAN databases of the opendbc package: read as `icdgen import` reads them; cantools judges."""
 
 from __future__ import annotations
 
 import importlib.resources
+import re
 from collections.abc import Callable, Iterator
-from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from tests.devices.definition import Definition, Definitions, Values, formula, node, unit
+from icdgen.definitions import can, model, run
+from tests.devices.definition import Definition, Definitions, NotHeld, Values
 
 
 def databases() -> Iterator[Definitions]:
-    """Every DBC file that cantools reads; what it refuses has no judge."""
-    import cantools
-
+    """Every DBC file of the package. cantools judges the text without the faults for which it would refuse all of it."""
     for number, path in enumerate(files()):
-        try:
-            database: Any = cantools.database.load_file(path, strict=False)
-        except cantools.database.UnsupportedDatabaseFormatError:
-            continue
-        messages = [_definition(message) for message in database.messages]
-        yield Definitions(node(f"{path.stem[:35]} {number}", path.stem, id_bits=29), messages)
+        reader = can.Dbc()
+        read = run.read(path, reader)
+        judge = reader.database(str(path), path.read_bytes(), model.Definitions(str(path)))
+        for tree in read.trees.values():
+            tree["node"]["name"] = f"{tree['node']['name'][:35].rstrip('_')}_{number}"
+            held = {one["name"]: one for one in tree["messages"]}
+            messages = [
+                _definition(message, held.get(message.name), tree, read.definitions) for message in judge.messages
+            ]
+            yield Definitions(tree["node"], messages, tree)
 
 
 def files() -> list[Path]:
@@ -33,92 +36,45 @@ def files() -> list[Path]:
     return sorted(folder.rglob("*.dbc"), key=lambda path: path.name)
 
 
-def _definition(message: Any) -> Definition:
-    fields, enums, cause = [], [], ""
-    for signal in message.signals:
-        one = {"at": _first(signal), "bits": signal.length, "name": signal.name, **_kind(signal), **unit(signal.unit)}
-        if signal.byte_order == "big_endian":
-            one |= {"byte_order": "big", "bit_order": "msb0"}
-        scale = formula(_printed(signal.scale), _printed(signal.offset))
-        choices = {int(value): str(name) for value, name in (signal.choices or {}).items()}
-        named = [(value, name) for value, name in sorted(choices.items()) if value in _range(signal)]
-        if named and (scale or (one["type"] == "uint" and signal.length == 1)):
-            one["special"] = [{"value": value, "meaning": name} for value, name in named]
-        elif named and not signal.is_float:
-            name = f"{message.name} {signal.name}"
-            one = {**one, "type": "enum", "enum": name}
-            one.pop("unit", None)
-            enums.append({"name": name, "members": [{"value": value, "name": name} for value, name in named]})
-        fields.append(one | scale)
-    if message.is_multiplexed():
-        cause = "fields that are there under a condition"
-    fields = sorted(_with_views(fields), key=lambda one: int(one["at"]))
-    read = _reader(message, any("view" in one for one in fields))
+def _definition(message: Any, held: dict | None, tree: dict, read: model.Definitions) -> Definition:
+    if held is None:
+        said = next(
+            (one.message for one in read.troubles if f"message `{message.name}` is not held" in one.message), "lost"
+        )
+        cause = re.search(r"ICD\d{3}", said)
+        return Definition(
+            message.name, message.frame_id, "telemetry", message.length, [], cause=cause[0] if cause else said
+        )
+    orders = {key: held.get(key, tree["node"][key]) for key in ("byte_order", "bit_order")}
+    fields = [{**orders, **one} for one in held.get("fields", ())]
+    decode, encode = _reader(message, fields)
     return Definition(
-        message.name, message.frame_id, "telemetry", message.length, fields, enums,
-        cause, lambda data: read(data, False), lambda data: read(data, True),
+        message.name, message.frame_id, "telemetry", message.length, fields,
+        raw=lambda data: decode(data, False), physical=lambda data: decode(data, True), encoded=encode,
     )  # fmt: skip
 
 
-def _reader(message: Any, is_overlapping: bool) -> Callable[[bytes, bool], Values]:
-    """The library's reading, raw or scaled; signals that overlap it reads only one by one."""
-    from cantools.database import Message
+def _reader(message: Any, fields: list[dict]) -> tuple[Callable[[bytes, bool], Values], Callable[[bytes], bytes]]:
+    """The library's reading, raw or scaled, and its own frame of these values; signals that overlap it knows only one by one."""
+    from cantools.database import DecodeError, Message
 
-    parts = [message]
-    if is_overlapping:
+    parts, names = [message], {one["name"] for one in fields}
+    if any("view" in one for one in fields) or any(signal.name not in names for signal in message.signals):
         head = message.frame_id, message.name, message.length
-        parts = [Message(*head, [signal], is_extended_frame=True, strict=False) for signal in message.signals]
-    return lambda data, scaled: {
-        name: value for part in parts for name, value in part.decode(data, False, scaled).items()
-    }
+        known = [signal for signal in message.signals if signal.name in names]
+        parts = [Message(*head, [signal], is_extended_frame=True, strict=False) for signal in known]
 
+    def decode(data: bytes, scaled: bool) -> Values:
+        try:
+            return {name: value for part in parts for name, value in part.decode(data, False, scaled).items()}
+        except DecodeError as error:  # a multiplexer has a value without signals
+            raise NotHeld(str(error)) from None
 
-def _with_views(fields: list[dict]) -> list[dict]:
-    """The fields, those that overlap larger ones as views; bits of these that no signal has by itself become fields."""
-    owned, left = 0, 0
-    for one in sorted(fields, key=lambda one: -int(one["bits"])):
-        mask = _mask(one)
-        if mask & owned:
-            one["view"] = True
-            left |= mask
-        else:
-            owned |= mask
-    return [*fields, *_remaining(left & ~owned)]
+    def encode(data: bytes) -> bytes:
+        bits = 0
+        for part in parts:
+            values = part.decode(data, False, False)
+            bits |= int.from_bytes(part.encode(values, scaling=False, strict=False), "little")
+        return bits.to_bytes(message.length, "little")
 
-
-def _mask(one: dict) -> int:
-    """The bits of the frame: bit w of byte b is bit 8 * b + w."""
-    places = (divmod(at, 8) for at in range(one["at"], one["at"] + one["bits"]))
-    return sum(1 << 8 * byte + (7 - bit if one.get("bit_order") == "msb0" else bit) for byte, bit in places)
-
-
-def _remaining(mask: int) -> Iterator[dict]:
-    """A field for each run of bits within a byte."""
-    at = 0
-    while mask >> at:
-        start = at
-        while mask >> at & 1 and (at == start or at % 8):
-            at += 1
-        if at > start:
-            yield {"at": start, "bits": at - start, "name": f"Others at {start}", "type": "uint"}
-        else:
-            at += 1
-
-
-def _range(signal: Any) -> range:
-    """The raw values that there are: some members are of none of them."""
-    half = 1 << signal.length - 1
-    return range(-half, half) if signal.is_signed else range(2 * half)
-
-
-def _first(signal: Any) -> int:
-    """The field's first bit; in a DBC the bits of a byte are numbered from the least significant in either order."""
-    return signal.start if signal.byte_order == "little_endian" else signal.start // 8 * 8 + 7 - signal.start % 8
-
-
-def _kind(signal: Any) -> dict:
-    return {"type": "float" if signal.is_float else "int" if signal.is_signed else "uint"}
-
-
-def _printed(number: float) -> str:
-    return format(Decimal(str(number)), "f" if abs(number) >= 1e-6 or not number else "e").replace("E", "e")
+    return decode, encode

@@ -31,6 +31,7 @@ class Definition:
     raw: Callable[[bytes], Values] = lambda _: {}
     physical: Callable[[bytes], Values] = lambda _: {}
     more: dict = field(default_factory=dict)
+    encoded: Callable[[bytes], bytes] | None = None  # the library's own frame of the values of a frame
 
     def tree(self) -> dict:
         """As it stands in an ICD; bytes at the end that nothing describes are reserved."""
@@ -60,6 +61,7 @@ class Definitions:
 
     node: dict
     messages: list[Definition]
+    tree: dict | None = None  # the ICD, where `icdgen import` made it
 
     @property
     def name(self) -> str:
