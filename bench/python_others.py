@@ -43,13 +43,34 @@ def by_construct(cls: Any) -> Callable[[bytes], Any]:
 
 
 def by_kaitaistruct(cls: Any) -> Callable[[bytes], Any]:
-    """The class that the Kaitai Struct compiler makes of the frame."""
+    """The class that the Kaitai Struct compiler makes of the frame; of structs one each, as many as the field before says."""
     from kaitaistruct import KaitaiStream, KaitaiStruct
 
+    names: dict[str, Any] = {"KaitaiStruct": KaitaiStruct, "KaitaiStream": KaitaiStream}
     enums: dict[str, Any] = {}
-    lines = []
+    source = _kaitai_class("Frame", cls, enums)
+    exec(source, names)
+    for name, enum in enums.items():
+        setattr(names["Frame"], name, enum)
+    return names["Frame"].from_bytes
+
+
+def _kaitai_class(title: str, cls: Any, enums: dict[str, Any]) -> str:
+    """The text of the class of a frame or a struct, those of its structs before it."""
+    lines, structs, reached = [], "", 0
     for info in cls.FIELDS:
-        if info.type == "bytes":
+        if info.at > reached and (info.at % 8 or reached % 8):
+            lines.append(f"        self._io.read_bits_int_le({min(info.at, -(-reached // 8) * 8) - reached})\n")
+            reached = min(info.at, -(-reached // 8) * 8)
+        if info.at > reached and info.at % 8 == reached % 8 == 0:
+            lines.append(f"        self._io.read_bytes({(info.at - reached) // 8})\n")
+        reached = info.at + info.bits
+        if info.struct:
+            structs += _kaitai_class(info.struct.__name__, info.struct, enums)
+            made = f"{info.struct.__name__}(self._io, self, self._root)"
+            count = f"range(self.{cls.TAIL.counter})" if info.is_open else f"range({info.elements})"
+            read = f"[{made} for _ in {count}]" if info.elements else made
+        elif info.type == "bytes":
             read = f"self._io.read_bytes({info.bits // 8})"
         elif info.bits % 8:
             read = f"self._io.read_bits_int_le({info.bits})"
@@ -62,15 +83,10 @@ def by_kaitaistruct(cls: Any) -> Callable[[bytes], Any]:
             enums[info.enum.__name__] = IntEnum(info.enum.__name__, {member.name: member.value for member in info.enum})
             read = f"KaitaiStream.resolve_enum(Frame.{info.enum.__name__}, {read})"
         lines.append(f"        self.{info.attribute} = {read}\n")
-    source = (
-        "class Frame(KaitaiStruct):\n"
+    return (
+        f"{structs}class {title}(KaitaiStruct):\n"
         "    def __init__(self, _io, _parent=None, _root=None):\n"
-        "        super(Frame, self).__init__(_io)\n"
+        f"        super({title}, self).__init__(_io)\n"
         "        self._parent = _parent\n        self._root = _root or self\n        self._read()\n"
         f"    def _read(self):\n{''.join(lines)}"
     )
-    names: dict[str, Any] = {"KaitaiStruct": KaitaiStruct, "KaitaiStream": KaitaiStream}
-    exec(source, names)
-    for name, enum in enums.items():
-        setattr(names["Frame"], name, enum)
-    return names["Frame"].from_bytes

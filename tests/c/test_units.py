@@ -66,6 +66,12 @@ def symbols(path, kinds):
     return {row[-1] for row in rows if row[-2] in kinds and row[-1].startswith("icd")}
 
 
+def undefined(path):
+    """The symbols that an object has from elsewhere."""
+    done = subprocess.run(["nm", "-u", path], capture_output=True, text=True, check=True)
+    return {line.split()[-1] for line in done.stdout.splitlines()}
+
+
 @pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")])
 def test_a_unit_of_a_program_that_shares_the_layer_has_nothing_of_it(folder, compiler, standard):
     units = objects(folder, ["first.c", "second.c", "main.c"], compiler, standard, "-O1", "-DICDGEN_SHARED")
@@ -75,6 +81,7 @@ def test_a_unit_of_a_program_that_shares_the_layer_has_nothing_of_it(folder, com
     subprocess.run([folder / "shared"], check=True)
     assert symbols(units[0], "tT") == set() and symbols(units[0], "U") >= {"icd_client_uart", "icd_client_output"}
     assert "icd_client_start" in symbols(layer[0], "T")
+    assert undefined(layer[0]) <= {"memcpy", "memset", "memmove", "memcmp", "strlen"}  # nothing is allocated
 
 
 @pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")])

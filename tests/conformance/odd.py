@@ -723,3 +723,14 @@ def write(folder: Path) -> Path:
     for name, text in _TEXTS.items():
         (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
     return folder
+
+
+def variable(folder: Path) -> list[Path]:
+    """Files of messages of variable length, shared ids and conditions: odd ones, and devices of others."""
+    write(folder)
+    devices = Path(__file__).parent.parent.parent / "examples" / "devices"
+    names = ("common", "apart", "open", "mux")
+    return [
+        *(folder / f"{name}.yaml" for name in names),
+        *(devices / name / f"{name}.yaml" for name in ("mavlink", "ublox")),
+    ]

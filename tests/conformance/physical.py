@@ -85,7 +85,13 @@ def _chunk(field: Field, request: dict, raw: tuple[int, ...]) -> Chunk:
 
 def sweep(testee: Testee, total: Total, message: Message, field: Field, chunk: Chunk, notes: list[str]) -> None:
     """One request, compared."""
-    about = {"node": message.node, "kind": message.kind, "id": message.ids[0], "field": field.name}
+    about = {
+        "node": message.node,
+        "kind": message.kind,
+        "id": message.ids[0],
+        "message": message.name,
+        "field": field.name,
+    }
     request = {"op": "sweep", **about, **chunk.request}
     start = time.perf_counter()
     (line,) = testee.ask([json.dumps(request).encode()])

@@ -20,6 +20,7 @@ from tests.conformance.icds import vectors_of
 from tests.conformance.languages import Language, all_languages
 from tests.conformance.run import Result, run
 from tests.conformance.strategies import icds
+from tests.conformance.wholes import with_wholes
 
 
 class Differs(AssertionError):
@@ -72,7 +73,7 @@ def check(count: int, names: list[str], start: int, say=lambda text: None, shrin
 
     @seed(start)
     @settings(max_examples=count, database=None, deadline=None, phases=phases, suppress_health_check=list(HealthCheck))
-    @given(icds())
+    @given(with_wholes(icds()))
     def one(trees: dict[str, dict]) -> None:
         nonlocal done
         for result in compare(trees, languages):

@@ -257,10 +257,10 @@ def _alternatives(draw, fields: list[dict], length: int, enums: list[dict], orde
         if selectors
         else [{"at": 8 * length, **names.one("selector"), "bits": draw(st.integers(1, 8)), "type": "uint"}]
     )
-    for one in made:
-        used |= _bits_of(one, orders)
+    used |= _bits_of(made[0], orders) if made else 0
     selector = draw(st.sampled_from(selectors or made))
-    values = draw(st.lists(st.integers(0, min(7, (1 << selector["bits"]) - 1)), min_size=1, max_size=4, unique=True))
+    most = min(7, (1 << selector["bits"] - (selector["type"] == "enum")) - 1)
+    values = draw(st.lists(st.integers(0, most), min_size=1, max_size=4, unique=True))
     found: list[dict] = []
     for near in draw(
         st.lists(st.integers(0, 8 * room - 1) | st.integers(8 * length, 8 * room - 1), min_size=1, max_size=4)
@@ -290,7 +290,7 @@ def _listed(when: dict) -> list[list[int]]:
 def _decides(field: dict) -> bool:
     """Whether other fields may depend on its value."""
     others = ("formula", "const", "count", "view", "bitfields", "struct", "special")
-    return field.get("type") == "uint" and not any(key in field for key in others)
+    return field.get("type") in ("uint", "bool", "enum") and not any(key in field for key in others)
 
 
 @st.composite

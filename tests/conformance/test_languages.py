@@ -35,7 +35,10 @@ def agree(language, icd, files, frames):
     assert result.vectors >= sum(len(m["vectors"]) for data in files.values() for m in data["messages"])
 
 
-@pytest.mark.parametrize("name", [language.name for language in LANGUAGES if language.name not in OPTIONAL])
+ODD = [one.name for one in LANGUAGES if one.name not in {*OPTIONAL, "rust"}]  # the optimised one has the shipped ICDs
+
+
+@pytest.mark.parametrize("name", ODD)
 def test_a_language_agrees_with_the_reference_codec_on_odd_icds(strange, name):
     agree(all_languages()[name], *strange, 50)
 

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import json
+import random
+
 import pytest
 
-from tests.conformance import ROOT, wire
+from tests.conformance import ROOT, wire, wire_changed
+from tests.conformance.build import build
+from tests.conformance.compare import difference
+from tests.conformance.driver import Testee
 from tests.conformance.icds import LINKS, icd_of
 from tests.conformance.languages import all_languages
 
@@ -23,3 +29,14 @@ def test_a_language_agrees_with_the_reference_on_links_of_all_kinds(links, name,
     (result,) = wire.run([all_languages()[name]], icd, files, tmp_path)
     assert result.differences == 0, "\n".join(result.shown)
     assert result.vectors == sum(len(node["cases"]) for node in files["nodes"]) > 2500
+
+
+@pytest.mark.parametrize("name", ["python", "c-sanitizers", "rust-debug"])
+def test_changed_requests_about_envelopes_are_answered_like_the_reference(links, name):
+    icd, files = links
+    asked = list(wire_changed.requests(icd, files, random.Random(7), 2000))
+    testee = Testee(build(all_languages()[name], icd))
+    answers = testee.ask([json.dumps(request).encode() for request, _ in asked])
+    told = ((request, difference(good, answer)) for (request, good), answer in zip(asked, answers, strict=True))
+    assert [(request, what) for request, what in told if what] == []
+    assert testee.close() == 0, testee.complaint()

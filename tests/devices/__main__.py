@@ -35,6 +35,11 @@ class Row:
     def held(self) -> int:
         return sum(len(node.messages) for node in self.nodes)
 
+    @property
+    def raw_only(self) -> Counter[str]:
+        """Of what is held, why some physical values are not."""
+        return Counter(one.raw_only for node in self.nodes for one in node.messages if one.raw_only)
+
 
 def measure(
     name: str,
@@ -96,6 +101,8 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"{name} ({PROTOCOLS[name].library}): {row.held} of {row.total} messages held")
         for cause, count in row.causes.most_common():
             print(f"    {count:5} {cause}")
+        for cause, count in row.raw_only.most_common():
+            print(f"    {count:5} held, some values only raw: {cause}")
         for language, one in row.by_language.items():
             differences += len(one.differences)
             print(f"  {language}: {one}")

@@ -6,12 +6,11 @@ import json
 import random
 import struct
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Literal
 
 from icdgen import codec
-from icdgen.definitions.frames import BIG, LITTLE, Place
 from icdgen.icd.build import special
 from icdgen.icd.formula import parse
 from icdgen.icd.model import Field
@@ -31,7 +30,7 @@ class Agreement:
     rounded: int = 0  # ours is the double nearest to the exact value, the library's is not
     impossible: int = 0  # the library's value has more bits than the field
     special: int = 0  # values that have a meaning, where the library has a value or says that there is none
-    encoded: int = 0  # frames of the library's, from its raw values and from its physical ones
+    encoded: int = 0  # frames of the library, from its raw values and from its physical ones
     refused: int = 0  # frames that the library takes for another message
     unread: set[str] = field(default_factory=set)  # messages of which the library reads no frame at all
     differences: list[str] = field(default_factory=list)
@@ -52,9 +51,11 @@ def compare(node: str, messages: list[Definition], testee: Answering, frames: in
     chance = random.Random(f"{seed} {node}")
     asked = [(one, data) for one in messages for data in random_frames(one, chance, frames)]
     sharing = Counter((one.kind, one.id) for one in messages)
-    requests = [{**request(node, one, "decode"), "bytes": data.hex()} for one, data in asked]
-    plain = testee.ask([json.dumps(each).encode() for each in requests])  # of a shared id: which message it is
-    named = [{**each, "message": one.name} for each, (one, _) in zip(requests, asked, strict=True)]
+    requests = [
+        {"op": "decode", "node": node, "kind": one.kind, "id": one.id, "bytes": data.hex()} for one, data in asked
+    ]
+    plain = testee.ask([json.dumps(request).encode() for request in requests])  # of a shared id: which message it is
+    named = [{**request, "message": one.name} for request, (one, _) in zip(requests, asked, strict=True)]
     shared = [sharing[one.kind, one.id] > 1 for one, _ in asked]
     of_shared = iter(
         testee.ask([json.dumps(one).encode() for one, is_shared in zip(named, shared, strict=True) if is_shared])
@@ -77,72 +78,80 @@ def compare(node: str, messages: list[Definition], testee: Answering, frames: in
             continue
         if told != one.name:
             into.differences.append(f"{about}: taken for {told}")
-        for part in one.fields:
-            name = part["name"]
-            if name in raw:
+        formulas = {}
+        for name, part, ours in _values(one, said["raw"]):
+            formulas[name] = part.get("formula", "")
+            if "when" in part and (ours is None) != (name not in raw):
+                into.differences.append(f"{about}: {name} is {ours!r}, the library says {raw.get(name, 'nothing')!r}")
+            elif name in raw:
                 into.values += 1
                 value = raw[name]
                 if value is None or (isinstance(value, int) and _means_something(value, part)):
                     into.special += 1
                 if value is None:
-                    if not _means_something(_ours(said["raw"], part), part):
+                    if not _means_something(ours, part):
                         into.differences.append(f"{about}: {name} is a number, the library says it is none")
                 elif isinstance(value, int) and value.bit_length() > part["bits"]:
                     into.impossible += 1
-                elif not _same(_ours(said["raw"], part), value, part):
-                    into.differences.append(
-                        f"{about}: {name} is {_ours(said['raw'], part)!r}, the library says {value!r}"
-                    )
-            elif "when" in part and said["raw"][name] is not None:
-                into.differences.append(f"{about}: {name} is {said['raw'][name]!r}, the library says it is not there")
+                elif not _same(ours, value, part):
+                    into.differences.append(f"{about}: {name} is {ours!r}, the library says {value!r}")
+        for name, bits in said["physical"].items():
+            if name in physical and bits is not None:
+                into.values += 1
+                _physical(about, name, _double(bits), physical[name], _exact(formulas[name], said["raw"][name]), into)
         if one.encoded is not None:
             expected = one.encoded(data).hex()
             if said["bytes"] != expected:
                 into.differences.append(f"{about}: is encoded as {said['bytes']}, by the library as {expected}")
-            again.append(({**request(node, one, "encode"), **_to_encode(one, said["raw"], physical)}, expected))
-        for name, bits in said["physical"].items():
-            if name in physical:
-                into.values += 1
-                formula = next(part["formula"] for part in one.fields if part["name"] == name)
-                _physical(about, name, _double(bits), physical[name], _exact(formula, said["raw"][name]), into)
-    made = testee.ask([json.dumps(each).encode() for each, _ in again])
-    for (each, expected), answer in zip(again, made, strict=True):
+            request = {"op": "encode", "node": node, "kind": one.kind, "id": one.id}
+            again.append(({**request, **_to_encode(one, said["raw"], physical)}, expected))
+        elements = _there(one.end, said["raw"]) if one.end else 0
+        extra = [name for name in raw if one.end and name.startswith(f"{one.end['name']}[{elements}]")]
+        into.differences += [f"{about}: {elements} elements, the library says more" for _ in extra[:1]]
+    made = testee.ask([json.dumps(request).encode() for request, _ in again])
+    for (request, expected), answer in zip(again, made, strict=True):
         into.encoded += 1
         if json.loads(answer or b"{}").get("bytes") != expected:
-            into.differences.append(f"{node} {each}: is encoded as {answer!r}, by the library as {expected}")
+            into.differences.append(f"{request}: is encoded as {answer!r}, by the library as {expected}")
     into.messages += len(messages)
     into.unread |= {one.name for one in messages} - read
 
 
-def request(node: str, one: Definition, op: str) -> dict[str, object]:
-    """What a testee is asked of a message."""
-    return {"op": op, "node": node, "kind": one.kind, "id": one.id}
-
-
 def _to_encode(one: Definition, raw: dict[str, object], physical: Values) -> dict[str, dict[str, object]]:
     """The values of a frame to be encoded: physical ones as the library has them, where they can be set."""
-    scaled = {
-        part["name"] for part in one.fields if "formula" in part and "view" not in part and part["type"] != "float"
-    }
-    views = {part["name"] for part in one.fields if "view" in part}
+    own = [part for part in one.fields if "view" not in part]
+    scaled = {part["name"] for part in own if "formula" in part and part["type"] != "float"}
     given = {
         name: struct.pack(">d", value).hex()
         for name, value in physical.items()
         if name in scaled and isinstance(value, (int, float))
     }
-    return {"raw": {name: raw[name] for name in raw if name not in given and name not in views}, "physical": given}
+    return {"raw": {one["name"]: raw[one["name"]] for one in own if one["name"] not in given}, "physical": given}
 
 
-def _ours(raw: dict[str, object], part: dict) -> object:
-    """A raw value of an answer; of an array a list, of what is open at the end as much as there is."""
-    name, count = part["name"], part.get("count")
-    if "up_to" in part:
-        said = count or part["size"]
-        counter = f"{name} {'Count' if count else 'Size'}" if said == "rest" else said
-        count = int(str(raw[counter]))
+def _values(one: Definition, raw: dict[str, object]) -> Iterator[tuple[str, dict, object]]:
+    """Name, field and value of all that an answer has; of an array a list, of what is open at the end as much as there is."""
+    for part in one.fields:
+        name, parts = part["name"], one.parts(part)
+        count = _there(part, raw) if "up_to" in part else part.get("count")
         if "size" in part:
-            return str(raw[name])[: 2 * count]
+            yield name, part, str(raw[name])[: 2 * count]
+        for index in range(count) if parts else ():
+            for inner in parts:
+                whole = f"{name}[{index}].{inner['name']}"
+                yield whole, inner, _value(raw, whole, inner.get("count"))
+        if not parts and "size" not in part:
+            yield name, part, _value(raw, name, count)
+
+
+def _value(raw: dict[str, object], name: str, count: int | None) -> object:
     return raw[name] if count is None else [raw[f"{name}[{index}]"] for index in range(count)]
+
+
+def _there(end: dict, raw: dict[str, object]) -> int:
+    """How many elements, or bytes, of an open end are there."""
+    said = end.get("count") or end["size"]
+    return int(str(raw[f"{end['name']} {'Size' if 'size' in end else 'Count'}" if said == "rest" else said]))
 
 
 def _means_something(raw: object, part: dict) -> bool:
@@ -170,33 +179,32 @@ def random_frames(one: Definition, chance: random.Random, count: int) -> list[by
     end = one.end
     if end is None and not one.length:
         return [b""]
-    found, alternatives = [], _alternatives(one)
+    found = []
     for number in range(count):
         elements = _elements(end, number, chance)
-        length = one.length + elements * (end.get("bits", 8) // 8 if end else 0)
+        length = one.length + elements * (one.element(end) if end else 0)
         data = bytes(length) if number == 0 else b"\xff" * length if number == 1 else chance.randbytes(length)
-        if end is not None and end["type"] == "text":
+        if end is not None and end.get("type") == "text":
             data = data[: one.length] + bytes(chance.choices(range(32, 127), k=elements))
         for part in one.fields:
             if "const" in part:
                 data = _put(data, part, part["const"])
             if end is not None and part["name"] in (end.get("count"), end.get("size")):
                 data = _put(data, part, elements)
-        if number > 1 and alternatives:
-            for part, value in chance.choice(alternatives):
-                data = _put(data, part, value)
-        found.append(data)
+        found.append(_chosen(one, data, chance) if number % 4 else data)
     return found
 
 
-def _alternatives(one: Definition) -> list[list[tuple[dict, int]]]:
-    """What fields must be for others to be there: their values, for each of these."""
-    by_name = {part["name"]: part for part in one.fields}
-    whens = [part["when"] for part in one.fields if "when" in part]
-    return [
-        [(by_name[name], int(said[0] if isinstance(said, list) else said)) for name, said in when.items()]
-        for when in whens
-    ]
+def _chosen(one: Definition, data: bytes, chance: random.Random) -> bytes:
+    """The frame with a value on which others depend, for each field that some depend on."""
+    wanted: dict[str, list[int]] = {}
+    for part in one.fields:
+        for name, values in part.get("when", {}).items():
+            wanted.setdefault(name, []).extend(values)
+    for part in one.fields:
+        if part["name"] in wanted:
+            data = _put(data, part, chance.choice(wanted[part["name"]]))
+    return data
 
 
 def _elements(end: dict | None, number: int, chance: random.Random) -> int:
@@ -206,13 +214,13 @@ def _elements(end: dict | None, number: int, chance: random.Random) -> int:
 
 
 def _put(data: bytes, part: dict, value: int) -> bytes:
-    """The frame with another value in a field, of a node that counts bits from the least significant one unless it says so."""
-    big = part.get("bit_order") == "msb0"
-    mask = Place(part["at"], part["bits"], BIG if big else LITTLE).mask
-    order: Literal["big", "little"] = "big" if big else "little"
-    shift = 8 * len(data) - part["at"] - part["bits"] if big else part["at"]
-    moved = int.from_bytes((value << shift).to_bytes(len(data), order), "little")
-    return (int.from_bytes(data, "little") & ~mask | moved & mask).to_bytes(len(data), "little")
+    """The frame with another value in a field, whose bits are counted from the least significant one unless it says so."""
+    at, is_big = part["at"], part.get("bit_order") == "msb0"
+    if is_big:  # and the most significant byte first: the frame is one number that begins with its highest bit
+        at = 8 * len(data) - at - part["bits"]
+    mask = (1 << part["bits"]) - 1 << at
+    bits = int.from_bytes(data, "big" if is_big else "little") & ~mask | value << at & mask
+    return bits.to_bytes(len(data), "big" if is_big else "little")
 
 
 def _exact(formula: str, raw: int) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.resources
 import re
 from collections.abc import Callable, Iterator
@@ -9,22 +10,24 @@ from pathlib import Path
 from typing import Any
 
 from icdgen.definitions import can, model, run
-from tests.devices.definition import Definition, Definitions, NotHeld, Values
+from icdgen.diagnostics import Findings
+from tests.devices.definition import Definition, Definitions, Values
 
 
 def databases() -> Iterator[Definitions]:
-    """Every DBC file of the package. cantools judges the text without the faults for which it would refuse all of it."""
+    """Every DBC file of the package. cantools judges what is left without the faults for which it would refuse all of it."""
+    reader = can.Dbc()
     for number, path in enumerate(files()):
-        reader = can.Dbc()
-        read = run.read(path, reader)
+        try:
+            read = run.read(path, reader)
+        except Findings:
+            continue  # parts of databases, without a message
         judge = reader.database(str(path), path.read_bytes(), model.Definitions(str(path)))
-        for tree in read.trees.values():
-            tree["node"]["name"] = f"{tree['node']['name'][:35].rstrip('_')}_{number}"
-            held = {one["name"]: one for one in tree["messages"]}
-            messages = [
-                _definition(message, held.get(message.name), tree, read.definitions) for message in judge.messages
-            ]
-            yield Definitions(tree["node"], messages, tree)
+        (tree,) = read.trees.values()
+        tree["node"]["name"] = f"{tree['node']['name'][:35].rstrip('_')}_{number}"
+        held = {one["name"]: one for one in tree["messages"]}
+        messages = [_definition(one, held.get(one.name), tree["node"], read.definitions) for one in judge.messages]
+        yield Definitions(tree["node"], messages, tree)
 
 
 def files() -> list[Path]:
@@ -36,44 +39,54 @@ def files() -> list[Path]:
     return sorted(folder.rglob("*.dbc"), key=lambda path: path.name)
 
 
-def _definition(message: Any, held: dict | None, tree: dict, read: model.Definitions) -> Definition:
+def _definition(message: Any, held: dict | None, node: dict, read: model.Definitions) -> Definition:
+    head = message.name, message.frame_id, "telemetry", message.length
     if held is None:
-        said = next(
-            (one.message for one in read.troubles if f"message `{message.name}` is not held" in one.message), "lost"
-        )
-        cause = re.search(r"ICD\d{3}", said)
-        return Definition(
-            message.name, message.frame_id, "telemetry", message.length, [], cause=cause[0] if cause else said
-        )
-    orders = {key: held.get(key, tree["node"][key]) for key in ("byte_order", "bit_order")}
-    fields = [{**orders, **one} for one in held.get("fields", ())]
+        said = [one.message for one in read.troubles if f"message `{message.name}` is not held" in one.message]
+        code = re.search(r"ICD\d{3}", said[0])
+        return Definition(*head, [], cause=code[0] if code else said[0].split(": ", 1)[1])
+    orders = {key: held.get(key, node[key]) for key in ("byte_order", "bit_order")}
+    fields = [{**orders, **one, **_when(one)} for one in held.get("fields", ())]
     decode, encode = _reader(message, fields)
     return Definition(
-        message.name, message.frame_id, "telemetry", message.length, fields,
-        raw=lambda data: decode(data, False), physical=lambda data: decode(data, True), encoded=encode,
-    )  # fmt: skip
+        *head, fields, raw=lambda data: decode(data, False), physical=lambda data: decode(data, True), encoded=encode
+    )
+
+
+def _when(field: dict) -> dict:
+    """The key of a condition, with a list of numbers each."""
+    said = field.get("when", {})
+    listed = {
+        name: [int(one) for one in (value if isinstance(value, list) else [value])] for name, value in said.items()
+    }
+    return {"when": listed} if listed else {}
 
 
 def _reader(message: Any, fields: list[dict]) -> tuple[Callable[[bytes, bool], Values], Callable[[bytes], bytes]]:
-    """The library's reading, raw or scaled, and its own frame of these values; signals that overlap it knows only one by one."""
-    from cantools.database import DecodeError, Message
+    """The library's reading, raw or scaled, and its frame of these values; signals that overlap, or that no selector has, it
+    knows only one by one."""
+    from cantools.database import Message
+    from cantools.database.errors import DecodeError
 
-    parts, names = [message], {one["name"] for one in fields}
-    if any("view" in one for one in fields) or any(signal.name not in names for signal in message.signals):
-        head = message.frame_id, message.name, message.length
-        known = [signal for signal in message.signals if signal.name in names]
-        parts = [Message(*head, [signal], is_extended_frame=True, strict=False) for signal in known]
+    parts, head = [message], (message.frame_id, message.name, message.length)
+    names = {one["name"] for one in fields}
+    known = [one for one in message.signals if one.name in names]
+    if message.is_multiplexed() or any("view" in one for one in fields) or len(known) < len(message.signals):
+        selectors = {signal.name: signal for signal in known if signal.is_multiplexer}
+        groups = [[*filter(None, [selectors.get(one.multiplexer_signal)]), one] for one in known]
+        parts = [Message(*head, group, is_extended_frame=True, strict=False) for group in groups]
+
+    def read(data: bytes, scaled: bool) -> Iterator[tuple[Any, Values]]:
+        for part in parts:
+            with contextlib.suppress(DecodeError):  # of a value of the selector that no signal has
+                yield part, part.decode(data, False, scaled)
 
     def decode(data: bytes, scaled: bool) -> Values:
-        try:
-            return {name: value for part in parts for name, value in part.decode(data, False, scaled).items()}
-        except DecodeError as error:  # a multiplexer has a value without signals
-            raise NotHeld(str(error)) from None
+        return {name: value for _, values in read(data, scaled) for name, value in values.items()}
 
     def encode(data: bytes) -> bytes:
         bits = 0
-        for part in parts:
-            values = part.decode(data, False, False)
+        for part, values in read(data, False):
             bits |= int.from_bytes(part.encode(values, scaling=False, strict=False), "little")
         return bits.to_bytes(message.length, "little")
 

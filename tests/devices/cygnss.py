@@ -37,7 +37,7 @@ def _rows(path: Path) -> list[dict[str, str]]:
 
 
 def _definition(overview: list[str], rows: list[dict[str, str]]) -> Definition:
-    fields, cause = [], ""
+    fields, cause, raw_only = [], "", ""
     length = int(overview[2]) - HEADER
     for row in rows:
         if not re.fullmatch(r"[UIF]\d+", row["Type"]):
@@ -51,7 +51,9 @@ def _definition(overview: list[str], rows: list[dict[str, str]]) -> Definition:
             one["type"] = "bytes"
         if order[0] != "1":
             one |= {"byte_order": "little"}
-        if row["Conversion Formula"]:
+        if re.search(r"\b(iif|ln)\(", row["Conversion Formula"], re.IGNORECASE):
+            raw_only = "formulas with logarithms"
+        elif row["Conversion Formula"]:
             one |= {"formula": _spelled(row["Conversion Formula"])}
         fields.append(one)
     if not fields:
@@ -64,6 +66,7 @@ def _definition(overview: list[str], rows: list[dict[str, str]]) -> Definition:
         fields,
         cause=cause,
         raw=lambda data: _read(fields, data),
+        raw_only=raw_only,
     )
 
 

@@ -31,6 +31,8 @@ class Definition:
     raw: Callable[[bytes], Values] = lambda _: {}
     physical: Callable[[bytes], Values] = lambda _: {}
     more: dict = field(default_factory=dict)
+    structs: list[dict] = field(default_factory=list)
+    raw_only: str = ""  # why some physical values of it cannot be said
     encoded: Callable[[bytes], bytes] | None = None  # the library's own frame of the values of a frame
 
     def tree(self) -> dict:
@@ -48,11 +50,31 @@ class Definition:
         """The field of which not every frame has all."""
         return next((one for one in self.fields if "up_to" in one), None)
 
+    def parts(self, part: dict) -> list[dict]:
+        """The fields of the struct that a part is made of; none where it is a field."""
+        return next((one["fields"] for one in self.structs if one["name"] == part.get("struct")), [])
+
+    def element(self, end: dict) -> int:
+        """Bytes of an element of the open end."""
+        return next(
+            (one["length"] for one in self.structs if one["name"] == end.get("struct")), end.get("bits", 8) // 8
+        )
+
 
 def open_end(name: str, at: int, bits: int, type_: str, counter: str, most: int) -> dict:
     """What ends a message of variable length: elements that a field counts, or up to the end (`rest`); bytes and text as one."""
     number = {"size": counter} if type_ in ("bytes", "text") else {"bits": bits, "count": counter}
     return {"at": at, "name": name, "type": type_, **number, "up_to": most}
+
+
+def open_structs(
+    owner: str, name: str, at: int, fields: list[dict], bits: int, counter: str, most: int
+) -> tuple[dict, dict]:
+    """Likewise with elements that are structs of so many bits: the field, and the struct. Raises `NotHeld`."""
+    if bits % 8:
+        raise NotHeld("a struct that does not end with a byte")
+    struct = {"name": f"{owner} {name}", "length": bits // 8, "fields": fields}
+    return {"at": at, "name": name, "struct": struct["name"], "count": counter, "up_to": most}, struct
 
 
 @dataclass

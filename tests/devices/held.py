@@ -78,8 +78,10 @@ def _quoted(file: Path, finding: Finding) -> str:
 def _renamed(owner: Definition, name: str) -> bool:
     """Gives a field, member or message an identifier of its own; whether that is new."""
     members = [member for enum in owner.enums for member in enum["members"]]
+    fields = [*owner.fields, *(field for struct in owner.structs for field in struct["fields"])]
     for one, number in (
-        *((f, f["at"]) for f in owner.fields),
+        *((f, f["at"]) for f in fields),
+        *((struct, owner.id) for struct in owner.structs),
         *((m, m["value"]) for m in members),
         (owner.more, owner.id),
     ):
@@ -91,11 +93,12 @@ def _renamed(owner: Definition, name: str) -> bool:
 
 
 def _write(file: Path, node: dict, messages: list[Definition]) -> dict[int, Definition]:
-    """One line for each enumeration and each message; whose line is whose."""
+    """One line for each enumeration, struct and message; whose line is whose."""
     lines, owners = ['{"icdgen": 1, "node": ' + json.dumps(node) + ', "enums": ['], {}
     enums = [(json.dumps(enum), one) for one in messages for enum in one.enums]
+    structs = [(json.dumps(struct), one) for one in messages for struct in one.structs]
     trees = [(json.dumps(one.tree()), one) for one in messages]
-    for group, after in ((enums, '], "messages": ['), (trees, "]}")):
+    for group, after in ((enums, '], "structs": ['), (structs, '], "messages": ['), (trees, "]}")):
         for number, (text, one) in enumerate(group):
             lines.append(text + ("," if number + 1 < len(group) else ""))
             owners[len(lines)] = one

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from tests.devices.definition import Definition, Definitions, NotHeld, node, open_end
+from tests.devices.definition import Definition, Definitions, NotHeld, node, open_end, open_structs
 
 LONGEST = 255  # bytes of a payload
 
@@ -24,22 +24,22 @@ def tables() -> Iterator[Definitions]:
 def _definition(id: int, message: Any) -> Definition:
     parser = getattr(message, "_parser", None)
     fields: list[dict] = []
+    structs: list[dict] = []
     try:
-        end = _fields(parser.subcons, fields, 0, "") if parser is not None else 0
+        end = _fields(parser.subcons, fields, 0, "", structs, message.__name__) if parser is not None else 0
     except NotHeld as error:
         return Definition(message.__name__, id, "telemetry", 0, [], cause=str(error))
-    return Definition(
-        message.__name__, id, "telemetry", end // 8, fields, raw=lambda data: _read(parser, data) if fields else {}
-    )
+    read = lambda data: _read(parser, data, fields[-1]) if fields else {}  # noqa: E731
+    return Definition(message.__name__, id, "telemetry", end // 8, fields, raw=read, structs=structs)
 
 
-def _fields(parts: list[Any], fields: list[dict], at: int, before: str) -> int:
-    """Appends the parts' fields; where they end. Raises `NotHeld`."""
+def _fields(parts: list[Any], fields: list[dict], at: int, before: str, structs: list[dict], owner: str) -> int:
+    """Appends the parts' fields, and the struct of what is open at the end; where they end. Raises `NotHeld`."""
     for part in parts:
         name, inner = before + part.name, part.subcon
         kind = type(inner).__name__
         if kind == "Struct":
-            at = _fields(inner.subcons, fields, at, f"{name} ")
+            at = _fields(inner.subcons, fields, at, f"{name} ", structs, owner)
         elif kind == "FormatField":
             type_, bits = LETTERS[inner.fmtstr[-1]]
             fields.append({"at": at, "bits": bits, "name": name, "type": type_})
@@ -53,42 +53,47 @@ def _fields(parts: list[Any], fields: list[dict], at: int, before: str) -> int:
             at += bits * inner.count
         elif kind == "Array":
             for number in range(inner.count):
-                at = _fields(inner.subcon.subcons, fields, at, f"{name} {number + 1} ")
+                at = _fields(inner.subcon.subcons, fields, at, f"{name} {number + 1} ", structs, owner)
         elif kind.startswith("Greedy"):
             if part is not parts[-1] or before:
                 raise NotHeld("more behind what goes up to the end")
-            fields.append(_end(name, kind, inner, at))
+            fields.append(_end(name, kind, inner, at, structs, owner))
         else:
             raise NotHeld(kind)
     return at
 
 
-def _end(name: str, kind: str, inner: Any, at: int) -> dict:
+def _end(name: str, kind: str, inner: Any, at: int, structs: list[dict], owner: str) -> dict:
     """What goes up to the end of a frame. Raises `NotHeld`."""
     left = LONGEST - at // 8
     if kind == "GreedyBytes":
         return open_end(name, at, 8, "bytes", "rest", left)
-    if type(inner.subcon).__name__ != "FormatField":
-        raise NotHeld("structs up to the end")
-    type_, bits = LETTERS[inner.subcon.fmtstr[-1]]
-    return open_end(name, at, bits, type_, "rest", left * 8 // bits)
+    if type(inner.subcon).__name__ == "FormatField":
+        type_, bits = LETTERS[inner.subcon.fmtstr[-1]]
+        return open_end(name, at, bits, type_, "rest", left * 8 // bits)
+    parts: list[dict] = []
+    bits = _fields(inner.subcon.subcons, parts, 0, "", [], owner)
+    end, struct = open_structs(owner, name, at, parts, bits, "rest", left * 8 // bits)
+    structs.append(struct)
+    return end
 
 
-def _read(parser: Any, data: bytes) -> dict[str, object]:
+def _read(parser: Any, data: bytes, end: dict) -> dict[str, object]:
     found: dict[str, object] = {}
-    _flat(parser.parse(data), "", found)
+    _flat(parser.parse(data), "", found, end)
     return found
 
 
-def _flat(values: Any, before: str, found: dict[str, object]) -> None:
+def _flat(values: Any, before: str, found: dict[str, object], end: dict) -> None:
     """Names of parts within parts, as `_fields` gives them."""
     for name, value in values.items():
+        whole = before + name
         if name == "_io":
             continue
         if hasattr(value, "items"):
-            _flat(value, f"{before}{name} ", found)
+            _flat(value, f"{whole} ", found, end)
         elif isinstance(value, list) and value and hasattr(value[0], "items"):
             for number, one in enumerate(value):
-                _flat(one, f"{before}{name} {number + 1} ", found)
+                _flat(one, f"{whole}[{number}]." if whole == end["name"] else f"{whole} {number + 1} ", found, end)
         else:
-            found[before + name] = list(value) if isinstance(value, list) else value
+            found[whole] = list(value) if isinstance(value, list) else value

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from tests.devices.definition import Definition, Definitions, NotHeld, node, unit
+from tests.devices.definition import Definition, Definitions, NotHeld, node, open_structs, unit
 
 TYPES = {
     "int16": ("int", 1), "int32": ("int", 2), "int64": ("int", 4), "sunssf": ("int", 1),
@@ -19,6 +19,7 @@ TYPES = {
 }  # fmt: skip
 COMPARED = ("int", "uint", "float")
 NOT_COMPARED = ("ID", "L", "Pad")
+LONGEST = 2048  # bytes of a model, where only its length says how often a block is there
 
 
 def models() -> Iterator[Definitions]:
@@ -34,32 +35,64 @@ def models() -> Iterator[Definitions]:
 
 def _definition(tree: dict) -> Definition:
     name = f"Model {tree['id']}"
+    fields, structs, group = [], [], tree["group"]
+    scaled = [point for one in _groups(group) for point in one["points"] if isinstance(point.get("sf"), str)]
+    counters = {one["count"] for one in _groups(group) if "count" in one}
     try:
-        fields, length = _fields(tree["group"])
+        length = _fields(group, fields, 0, "", counters)
+        for one in group.get("groups", ()):
+            if fields and "up_to" in fields[-1]:
+                raise NotHeld("more behind a repeated block")
+            if "count" in one:
+                end, struct = _open_end(name, one, fields, length)
+                fields.append(end)
+                structs.append(struct)
+            else:
+                length = _fields(one, fields, length, f"{one['name']} ", counters)
     except NotHeld as error:
         return Definition(name, tree["id"], "telemetry", 0, [], cause=str(error))
-    return Definition(name, tree["id"], "telemetry", length, fields, raw=lambda data: _read(tree["id"], fields, data))
+    return Definition(
+        name, tree["id"], "telemetry", length // 8, fields, structs=structs,
+        raw=lambda data: _read(tree, data, False),
+        physical=lambda data: _read(tree, data, True),
+        raw_only="factors that stand in another register" if scaled else "",
+    )  # fmt: skip
 
 
-def _fields(group: dict) -> tuple[list[dict], int]:
+def _groups(group: dict) -> Iterator[dict]:
+    """A group and all in it."""
+    yield group
+    for one in group.get("groups", ()):
+        yield from _groups(one)
+
+
+def _open_end(owner: str, group: dict, fields: list[dict], at: int) -> tuple[dict, dict]:
+    """A block that a register counts, or that is repeated up to the end. Raises `NotHeld`."""
     if group.get("groups"):
-        raise NotHeld("a repeated block")
-    fields, at = [], 0
+        raise NotHeld("a repeated block in another")
+    parts: list[dict] = []
+    bits = _fields(group, parts, 0, "", set())
+    counter = group["count"] or "rest"
+    return open_structs(owner, group["name"], at, parts, bits, counter, (8 * LONGEST - at) // bits)
+
+
+def _fields(group: dict, fields: list[dict], at: int, before: str, counters: set[str]) -> int:
+    """Appends the points of a group; where they end."""
     for point in group["points"]:
-        if isinstance(point.get("sf"), str):
-            raise NotHeld("a factor that stands in another register")
         type_, registers = TYPES[point["type"]]
         bits = 16 * (registers or point["size"])
-        one = {"at": at, "bits": bits, "name": point["name"], "type": type_, **unit(point.get("units"))}
+        one = {"at": at, "bits": bits, "name": before + point["name"], "type": type_, **unit(point.get("units"))}
         if point["type"] in ("enum16", "enum32", "bitfield16", "bitfield32", "pad", "count", "sunssf"):
             one.pop("unit", None)
-        if point["name"] not in NOT_COMPARED:
+        if point["name"] in counters:
+            one["bit_order"] = "msb0"  # for who makes frames
+        elif point["name"] not in NOT_COMPARED:
             one |= _special(point["type"])
-        if point.get("sf"):
+        if type(point.get("sf")) is int:
             one["formula"] = f"raw*1e{point['sf']}"
         fields.append(one)
         at += bits
-    return fields, at // 8
+    return at
 
 
 def _special(kind: str) -> dict:
@@ -72,14 +105,25 @@ def _special(kind: str) -> dict:
     return {"special": [{"value": "nan" if kind == "float32" else value, "meaning": "not implemented"}]}
 
 
-def _read(number: int, fields: list[dict], data: bytes) -> dict[str, object]:
-    """What pysunspec2 makes of the block; None is 'not implemented'."""
+def _read(tree: dict, data: bytes, scaled: bool) -> dict[str, object]:
+    """What pysunspec2 makes of the block, raw or those that have a factor of their own; None is 'not implemented'."""
     from sunspec2.device import Model
 
-    data = number.to_bytes(2, "big") + data[2:]
-    points: Any = Model(model_id=number, data=data).points
-    return {
-        one["name"]: points[one["name"]].value
-        for one in fields
-        if one["type"] in COMPARED and one["name"] not in NOT_COMPARED
-    }
+    data = int(tree["id"]).to_bytes(2, "big") + data[2:]
+    model: Any = Model(model_id=tree["id"], model_len=len(data) // 2 - 2, data=data)
+    return dict(_values(model, "", scaled))
+
+
+def _values(group: Any, before: str, scaled: bool) -> Iterator[tuple[str, object]]:
+    for name, point in group.points.items():
+        if TYPES[point.pdef["type"]][0] in COMPARED and name not in NOT_COMPARED:
+            if not scaled:
+                yield before + name, point.value
+            elif type(point.pdef.get("sf")) is int and point.value is not None:
+                yield before + name, point.cvalue
+    for name, inner in group.groups.items():
+        if isinstance(inner, list):
+            for number, one in enumerate(inner):
+                yield from _values(one, f"{before}{name}[{number}].", scaled)
+        else:
+            yield from _values(inner, f"{before}{name} ", scaled)

@@ -19,7 +19,11 @@ from tests.devices.definition import Definitions
 from tests.devices.held import held
 from tests.devices.protocols import PROTOCOLS
 
-UNREAD = {"AID-ALM", "CFG-TP"}  # pyubx2 refuses each frame of these: names that it takes for a field, or cannot set
+UNREAD = {
+    "AID-ALM",
+    "CFG-FIXSEED",
+    "CFG-TP",
+}  # pyubx2 refuses each frame: names that it takes for a field, or cannot set
 LANGUAGES = ["python", *(["c"] if shutil.which("gcc") else [])]
 
 
@@ -51,6 +55,30 @@ def test_a_wrong_constant_of_messages_that_share_an_id_is_noticed(tmp_path: Path
     for one in definitions.messages:
         one.fields[0]["const"] ^= 1
     assert agreed(definitions, tmp_path / "wrong").unread == {"MGA-ACK-DATA0", "MGA-NAK-DATA0"}
+
+
+def test_a_wrong_condition_is_noticed(tmp_path: Path) -> None:
+    definitions = next(one for one in PROTOCOLS["can"].load() if "high_voltage" in str(one.node["title"]))
+    definitions.messages = [one for one in definitions.messages if one.name == "Battery_Module_1"]
+    wrong = next(field for field in definitions.messages[0].fields if "when" in field)
+    assert not agreed(definitions, tmp_path / "right").differences
+    wrong["when"] = {name: [*values, *(value + 1 for value in values)] for name, values in wrong["when"].items()}
+    definitions.messages[0].fields = [
+        one for one in definitions.messages[0].fields if "when" not in one or one is wrong
+    ]
+    assert {text.split(": ")[1].split(" is ")[0] for text in agreed(definitions, tmp_path).differences} == {
+        wrong["name"]
+    }
+
+
+def test_a_wrong_struct_of_an_open_end_is_noticed(tmp_path: Path) -> None:
+    definitions = next(PROTOCOLS["sbp"].load())
+    definitions.messages = [one for one in definitions.messages if one.name == "MsgSvAzEl"]
+    assert agreed(definitions, tmp_path / "right").values > 10
+    azimuth, elevation = definitions.messages[0].structs[0]["fields"][-2:]
+    azimuth["at"], elevation["at"] = elevation["at"], azimuth["at"]
+    found = agreed(definitions, tmp_path).differences
+    assert {text.split(": ")[1].split(" is ")[0].split("].")[1] for text in found} == {"az", "el"}
 
 
 def agreed(definitions: Definitions, folder: Path) -> Agreement:

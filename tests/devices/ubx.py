@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import io
+import re
 from collections.abc import Iterator
 from decimal import Decimal
 
-from tests.devices.definition import Definition, Definitions, NotHeld, formula, node, open_end, twice
+from tests.devices.definition import Definition, Definitions, NotHeld, formula, node, open_end, open_structs, twice
 
 LONGEST = 1024  # bytes of a payload, where only its length says how many elements there are
 
@@ -37,7 +38,12 @@ VARIANTS: dict[tuple[str, str], tuple[str, dict[str, int]]] = {
 
 TYPES = {"U": "uint", "E": "uint", "L": "uint", "I": "int", "R": "float", "X": "bytes", "C": "bytes", "A": "bytes"}
 
-BY_KEYS = {"CFG-VALGET", "CFG-VALSET"}  # the library reads them as values whose types a table of keys tells
+CAUSES = {
+    ("get", "CFG-VALGET"): "values whose types a table of keys tells",
+    ("set", "CFG-VALSET"): "values whose types a table of keys tells",
+    ("set", "ESF-MEAS"): "a count to which a flag adds one",
+}
+"""What the library does by code of its own."""
 
 
 def tables() -> Iterator[Definitions]:
@@ -68,26 +74,26 @@ def _key(direction: str, name: str) -> tuple[bytes | None, dict[str, int]]:
 
 def _definition(direction: str, name: str, kind: str, mode: int, payload: dict) -> Definition:
     fields: list[dict] = []
+    structs: list[dict] = []
     key, constants = _key(direction, name)
     if key is None:
         return Definition(name, 0, kind, 0, [], cause="a layout without an id, which the library never reads")
-    if name in BY_KEYS and direction != "poll":
-        return Definition(name, 0, kind, 0, [], cause="values whose types a table of keys tells")
+    if (direction, name) in CAUSES:
+        return Definition(name, 0, kind, 0, [], cause=CAUSES[direction, name])
     try:
-        end = _fields(payload, fields, 0, "")
+        end = _fields(payload, fields, 0, "", structs, name)
     except NotHeld as error:
         return Definition(name, 0, kind, 0, [], cause=str(error))
-    double = twice(fields)
     high = {
         one["name"][3:] for one in fields if one["name"].startswith("_HP")
     }  # the library adds the second to the first
     for one in fields:
         if one["name"] in constants:
             one["const"] = constants[one["name"]]
-        if one["name"] in double:
-            one["name"] = f"{one['name']} at {one['at']}"
-        one["name"] = one["name"].lstrip("_")
-    scaled = {one["name"] for one in fields if "formula" in one}
+    parts = structs[0]["fields"] if structs else []
+    _tell_apart(fields)
+    _tell_apart(parts)
+    scaled = {one["name"] for one in (*fields, *parts) if "formula" in one}
 
     def read(data: bytes) -> dict[str, object]:
         import pyubx2
@@ -101,13 +107,38 @@ def _definition(direction: str, name: str, kind: str, mode: int, payload: dict) 
         if other:
             raise NotHeld("another layout under the same id")
         values = {k: v for k, v in found.__dict__.items() if not k.startswith("_") and k not in high}
+        if parts:
+            return _of_structs(values, fields[-1]["name"], parts)
         return _gathered(values, fields[-1]) if fields and "up_to" in fields[-1] else values
 
     return Definition(
-        name, int.from_bytes(key, "big"), kind, end // 8, fields,
-        raw=lambda data: {k: v for k, v in read(data).items() if k not in scaled},
-        physical=lambda data: {k: v for k, v in read(data).items() if k in scaled},
+        name, int.from_bytes(key, "big"), kind, end // 8, fields, structs=structs,
+        raw=lambda data: {k: v for k, v in read(data).items() if k.rpartition("].")[2] not in scaled},
+        physical=lambda data: {k: v for k, v in read(data).items() if k.rpartition("].")[2] in scaled},
     )  # fmt: skip
+
+
+def _tell_apart(fields: list[dict]) -> None:
+    """Gives fields of the same name names of their own."""
+    double = twice(fields)
+    for one in fields:
+        if one["name"] in double:
+            one["name"] = f"{one['name']} at {one['at']}"
+        one["name"] = one["name"].lstrip("_")
+
+
+def _of_structs(values: dict[str, object], end: str, parts: list[dict]) -> dict[str, object]:
+    """With the fields of structs by their whole names: the library numbers attributes, the outer number before the inner."""
+    known, number = dict(values), 0
+    inner = [re.fullmatch(r"(.*?)((?:_\d\d+)*)", one["name"]) for one in parts]
+    names = {one[0]: one for one in inner if one}
+    while True:
+        numbered = {name: f"{one[1]}_{number + 1:02d}{one[2]}" for name, one in names.items()}
+        found = {name: known.pop(whole) for name, whole in numbered.items() if whole in known}
+        if not found:
+            return known
+        known |= {f"{end}[{number}].{name}": value for name, value in found.items()}
+        number += 1
 
 
 def _gathered(values: dict[str, object], end: dict) -> dict[str, object]:
@@ -124,8 +155,8 @@ def _gathered(values: dict[str, object], end: dict) -> dict[str, object]:
     return known | {name: elements}
 
 
-def _fields(payload: dict, fields: list[dict], at: int, before: str) -> int:
-    """Appends the fields of a payload; where those that every frame has end. Raises `NotHeld`."""
+def _fields(payload: dict, fields: list[dict], at: int, before: str, structs: list[dict], owner: str) -> int:
+    """Appends the fields of a payload, and the struct of an open group; where those that every frame has end. Raises `NotHeld`."""
     for name, what in payload.items():
         factor = "1"
         if fields and "up_to" in fields[-1]:
@@ -134,12 +165,12 @@ def _fields(payload: dict, fields: list[dict], at: int, before: str) -> int:
             count, inner = what
             if isinstance(count, int):
                 for number in range(count):
-                    at = _fields(inner, fields, at, f"{before}_{number + 1:02d}")
+                    at = _fields(inner, fields, at, f"{before}_{number + 1:02d}", structs, owner)
                 continue
             if not (isinstance(count, str) and count[0] == "X"):
                 if name != list(payload)[-1]:
                     raise NotHeld("more behind a counted group")
-                fields.append(_group(inner, count, fields, at))
+                fields.append(_group(name, inner, count, fields, at, structs, owner))
                 continue
             bit = at
             for member, type_ in inner.items():
@@ -159,20 +190,21 @@ def _fields(payload: dict, fields: list[dict], at: int, before: str) -> int:
     return at
 
 
-def _group(inner: dict, count: str, fields: list[dict], at: int) -> dict:
-    """A group that a field counts, or that goes up to the end, of one number. Raises `NotHeld`."""
-    (name, what), *others = inner.items()
-    if others or not isinstance(what, str):
-        raise NotHeld("structs up to the end" if count == "None" else "counted structs")
-    element: list[dict] = []
-    bits = _single(name, what, "1", element, 0)
-    type_ = element[0]["type"]
-    if type_ == "bytes":
-        raise NotHeld("an array of bytes or text")
+def _group(group: str, inner: dict, count: str, fields: list[dict], at: int, structs: list[dict], owner: str) -> dict:
+    """A group that a field counts, or that goes up to the end: an array of one number, else of structs. Raises `NotHeld`."""
+    parts: list[dict] = []
+    bits = _fields(inner, parts, 0, "", structs, owner)
     counter = next((one for one in fields if one["name"] == count), None)
     most = LONGEST * 8 // bits
     most = most if counter is None else min(most, (1 << counter["bits"]) - 1)
-    return open_end(name, at, bits, type_, "rest" if count == "None" else count, most)
+    told = "rest" if count == "None" else count
+    if len(inner) == 1 and "formula" not in parts[0] and not isinstance(next(iter(inner.values())), tuple):
+        if parts[0]["type"] == "bytes":
+            raise NotHeld("an array of bytes or text")
+        return open_end(parts[0]["name"], at, bits, parts[0]["type"], told, most)
+    end, struct = open_structs(owner, group, at, parts, bits, told, most)
+    structs.append(struct)
+    return end
 
 
 def _single(name: str, what: str, factor: str, fields: list[dict], at: int) -> int:

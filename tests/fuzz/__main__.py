@@ -9,11 +9,14 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 
-from icdgen.icd.model import Icd
+from icdgen.describe import describe
+from icdgen.icd.model import Icd, Message, Node
 from icdgen.vectors import protocol
 from icdgen.vectors.make import make
+from tests.conformance import odd
 from tests.conformance.build import BuildError, cache_folder, execute, generated
 from tests.conformance.icds import icd_of
 from tests.conformance.languages import Language
@@ -56,16 +59,28 @@ def sources(language: Language, icd: Icd, folder: Path) -> Path:
     return source
 
 
+def routes(icd: Icd, node: Node) -> dict[int, list[tuple[int, Message]]]:
+    """What a harness counts the messages of a direction by: id and message, as the dispatchers of C have them."""
+    one = describe(icd).node(node.name)
+    return {
+        0: [(m.model.telecommand_id, m.model) for m in one.telecommands if m.model.telecommand_id is not None],
+        DIRECTION: [(m.model.telemetry_id, m.model) for m in one.telemetry if m.model.telemetry_id is not None],
+    }
+
+
 def seeds(icd: Icd) -> Iterator[bytes]:
     """An input for every frame of the golden vectors. Harnesses count the nodes in the order of the ICDs or of their names."""
     names = [node.name for node in icd.nodes]
     for node in icd.nodes:
+        ways = routes(icd, node)
         for vectors in make(icd, node).messages:
-            message = vectors.message
-            for flag, id in ((0, message.telecommand_id), (DIRECTION, message.telemetry_id)):
-                for row in vectors.rows if id is not None else ():
+            for flag, found in ways.items():
+                ids = sorted({id for id, _ in found})
+                numbers = {place for place, (_, one) in enumerate(found) if one == vectors.message}
+                numbers |= {ids.index(found[place][0]) for place in numbers}
+                for row, number in product(vectors.rows, numbers):
                     for index in {names.index(node.name), sorted(names).index(node.name)}:
-                        yield bytes((index, flag | (4 if id > 255 else 0), id & 0xFF)) + row.frame
+                        yield bytes((index, flag, number & 0xFF)) + row.frame
 
 
 def c_wire_seeds(icd: Icd) -> Iterator[bytes]:
@@ -129,9 +144,10 @@ def rust(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
     """cargo-fuzz: libFuzzer with the address sanitizer, integer overflow checked."""
     arms = []
     for index, node in enumerate(icd.nodes):
-        for flag, pick, name in (("false", "telecommand_id", "Telecommand"), ("true", "telemetry_id", "Telemetry")):
-            if any(getattr(message, pick) is not None for message in icd.messages_of(node)):
-                arms.append(f"    ({index}, {flag}) => exercise!(icd::{node.name}::{name}, id, fit, data),\n")
+        for flag, name in ((0, "Telecommand"), (DIRECTION, "Telemetry")):
+            ids = ", ".join(str(id) for id, _ in routes(icd, node)[flag])
+            told = f"icd::{node.name}::{name}, [{ids}], flags, number, data"
+            arms += [f"    ({index}, {'true' if flag else 'false'}) => exercise!({told}),\n"] if ids else []
     text = f"match (node % {len(icd.nodes)}, telemetry) {{\n{''.join(arms)}    _ => {{}}\n}}\n"
     return _cargo_fuzz(icd, folder, "dispatch", HERE / "rust_target.rs", {"nodes.rs": text})
 
@@ -215,11 +231,16 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("lang", choices=HARNESSES)
     parser.add_argument("--seconds", type=int, default=60, help="how long (default: %(default)s)")
     parser.add_argument("--jobs", type=int, default=1, help="processes (default: %(default)s)")
+    parser.add_argument("--odd", action="store_true", help="the odd ICDs of the conformance tests")
     parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
-    options = parser.parse_args(arguments)
+    options = parser.parse_intermixed_args(arguments)
     folder = cache_folder().resolve() / f"fuzz-{options.lang}"
     corpus = folder / "corpus"
-    corpus.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(corpus, ignore_errors=True)  # inputs mean something for these ICDs only
+    corpus.mkdir(parents=True)
+    if options.odd:
+        (folder / "odd").mkdir(exist_ok=True)
+        options.icds.append(odd.write(folder / "odd"))
     icd = icd_of(options.icds)
     try:
         command, more = HARNESSES[options.lang](icd, folder)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from types import ModuleType
 
-DIRECTION, FIT, HIGH_ID = 1, 2, 4
+DIRECTION, FIT, AS_ID = 1, 2, 4
+LONGEST = 65535  # bytes of a frame; a field that counts may tell of more
+EXACT_BITS = 52  # physical values of wider fields need not lead back to the same raw value
 
 
 class Dispatch:
@@ -18,33 +21,57 @@ class Dispatch:
         """Decodes, encodes, and compares. Raises what the package should not have raised."""
         if len(data) < 3:
             return
-        node, flags, id, frame = self.nodes[data[0] % len(self.nodes)], data[1], data[2], data[3:]
+        node, flags, number, frame = self.nodes[data[0] % len(self.nodes)], data[1], data[2], data[3:]
         messages = node.TELEMETRY if flags & DIRECTION else node.TELECOMMANDS
         decode = node.decode_telemetry if flags & DIRECTION else node.decode_telecommand
-        if flags & HIGH_ID:
-            id += 256
-        if flags & FIT and id in messages:
-            length = messages[id].LENGTH
-            frame = ((frame or b"\0") * length)[:length]
+        ids = sorted(messages)
+        id = number if flags & AS_ID or not ids else ids[number % len(ids)]
         try:
             message = decode(id, frame)
-        except self.package.UnknownIdError:
-            assert id not in messages
-            return
         except self.package.LengthError as error:
             assert error.actual == len(frame) != error.expected
+            if not flags & FIT or error.expected > LONGEST:
+                return
+            frame = (frame or b"\0") * (error.expected // (len(frame) or 1) + 1)
+            frame = frame[: error.expected]
+            try:
+                message = decode(id, frame)
+            except self.package.IcdError:
+                return
+        except self.package.UnknownIdError:
+            assert id not in messages or len(messages.of(id)) > 1
             return
         check(message, frame)
+        assert type(decode(id, message.to_bytes())) is type(message)
 
 
 def check(message, frame: bytes) -> None:
     """Encoding gives the frame, but for reserved bits; so does setting every physical value."""
-    assert len(frame) == message.LENGTH
     first = message.to_bytes()
+    assert len(first) == (len(frame) if message.TAIL else message.LENGTH)
     again = type(message).from_bytes(first)
-    for info in message.FIELDS:
-        if info.physical and info.bits <= 52:
-            setattr(again, info.physical, getattr(again, info.physical))
+    for part in _parts(again):
+        for info in part.FIELDS:
+            if not info.physical:
+                continue
+            value = getattr(part, info.physical)
+            if info.type in ("float", "text") or info.bits > EXACT_BITS or not info.leads_back or value is None:
+                continue
+            raw = getattr(part, info.attribute)
+            setattr(part, info.physical, value)
+            if getattr(part, info.attribute) != raw:  # raw values that have the same double
+                assert getattr(part, info.physical) == value
+                setattr(part, info.attribute, raw)
     assert again.to_bytes() == first
     repr(message)
     message.as_dict(physical=True)
+
+
+def _parts(whole) -> Iterator:
+    """A message and the structs in it."""
+    yield whole
+    for info in whole.FIELDS:
+        if info.struct is not None:
+            found = getattr(whole, info.attribute)
+            for one in found if isinstance(found, tuple) else (found,):
+                yield from _parts(one)

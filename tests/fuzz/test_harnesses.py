@@ -9,6 +9,7 @@ import sys
 
 import pytest
 
+from tests.conformance import odd
 from tests.conformance.build import execute
 from tests.conformance.icds import icd_of
 from tests.conformance.languages import Language
@@ -23,12 +24,18 @@ def icd():
 
 
 @pytest.fixture(scope="module")
-def inputs(icd):
+def odd_icd(tmp_path_factory):
+    """Messages of variable length, shared ids, conditions: what the shipped ICDs do not have."""
+    return icd_of(odd.variable(tmp_path_factory.mktemp("odd")))
+
+
+@pytest.fixture(scope="module")
+def inputs(odd_icd):
     source = random.Random(1)
-    found = list(seeds(icd))
+    found = list(seeds(odd_icd))
     for seed in found[:]:
         flags = bytes((seed[0], source.randrange(16), seed[2]))
-        found.append(flags + source.randbytes(source.randrange(64)))
+        found += [flags + source.randbytes(source.randrange(64)), flags + seed[3:]]
     return found
 
 
@@ -41,9 +48,11 @@ def wire_inputs(icd):
     return found
 
 
-@pytest.mark.parametrize(("target", "kind"), [("c_target.c", "inputs"), ("c_wire_target.c", "wire_inputs")])
-def test_the_c_harnesses_find_nothing(icd, target, kind, request, tmp_path):
-    inputs = request.getfixturevalue(kind)
+@pytest.mark.parametrize(
+    ("target", "icds", "kind"), [("c_target.c", "odd_icd", "inputs"), ("c_wire_target.c", "icd", "wire_inputs")]
+)
+def test_the_c_harnesses_find_nothing(target, icds, kind, request, tmp_path):
+    inputs, icd = request.getfixturevalue(kind), request.getfixturevalue(icds)
     source = sources(Language("c", ("c", "c-testee"), (), lambda source, out: []), icd, tmp_path)
     testee = source / "c-testee"
     files = [HERE / target, HERE / "c_replay.c", testee / "testee_nodes.c", *sorted(testee.glob("nodes/*.c"))]
@@ -57,6 +66,17 @@ def test_the_c_harnesses_find_nothing(icd, target, kind, request, tmp_path):
 
 @pytest.fixture
 def package(icd, tmp_path, monkeypatch):
+    """The package of the shipped ICDs."""
+    yield from _imported(icd, tmp_path, monkeypatch)
+
+
+@pytest.fixture
+def odd_package(odd_icd, tmp_path, monkeypatch):
+    """That of the odd ones."""
+    yield from _imported(odd_icd, tmp_path, monkeypatch)
+
+
+def _imported(icd, tmp_path, monkeypatch):
     """The generated package, imported afresh."""
     source = sources(Language("python", ("python",), (), lambda source, out: []), icd, tmp_path)
     package = sorted((source / "python").glob("*/__init__.py"))[0].parent
@@ -68,8 +88,8 @@ def package(icd, tmp_path, monkeypatch):
         del sys.modules[name]  # for good: monkeypatch then puts back those that were there before
 
 
-def test_the_python_harness_finds_nothing(inputs, package):
-    dispatch = Dispatch(package)
+def test_the_python_harness_finds_nothing(inputs, odd_package):
+    dispatch = Dispatch(odd_package)
     for one in inputs:
         dispatch.one(one)
 
@@ -99,7 +119,7 @@ def test_the_python_harness_of_streams_notices_a_decoder_that_is_wrong(package, 
 
 def test_the_python_harness_notices_a_codec_that_is_wrong():
     class Wrong:
-        LENGTH, FIELDS = 1, ()
+        LENGTH, TAIL, FIELDS = 1, None, ()
 
         @classmethod
         def from_bytes(cls, data):

@@ -59,6 +59,16 @@ def test_random_icds_come_back(tree, layout, tmp_path_factory):
     assert back(content.manual({"device": tree}, {"device": "Device"}), layout, path) == []
 
 
+def test_the_rest_of_a_name_that_reads_like_headings_begins_no_table(tmp_path):
+    names = ["Wheel SD-card Sun Panel Mode Value", "Wheel SD-card Sun Panel State Level", "Gain"]
+    fields = [
+        {"at": 64 * index, "bits": 64, "name": name, "type": "float", "unit": "deg"} for index, name in enumerate(names)
+    ]
+    message = {"name": "Panels", "kind": "telecommand", "id": 1, "length": 24, "group": "Power", "fields": fields}
+    tree = {"icdgen": 1, "node": {"name": "device"}, "messages": [message]}
+    assert back(content.manual({"device": tree}, {"device": "Device"}), "small", tmp_path / "manual.pdf") == []
+
+
 def test_the_same_manual_gives_the_same_icd_however_many_processes_read_it(tmp_path):
     manual = content.manual(content.shipped("common"), TITLES)
     LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")

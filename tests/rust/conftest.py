@@ -49,7 +49,7 @@ def libraries(tmp_path_factory):
     """Crates as libraries, each compiled once."""
 
     @cache
-    def library(crate: Path, toolchain: str, level: str) -> Path:
-        return Toolchain(toolchain).library(crate, tmp_path_factory.mktemp("library"), level)
+    def library(crate: Path, toolchain: str, level: str, *options: str) -> Path:
+        return Toolchain(toolchain).library(crate, tmp_path_factory.mktemp("library"), level, *options)
 
     return library

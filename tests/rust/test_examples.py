@@ -21,14 +21,12 @@ def examples(crate: Path, only: str = "") -> int:
     return sum(len(EXAMPLE.findall(file.read_text())) for file in files) // 2
 
 
-def compiled(crate: Path, folder: Path) -> Path:
-    """The library, which must not abort, for examples do not."""
-    return Toolchain("default").library(crate, folder, "0", "-C", "panic=unwind", *STD)
+UNWINDS = ("-C", "panic=unwind")  # as examples do
 
 
-def test_each_of_them_runs(subject, tmp_path):
+def test_each_of_them_runs(subject, libraries):
     """All; where each is a program of its own, those of the node with the fewest messages."""
-    library, tools = compiled(subject.crate, tmp_path), Toolchain("default")
+    library, tools = libraries(subject.crate, "default", "0", *UNWINDS, *STD), Toolchain("default")
     least = min(subject.icd.nodes, key=lambda node: len(node.messages))
     only = "" if tools.merges else f"/{least.name}/"
     said = tools.tested(subject.crate, library, only)
@@ -50,8 +48,8 @@ def test_every_node_that_can_be_asked_on_uart_shows_how(shipped):
         assert ("//! ```" in text) == ("pub use crate::wire::links" in text and "pub enum Telemetry" in text), node.name
 
 
-def test_one_that_says_otherwise_fails(shipped, tmp_path):
-    library = compiled(shipped.crate, tmp_path)
+def test_one_that_says_otherwise_fails(shipped, libraries, tmp_path):
+    library = libraries(shipped.crate, "default", "0", *UNWINDS, *STD)
     text = harness.texts(shipped.icd)["src/cubeacp/estimated_attitude_angles.rs"]
     start = text.index("/// ```")
     example = text[start : text.index("#[derive", start)]

@@ -1,4 +1,4 @@
-"""Nothing in the crate can panic: an optimised program of all of it holds no code that does."""
+"""Nothing in the crate can panic, and nothing allocates: an optimised program of all of it holds no code that does."""
 
 from __future__ import annotations
 
@@ -10,6 +10,9 @@ import pytest
 from icdgen.backends.rust.names import type_name
 from icdgen.describe import describe
 from icdgen.icd.model import Icd
+from tests.conformance import odd
+from tests.rust import harness
+from tests.rust.conftest import Subject
 from tests.rust.tools import Toolchain, run, toolchains
 
 HEAD = """\
@@ -28,7 +31,7 @@ MESSAGE = """\
 #[no_mangle] pub fn encode_{name}(message: &{type}) -> impl Copy {{ message.to_bytes() }}
 """
 SCALED = """\
-#[no_mangle] pub fn get_{name}(message: &{type}) -> f64 {{ message.{getter}() }}
+#[no_mangle] pub fn get_{name}(message: &{type}) -> {value} {{ message.{getter}() }}
 #[no_mangle] pub fn set_{name}(message: &mut {type}, to: f64) -> Result<(), icd::Error> {{ message.{setter}(to) }}
 """
 ELEMENT = """\
@@ -42,8 +45,7 @@ DISPATCHER = """\
 ENUM = """\
 #[no_mangle] pub fn enum_{name}(raw: {raw}) -> Option<&'static str> {{ {type}::from(raw).name() }}
 """
-
-
+BOXED = "#[no_mangle] pub fn boxed(bytes: &[u8]) -> alloc::boxed::Box<[u8]> { bytes.into() }\n"
 WIRE = Path(__file__).parent / "wire.rs"
 
 
@@ -56,7 +58,8 @@ def everything(icd: Icd) -> Iterator[str]:
             yield MESSAGE.format(name=name, type=type_)
             for field in (field for field in message.members if field.steps):
                 one, template = field.physical_name, ELEMENT if field.count else SCALED
-                yield template.format(name=f"{name}_{one}", type=type_, getter=one, setter=f"set_{one}")
+                value = "Option<f64>" if field.model.when else "f64"
+                yield template.format(name=f"{name}_{one}", type=type_, getter=one, setter=f"set_{one}", value=value)
         for way, messages in (("telecommand", node.telecommands), ("telemetry", node.telemetry)):
             if messages:
                 type_ = f"icd::{node.name}::{way.capitalize()}"
@@ -77,6 +80,18 @@ def symbols(libraries, subject, toolchain: str, level: str, folder: Path, more: 
     return {line.split(maxsplit=2)[-1].split(" ", 1)[-1] for line in lines if " " in line}
 
 
+ALLOCATORS = {
+    "malloc",
+    "calloc",
+    "realloc",
+    "free",
+    "__rust_alloc",
+    "__rust_alloc_zeroed",
+    "__rust_realloc",
+    "__rust_dealloc",
+}
+
+
 def suspicious(found: set[str]) -> list[str]:
     return sorted(one for one in found if "panic" in one or "_fail" in one or "unwrap" in one)
 
@@ -92,6 +107,22 @@ def test_no_way_to_a_panic_is_left(libraries, shipped, toolchain, level, tmp_pat
 
 def test_no_way_to_a_panic_is_left_in_odd_messages(libraries, strange, tmp_path):
     assert suspicious(symbols(libraries, strange, "default", "3", tmp_path)) == []
+
+
+def test_messages_of_variable_length_neither_panic_nor_allocate(libraries, tmp_path_factory, tmp_path):
+    icd = harness.read(*odd.variable(tmp_path))
+    variable = Subject(icd, harness.generate(icd, tmp_path_factory.mktemp("variable")))
+    found = symbols(libraries, variable, "default", "3", tmp_path)
+    assert {"decode_ublox_nav_sat", "dispatch_open_telemetry", "dispatch_mux_telemetry"} <= found
+    assert suspicious(found) == []
+    assert {one.split("::")[-1] for one in found} & ALLOCATORS == set()
+
+
+def test_a_program_without_an_allocator_cannot_allocate(tmp_path):
+    """So that all of it could be compiled says that nothing of it does."""
+    (tmp_path / "badly.rs").write_text(f"{HEAD}extern crate alloc;\n{BOXED}")
+    with pytest.raises(AssertionError, match="no global memory allocator found"):
+        Toolchain("default").alone(tmp_path / "badly.rs", tmp_path / "libbadly.a")
 
 
 def test_a_panic_would_be_seen(libraries, strange, tmp_path):

@@ -106,5 +106,10 @@ class Toolchain:
         run(*start, *options, "-C", f"opt-level={level}", "--extern", f"icd={library}", "-o", out, file)
         return out
 
+    def alone(self, file: Path, out: Path) -> Path:
+        """Compiles a library of one file that stands alone; its archive."""
+        run(*self._rustc("alone"), "--crate-type", "staticlib", "-C", "panic=abort", "-o", out, file)
+        return out
+
     def _rustc(self, name: str) -> tuple[str, ...]:
         return (*self.start, "rustc", "--edition", "2021", "--crate-name", name, "-D", "warnings")

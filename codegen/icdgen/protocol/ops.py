@@ -30,7 +30,7 @@ def answer(icd: Icd, request: Request) -> dict[str, Any]:
     except errors.Mismatch as error:
         return {"ok": False, "error": error.error, "expected": error.expected, "actual": error.actual}
     except errors.RangeError as error:
-        told = error.field in (*times.PARTS, *GIVEN)
+        told = error.field in (GIVEN if request["op"] == stream_encode.__name__ else times.PARTS)
         return {"ok": False, "error": "range"} | ({"field": error.field} if told else {})
     except errors.UnknownIdError:
         return {"ok": False, "error": "unknown-id"}

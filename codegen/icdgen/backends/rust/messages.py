@@ -111,7 +111,7 @@ def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]
     curves = [field for field in one.all_members if field.curve is not None]
     imported |= {
         "element_of": has_elements,
-        "put_element": has_elements,
+        "put_element": any(field.count and field.is_scaled and field.is_set for field in fields),
         "text": has_text,
         "text_array": has_text,
         "Big": one.has_wide_steps,

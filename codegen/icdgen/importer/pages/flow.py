@@ -286,7 +286,7 @@ class _Flow:
         in_cell = _begins_in_a_column(line, found.spans)
         if self.is_caption(line) and not in_cell:
             return True
-        if self.labelled(rest[index:]) or self.begins_anew(rest[index:], found):
+        if self.labelled(rest[index:]) or self.begins_anew(rest, index):
             return True
         if abs(line.size - size) > 1.2 and not in_cell:
             return True
@@ -301,9 +301,12 @@ class _Flow:
         gap = line.top - rest[index - 1].bottom if index else 0
         return gap > 2.2 * line.size and not self.has_key(line, found)
 
-    def begins_anew(self, rest: list[Line], found: Columns) -> bool:
-        again = columns.find(rest[:3], self.profile, loose=False)
-        return again is not None
+    def begins_anew(self, rest: list[Line], index: int) -> bool:
+        """Whether headings begin with the line: below the line above, not beside it as a part of a cell does."""
+        line = rest[index]
+        if index and line.top < rest[index - 1].bottom - 0.2 * line.size:
+            return False
+        return columns.find(rest[index : index + 3], self.profile, loose=False) is not None
 
     def has_key(self, line: Line, found: Columns) -> bool:
         first = runs(line, 0.45)[0]

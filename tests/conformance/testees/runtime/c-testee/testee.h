@@ -18,6 +18,7 @@ typedef struct {
     void (*view)(const void *message, void *value);   /* reads a view, else NULL */
     bool (*has)(const void *message);                 /* whether a field is there; NULL if it always is */
     size_t size;                                      /* of the member, in bytes */
+    bool is_float;
     const char *(*name_of)(uint64_t value, bool is_negative); /* of an enum field, else NULL */
     double (*get)(const void *message);               /* of a scaled field, else NULL */
     icd_status_t (*set)(void *message, double value); /* of a scaled field that is no view, else NULL */

@@ -192,13 +192,18 @@ pub fn answer(op: &str, words: &mut Words) -> Answer {
     }
     let direction = words.number::<usize>();
     let word = words.word();
-    let (id, name) = word.split_once(':').map_or((word, None), |(id, name)| (id, Some(unhex(name))));
+    let (id, name) = word
+        .split_once(':')
+        .map_or((word, None), |(id, name)| (id, Some(unhex(name))));
     let id = id.parse::<u32>().unwrap_or_default();
     let dispatcher = node.dispatchers[direction].ok_or_else(|| Refusal("unknown-id".into()))?;
     let found: Vec<_> = node.routes[direction]
         .iter()
         .filter(|route| route.id == id)
-        .filter(|route| name.as_deref().map_or(true, |name| name == route.title.as_bytes()))
+        .filter(|route| {
+            name.as_deref()
+                .map_or(true, |name| name == route.title.as_bytes())
+        })
         .collect();
     match found[..] {
         [route] => (route.answer)(op, words, id, name.map_or(Some(dispatcher), |_| None)),
