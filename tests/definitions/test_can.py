@@ -140,7 +140,7 @@ def test_the_same_database_in_another_form_gives_the_same_fields(form, train, tm
         ("a.arxml", '<!DOCTYPE a SYSTEM "file:///etc/passwd"><AUTOSAR/>', "document type"),
         ("a.kcd", "<NetworkDefinition><Bus></NetworkDefinition>", "not XML: mismatched tag"),
         ("a.sym", "FormatVersion=6.0\nTitle=", "not a symbol file"),
-        ("a.dbc", "BU_: A\n" + "x" * 33_000_000, "more than the 32,000,000 bytes allowed"),
+        ("a.dbc", "BU_: A\n" + "x" * 8_000_000, "more than the 8,000,000 bytes allowed"),
         ("a.dbc", "BU_: A\n", "none is defined"),
     ],
 )  # fmt: skip

@@ -191,7 +191,10 @@ def random_frames(one: Definition, chance: random.Random, count: int) -> list[by
                 data = _put(data, part, part["const"])
             if end is not None and part["name"] in (end.get("count"), end.get("size")):
                 data = _put(data, part, elements)
-        found.append(_chosen(one, data, chance) if number % 4 else data)
+        data = _chosen(one, data, chance) if number % 4 else data
+        if one.may_end_early and number % 2:  # with zeros at the end, which are not sent
+            data = data[: chance.randint(1, len(data))].rstrip(b"\0") or data[:1]
+        found.append(data)
     return found
 
 

@@ -33,6 +33,7 @@ class Definition:
     more: dict = field(default_factory=dict)
     structs: list[dict] = field(default_factory=list)
     raw_only: str = ""  # why some physical values of it cannot be said
+    may_end_early: bool = False  # whether zeros at the end may be cut off
     encoded: Callable[[bytes], bytes] | None = None  # the library's own frame of the values of a frame
 
     def tree(self) -> dict:

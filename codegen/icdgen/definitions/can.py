@@ -98,6 +98,7 @@ class Arxml(_Xml):
 
     name, form, root = "arxml", "arxml", "AUTOSAR"
     title = "an AUTOSAR system description (ARXML)"
+    most_bytes = 64_000_000  # it says everything at length
 
 
 def _text(data: bytes) -> str:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 NOT_UNDERSTOOD = "IMP075"
 REPAIRED = "IMP076"
-MOST = 100  # faults of one file
+MOST = 50  # faults of one file
 
 _EXTENDED = 0x80000000
 _WITH_ID = re.compile(

@@ -11,7 +11,7 @@ from icdgen.definitions.model import Definitions, Reader, unreadable
 from icdgen.errors import UserError
 
 GROUP = "icdgen.definitions"
-MAX_BYTES = 32_000_000
+MAX_BYTES = 8_000_000  # of which no reader takes more than about a gigabyte of memory
 _START = 65_536  # bytes by which a file is known
 
 _BUILT_IN = {
@@ -19,6 +19,8 @@ _BUILT_IN = {
     "kcd": "icdgen.definitions.can:Kcd",
     "sym": "icdgen.definitions.can:Sym",
     "arxml": "icdgen.definitions.can:Arxml",
+    "mavlink": "icdgen.definitions.mavlink:MavLink2",
+    "mavlink1": "icdgen.definitions.mavlink:MavLink1",
 }
 
 
@@ -62,18 +64,18 @@ def read(path: Path, reader: Reader) -> Definitions:
             f"reading {reader.title} takes {' and '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not installed",
             "pip install 'icdgen[definitions]'",
         )
-    return reader.read(str(path), contents(path))
+    return reader.read(str(path), contents(path, getattr(reader, "most_bytes", MAX_BYTES)))
 
 
-def contents(path: Path) -> bytes:
+def contents(path: Path, most: int = MAX_BYTES) -> bytes:
     """The bytes of a file, as many as are allowed. Raises `Findings`."""
     try:
         with open(path, "rb") as file:
-            data = file.read(MAX_BYTES + 1)
+            data = file.read(most + 1)
     except OSError as error:
         raise unreadable(str(path), f"cannot read the file: {error.strerror}", "check the path") from None
-    if len(data) > MAX_BYTES:
-        raise unreadable(str(path), f"the file has more than the {MAX_BYTES:,} bytes allowed", "import it in parts")
+    if len(data) > most:
+        raise unreadable(str(path), f"the file has more than the {most:,} bytes allowed", "import it in parts")
     return data
 
 

@@ -72,6 +72,7 @@ class Reader(Protocol):
     name: str  # as in `--kind`
     title: str  # for people
     needs: tuple[str, ...]  # modules that reading takes, of the extra `definitions`
+    # `most_bytes`, if it is there, is how large a file may be.
 
     def knows(self, start: str) -> bool:
         """Whether a file that begins so is of this kind."""

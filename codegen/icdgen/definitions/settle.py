@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from icdgen import naming
-from icdgen.definitions.model import Definitions, Item, Network
+from icdgen.definitions.model import Definitions, Item, Network, unreadable
 from icdgen.diagnostics import Finding
 from icdgen.loading import load
 
@@ -38,7 +38,7 @@ class Settled:
 
 
 def settle(network: Network, to: Definitions) -> Settled:
-    """Changes the network until nothing is found; what had to go is noted in ``to``."""
+    """Changes the network until nothing is found; what had to go is noted in ``to``. Raises `Findings` if it is too large."""
     made, tries = Settled(), {}  # type: ignore[var-annotated]
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, f"{network.name}.yaml")
@@ -52,7 +52,7 @@ def settle(network: Network, to: Definitions) -> Settled:
             for finding in findings:
                 line = lines.get(finding.place.line)
                 if line is None:
-                    raise ValueError(str(finding))  # of what no definition decides
+                    raise unreadable(to.file, f"what it defines makes no ICD: {finding.message}", finding.help)
                 tried = tries.get(id(line.item), 0)
                 if finding.code in _OF_NAMES and tried < (1 if finding.code == _LONG else _TRIES):
                     tries[id(line.item)] = tried + 1
