@@ -24,8 +24,9 @@ with atheris.instrument_imports(include=[PACKAGE]):
 
     dispatch = Dispatch(package)
     for _node in dispatch.nodes:  # types load on first use: load them while imports are instrumented
-        for _, _message in (*_node.TELECOMMANDS.items(), *_node.TELEMETRY.items()):
-            _message()
+        for _messages in (_node.TELECOMMANDS, _node.TELEMETRY):
+            for _message in (one for id in _messages for one in _messages.of(id)):
+                _message()
 
 if __name__ == "__main__":
     atheris.Setup(sys.argv, dispatch.one)

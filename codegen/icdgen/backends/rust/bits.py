@@ -48,7 +48,7 @@ def reading(field: FieldDescription, tables: set[int], depth: int = 3) -> str:
 
 def _open(field: FieldDescription) -> str:
     """The structs of an open end."""
-    return f"words(bytes, {field.model.at // 8}, |bytes| Self::read_element(&bytes))"
+    return f"structs(bytes, {field.model.at // 8}, |bytes| Self::read_element(&bytes))"
 
 
 def _structs(field: FieldDescription, struct: StructDescription, tables: set[int], depth: int) -> str:

@@ -45,6 +45,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "elements": tail is not None,
         "longest": tail is not None or bool(message.model.may_end_early),
         "present": tail is not None,
+        "structs": any("structs(" in reading for reading in read),
         "words": any("words(" in reading for reading in read),
         "Coded": any(field.enum for field in message.all_fields),
         "Error": True,

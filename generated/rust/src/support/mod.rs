@@ -19,7 +19,8 @@ mod text;
 mod wide;
 
 pub(crate) use self::bytes::{
-    array, element_of, flags, put, put_array, put_element, put_words, take, words, write_to,
+    array, element_of, flags, put, put_array, put_element, put_words, structs, take, words,
+    write_to,
 };
 pub(crate) use self::curve::Curve;
 pub use self::field::{is_special, Field};

@@ -99,6 +99,23 @@ pub(crate) fn words<T: Copy + Default, const SIZE: usize, const N: usize>(
     values
 }
 
+/// The same of the structs of an open end: those that are not in the frame, or are all zeros, are read once.
+#[inline(always)]
+pub(crate) fn structs<T: Copy, const SIZE: usize, const N: usize>(
+    bytes: &[u8],
+    at: usize,
+    value: impl Fn([u8; SIZE]) -> T,
+) -> [T; N] {
+    let mut values = [value([0; SIZE]); N];
+    for (index, target) in values.iter_mut().enumerate() {
+        let element = array(bytes, at + index * SIZE);
+        if element != [0; SIZE] {
+            *target = value(element);
+        }
+    }
+    values
+}
+
 /// Puts values, of each the `SIZE` bytes that `word` makes of it, from `at` on.
 #[inline(always)]
 pub(crate) fn put_words<T: Copy, const SIZE: usize, const N: usize>(
