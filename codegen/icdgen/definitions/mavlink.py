@@ -13,6 +13,7 @@ from icdgen.definitions import kinds, safe_xml
 from icdgen.definitions.enumerations import BEYOND, members
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld, unreadable
 from icdgen.definitions.wording import line, node_name, summary, unit
+from icdgen.icd.fmt.emit import Spelled
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -32,15 +33,8 @@ _SCALED = {
 _SPELLED = {"m/s/s": "m/s^2", "bits/s": "bit/s", "bytes": "byte"}
 _NUMBER = re.compile(r"\s*(-?(?:0[xX][0-9A-Fa-f]+|[0-9]+))\s*(?:(<<|\*\*)\s*([0-9]{1,2})\s*)?\Z")
 _SPECIAL = 16  # names that a field may have as special values
-_X25 = {
-    "kind": "crc",
-    "width": 16,
-    "polynomial": 0x1021,
-    "init": 0xFFFF,
-    "reflect_in": True,
-    "reflect_out": True,
-    "xor_out": 0,
-}
+_X25 = {"kind": "crc", "width": 16, "polynomial": Spelled("0x1021"), "init": Spelled("0xFFFF"),
+        "reflect_in": True, "reflect_out": True, "xor_out": 0}  # fmt: skip
 
 
 class _Field(NamedTuple):
@@ -99,6 +93,9 @@ class MavLink2:
                     continue
                 network.messages.append(made if len(roots) == 1 else {**made, "group": Path(path).stem})
         network.messages.sort(key=lambda one: int(one["id"]))
+        in_order = {one["name"]: seeds[one["name"]] for one in network.messages}
+        seeds.clear()
+        seeds |= in_order
         used = {one.get("enum") for message in network.messages for one in message.get("fields", ())}
         network.enums = [one for name, one in sorted(enums.items()) if name in used]
         to.networks.append(network)
@@ -134,7 +131,7 @@ class MavLink2:
     def envelope(self) -> Item:
         """The section `protocol`; the system and the component are those that are usual."""
         header = [
-            {"at": 0, "bits": 8, "role": "sync", "value": 0xFD},
+            {"at": 0, "bits": 8, "role": "sync", "value": Spelled("0xFD")},
             {"at": 8, "bits": 8, "role": "length"},
             {"at": 16, "bits": 8, "role": "constant", "value": 0},  # incompatibility flags: no signature
             {"at": 24, "bits": 8, "role": "flags"},
@@ -158,7 +155,7 @@ class MavLink1(MavLink2):
 
     def envelope(self) -> Item:
         header = [
-            {"at": 0, "bits": 8, "role": "sync", "value": 0xFE},
+            {"at": 0, "bits": 8, "role": "sync", "value": Spelled("0xFE")},
             {"at": 8, "bits": 8, "role": "length"},
             {"at": 16, "bits": 8, "role": "sequence"},
             *_senders(24),
