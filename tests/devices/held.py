@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import re
 from dataclasses import dataclass, field
@@ -55,10 +56,11 @@ def held(definitions: Definitions, folder: Path) -> Held:
 
 def _imported(definitions: Definitions, tree: dict, file: Path, left: list[Definition], causes: dict[str, str]) -> Held:
     """A node that `icdgen import` made: all that stands in it is held, and as `icdgen fmt` has it."""
-    names = {one.name for one in left}
-    file.write_text(
-        emit.text({**tree, "messages": [one for one in tree["messages"] if one["name"] in names]}), encoding="utf-8"
-    )
+    names, tree = {one.name for one in left}, copy.deepcopy(tree)
+    tree["messages"] = [one for one in tree["messages"] if one["name"] in names]
+    for checksum in tree.get("protocol", {}).get("checksums", {}).values():
+        checksum["seeds"] = {name: seed for name, seed in checksum["seeds"].items() if name in names}
+    file.write_text(emit.text(tree), encoding="utf-8")
     loaded = load([file])
     if not loaded.ok:
         raise ValueError(f"{file}: {loaded.findings}")
