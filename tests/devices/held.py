@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import json
 import re
 from dataclasses import dataclass, field
@@ -56,10 +55,14 @@ def held(definitions: Definitions, folder: Path) -> Held:
 
 def _imported(definitions: Definitions, tree: dict, file: Path, left: list[Definition], causes: dict[str, str]) -> Held:
     """A node that `icdgen import` made: all that stands in it is held, and as `icdgen fmt` has it."""
-    names, tree = {one.name for one in left}, copy.deepcopy(tree)
+    names, tree = {one.name for one in left}, dict(tree)
     tree["messages"] = [one for one in tree["messages"] if one["name"] in names]
-    for checksum in tree.get("protocol", {}).get("checksums", {}).values():
-        checksum["seeds"] = {name: seed for name, seed in checksum["seeds"].items() if name in names}
+    if "protocol" in tree:
+        checksums = {
+            name: {**one, "seeds": {owner: seed for owner, seed in one["seeds"].items() if owner in names}}
+            for name, one in tree["protocol"]["checksums"].items()
+        }
+        tree["protocol"] = {**tree["protocol"], "checksums": checksums}
     file.write_text(emit.text(tree), encoding="utf-8")
     loaded = load([file])
     if not loaded.ok:

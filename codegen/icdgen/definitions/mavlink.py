@@ -123,8 +123,9 @@ class MavLink2:
             fields.append({"at": at, **_held(name, field, enums, version, to)})
             at += field.bits
         made["length"] = at // 8
+        if at <= 8:
+            made.pop("may_end_early", None)  # one byte is always sent
         if not fields:
-            made.pop("may_end_early", None)
             return _extra(name, base), made
         return _extra(name, base), {**made, "fields": fields}
 
