@@ -12,7 +12,7 @@ from icdgen_messages.cubeacp import (
     EstimModeSelect,
     SetWheelSpeed,
 )
-from icdgen_messages.wire import RefusedError, ReplyTimeoutError, Session, socket_port
+from icdgen_messages.wire import RefusedError, ReplyTimeoutError, Session
 
 
 def control(device: Session) -> None:
@@ -32,7 +32,7 @@ def control(device: Session) -> None:
 def main(place: str) -> None:
     try:
         with socket.create_connection(("127.0.0.1", int(place))) as port:
-            control(Session(LINK, *socket_port(port)))
+            control(Session(LINK, port))
     except RefusedError as error:  # error.event has the code, and as `reason` what the ICD says of it
         sys.exit(f"refused, code {error.event.code}")
     except ReplyTimeoutError as error:

@@ -9,11 +9,3 @@ class UserError(Exception):
     def __init__(self, message: str, help: str = "") -> None:
         super().__init__(message)
         self.help = help
-
-
-def no_talk(node: str) -> UserError:
-    """What is said where a link that is an envelope would have to be talked over."""
-    text = (
-        f"messages of {node} travel in an envelope (`protocol: stream`), over which icdgen does not talk by itself yet"
-    )
-    return UserError(text, "generated code sends and finds them: see docs/wire.md, Envelopes")

@@ -451,6 +451,8 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
     return ICD_UART_OTHER;
 }
 
+#define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF) /* which no sequence number is: they have at most 31 bits */
+
 /* Fields and checksum of a frame, for both encoder and decoder. */
 
 static inline uint32_t icdgen_envelope_mask(const icd_envelope_field_t *field)
@@ -783,7 +785,55 @@ ICDGEN_API icd_status_t icd_stream_encode(
     return line.full ? ICD_ERROR_LENGTH : ICD_OK;
 }
 
-#define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF)
+ICDGEN_API icd_status_t icd_stream_sender_init(
+    icd_stream_sender_t *sender,
+    const icd_link_t *link,
+    icd_direction_t direction,
+    uint32_t *sequences,
+    size_t sequence_count)
+{
+    (void)memset(sender, 0, sizeof *sender);
+    sender->link = link;
+    sender->direction = direction;
+    sender->values = icd_envelope_values(link, direction);
+    sender->sequences = sequences;
+    sender->sequence_count = sequence_count;
+    for (size_t i = 0; i < sequence_count; ++i) {
+        sequences[i] = ICDGEN_NO_SEQUENCE;
+    }
+    return link->stream != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED;
+}
+
+ICDGEN_API icd_status_t icd_stream_send(
+    icd_stream_sender_t *sender,
+    uint32_t id,
+    const uint8_t *data,
+    size_t length,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
+{
+    const icd_stream_form_t *const form = sender->link->stream;
+    icd_envelope_values_t values = sender->values;
+    size_t place = 0;
+    icd_status_t status;
+    if (form == NULL) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    const icd_stream_row_t *const row = icdgen_stream_row(form, sender->direction, id);
+    const icd_envelope_field_t *const field = icdgen_envelope_field(form, ICD_ENVELOPE_SEQUENCE);
+    if (row != NULL && form->per_id) {
+        place = ICDGEN_SIZE(row - form->rows[sender->direction]);
+    }
+    if (field != NULL && place < sender->sequence_count && sender->sequences[place] != ICDGEN_NO_SEQUENCE) {
+        values.of[ICD_ENVELOPE_SEQUENCE] = (sender->sequences[place] + 1u) & icdgen_envelope_mask(field);
+    }
+    status = icd_stream_encode(sender->link, sender->direction, id, data, length, &values, buffer, capacity, written);
+    if (status == ICD_OK && place < sender->sequence_count) {
+        sender->sequences[place] = values.of[ICD_ENVELOPE_SEQUENCE];
+    }
+    return status;
+}
 
 /* What a frame turned out to be: taken; one beyond doubt, though of no use; perhaps none at all. */
 typedef enum { ICDGEN_TAKEN, ICDGEN_PROVEN, ICDGEN_DOUBTFUL } icdgen_verdict_t;
@@ -845,7 +895,7 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
     decoder->form = link->stream;
     decoder->direction = direction;
     decoder->buffer = buffer;
-    decoder->capacity = capacity < link->longest ? capacity : (size_t)link->longest;
+    decoder->capacity = capacity < link->longest ? capacity : ICDGEN_SIZE(link->longest);
     decoder->sequences = sequences;
     decoder->sequence_count = sequence_count;
     for (size_t i = 0; i < sequence_count; ++i) {
@@ -1967,6 +2017,11 @@ ICDGEN_API size_t icd_client_bytes(const icd_link_t *link)
     return ICDGEN_SIZE(link->longest_telecommand + (slot > link->longest ? slot : link->longest));
 }
 
+static inline bool icdgen_on_bus(uint8_t buses, icd_bus_t bus)
+{
+    return ((ICDGEN_U32(buses) >> ICDGEN_U32(bus)) & 1u) != 0u;
+}
+
 /* What is common to all buses. */
 static inline icd_status_t icdgen_client_init(
     icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
@@ -1975,6 +2030,10 @@ static inline icd_status_t icdgen_client_init(
     client->link = link;
     client->bus = bus;
     client->settings = link->client;
+    if (link->checksum != NULL) {
+        client->checks_telecommands = icdgen_on_bus(link->checksum->telecommand_always, bus);
+        client->checks_telemetry = icdgen_on_bus(link->checksum->telemetry_always, bus);
+    }
     client->whole = buffer;
     client->encoder.ended = true;
     return size < icd_client_bytes(link) ? ICD_ERROR_LENGTH : ICD_OK;
@@ -2038,10 +2097,8 @@ icd_client_can(icd_client_t *client, const icd_link_t *link, uint8_t address, ui
 ICDGEN_API void icd_client_use_checksums(icd_client_t *client)
 {
     const icd_checksum_form_t *const form = client->link->checksum;
-    client->checks_telecommands =
-        form != NULL && ((ICDGEN_U32(form->telecommand_buses) >> ICDGEN_U32(client->bus)) & 1u) != 0u;
-    client->checks_telemetry =
-        form != NULL && ((ICDGEN_U32(form->telemetry_buses) >> ICDGEN_U32(client->bus)) & 1u) != 0u;
+    client->checks_telecommands = form != NULL && icdgen_on_bus(form->telecommand_buses, client->bus);
+    client->checks_telemetry = form != NULL && icdgen_on_bus(form->telemetry_buses, client->bus);
 }
 
 ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadline)
@@ -2323,6 +2380,31 @@ typedef struct {
     void *context;
 } icdgen_client_call_t;
 
+/* What came as the frame: with a checksum where there may be one, without where there need not. */
+static inline void icdgen_client_replied(const icdgen_client_call_t *call, const uint8_t *data, size_t length)
+{
+    icd_client_t *const client = call->client;
+    const icd_checksum_form_t *const form = client->link->checksum;
+    const uint8_t id = client->message->id;
+    size_t frame = client->message->length;
+    icd_event_kind_t fault = ICD_EVENT_DONE;
+    if (form != NULL && icdgen_on_bus(form->telemetry_buses, client->bus) && length == frame + form->bytes) {
+        fault =
+            icd_i2c_reply(client->link, id, data, length, true, &frame) == ICD_OK ? ICD_EVENT_DONE : ICD_EVENT_CHECKSUM;
+    } else if (length != frame) {
+        fault = ICD_EVENT_MALFORMED;
+    } else if (client->checks_telemetry) {
+        fault = ICD_EVENT_UNCHECKED;
+    } else {
+        /* it need not have one */
+    }
+    if (fault == ICD_EVENT_DONE) {
+        icdgen_client_done(client, call->now, data, frame, call->on_event, call->context);
+    } else {
+        icdgen_client_tell(fault, id, NULL, 0, call->on_event, call->context);
+    }
+}
+
 static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, const uint8_t *message, size_t length)
 {
     icd_client_t *const client = call->client;
@@ -2342,11 +2424,7 @@ static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, 
         return;
     }
     if (waits && kind == ICD_UART_REPLY && client->direction == ICD_TELEMETRY && message[0] == client->message->id) {
-        if (length - 1u == client->message->length) {
-            icdgen_client_done(client, call->now, message + 1, length - 1u, call->on_event, call->context);
-        } else {
-            icdgen_client_tell(ICD_EVENT_MALFORMED, message[0], NULL, 0, call->on_event, call->context);
-        }
+        icdgen_client_replied(call, message + 1, length - 1u);
         return;
     }
     if (waits && kind == ICD_UART_ACKNOWLEDGE && client->direction == ICD_TELECOMMAND &&
@@ -2392,11 +2470,7 @@ static inline void icdgen_client_on_can(void *context, const icd_event_t *event)
             return;
         }
         if (!telecommand && event->can_kind == ICD_CAN_REPLY) {
-            if (event->length == client->message->length) {
-                icdgen_client_done(client, call->now, event->data, event->length, call->on_event, call->context);
-            } else {
-                icdgen_client_tell(ICD_EVENT_MALFORMED, event->id, NULL, 0, call->on_event, call->context);
-            }
+            icdgen_client_replied(call, event->data, event->length);
             return;
         }
     }

@@ -135,6 +135,10 @@ typedef struct {
     uint8_t telecommand_buses;
     /** Where telemetry has it; bit n: on bus n of icd_bus_t. */
     uint8_t telemetry_buses;
+    /** Where telecommands are not taken without it; bit n: on bus n of icd_bus_t. */
+    uint8_t telecommand_always;
+    /** Where telemetry never is without it; bit n: on bus n of icd_bus_t. */
+    uint8_t telemetry_always;
     /** Bytes that it adds to a message. */
     uint8_t bytes;
     icd_crc_form_t crc;
@@ -513,6 +517,8 @@ typedef struct {
     uint16_t most;
     bool cuts_zeros; /**< Whether zeros at the end of the data are not sent, but for one byte. */
     uint8_t seed;
+    bool is_answered; /**< Whether it is a telecommand that is answered with telemetry, that of the id `reply`. */
+    uint32_t reply;
 } icd_stream_row_t;
 
 /** How messages are put into a stream of bytes, or into packets. */
@@ -622,7 +628,9 @@ typedef enum {
     ICD_EVENT_TIMEOUT,      /**< Client: no reply, or the telecommand was never processed. */
     ICD_EVENT_PACKET,       /**< Client: a packet of a download. */
     ICD_EVENT_LOG,          /**< Client: an unsolicited log, with its id. */
-    ICD_EVENT_STRAY         /**< Client: what nobody waits for, with its id (I2C: what was read). */
+    ICD_EVENT_STRAY,        /**< Client: what nobody waits for, with its id (I2C: what was read). */
+    ICD_EVENT_CHECKSUM,     /**< Client: the checksum of a frame is wrong; it is waited on. */
+    ICD_EVENT_UNCHECKED     /**< Client: a frame has no checksum, though it must; it is waited on. */
 } icd_event_kind_t;
 
 /** Kinds of messages on the UART. */
@@ -749,6 +757,36 @@ ICDGEN_API icd_status_t icd_stream_encode(
     const uint8_t *data,
     size_t length,
     const icd_envelope_values_t *values,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written);
+
+/** Sends messages of a direction, and counts them. */
+typedef struct {
+    const icd_link_t *link;
+    icd_direction_t direction;
+    icd_envelope_values_t values; /**< Those of the ICD, until others are set; the sequence is the first one. */
+    uint32_t *sequences;
+    size_t sequence_count;
+} icd_stream_sender_t;
+
+/**
+ * `sequences` are NODE_SEQUENCES numbers, the last ones that were sent; with less, some messages are not counted.
+ * ICD_ERROR_UNSUPPORTED if the ICD describes no envelope.
+ */
+ICDGEN_API icd_status_t icd_stream_sender_init(
+    icd_stream_sender_t *sender,
+    const icd_link_t *link,
+    icd_direction_t direction,
+    uint32_t *sequences,
+    size_t sequence_count);
+
+/** A message as it is sent, with the next sequence number, as icd_stream_encode(). */
+ICDGEN_API icd_status_t icd_stream_send(
+    icd_stream_sender_t *sender,
+    uint32_t id,
+    const uint8_t *data,
+    size_t length,
     uint8_t *buffer,
     size_t capacity,
     size_t *written);
@@ -1172,7 +1210,7 @@ ICDGEN_API icd_status_t icd_client_i2c(icd_client_t *client, const icd_link_t *l
 ICDGEN_API icd_status_t
 icd_client_can(icd_client_t *client, const icd_link_t *link, uint8_t address, uint8_t *buffer, size_t size);
 
-/** Uses checksums where the ICD has them for the bus. */
+/** Uses checksums where the ICD leaves the choice for the bus. Where it demands them, they are used in any case. */
 ICDGEN_API void icd_client_use_checksums(icd_client_t *client);
 
 /** When icd_client_tick() wants to be called at the latest; false: not at all. */

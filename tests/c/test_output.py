@@ -88,9 +88,10 @@ def test_all_is_as_clang_format_lays_it_out(shipped, tmp_path):
     assert done.returncode == 0, done.stderr[:4000]
 
 
-@pytest.mark.parametrize("odd_ones", [False, True], ids=["shipped", "odd"])
-def test_every_declared_name_is_known_to_the_name_rules(tmp_path, odd_ones):
-    icd = harness.read(*odd.write(tmp_path)) if odd_ones else harness.shipped()
+@pytest.mark.parametrize("which", ["shipped", "odd", "links"])
+def test_every_declared_name_is_known_to_the_name_rules(tmp_path, which):
+    links = [harness.HERE.parent.parent / "examples" / "links"]
+    icd = harness.shipped() if which == "shipped" else harness.read(*(odd.write(tmp_path) if which == "odd" else links))
     known = {one.text for one in CBackend().identifiers(icd)}
     undeclared = []
     for path, text in files(icd).items():

@@ -10,6 +10,7 @@ import json
 import random
 import zlib
 from collections.abc import Callable, Iterator
+from importlib import import_module
 from typing import Any, NamedTuple
 
 import pytest
@@ -74,25 +75,21 @@ def sbp_read(direction: str, line: bytes) -> list[Sent]:
     return found
 
 
-def _mavlink(direction: str) -> Any:
-    from pymavlink.dialects.v20 import common
-
-    return common.MAVLink(None, *((255, 190) if direction == "telecommand" else (1, 1)))
+def _dialect(version: int) -> Any:
+    return import_module(f"pymavlink.dialects.v{version}0.common")
 
 
-def mavlink_made(direction: str, id: int, data: bytes, number: int) -> bytes:
-    from pymavlink.dialects.v20 import common
-
+def mavlink_made(direction: str, id: int, data: bytes, number: int, version: int = 2) -> bytes:
+    common = _dialect(version)
     kind = common.mavlink_map[id]
     values = dict(zip(kind.ordered_fieldnames, kind.unpacker.unpack(data), strict=True))
-    link = _mavlink(direction)
+    link = common.MAVLink(None, *((255, 190) if direction == "telecommand" else (1, 1)))
     link.seq = number & 0xFF
     return bytes(kind(**values).pack(link))
 
 
-def mavlink_read(direction: str, line: bytes) -> list[Sent]:
-    from pymavlink.dialects.v20 import common
-
+def mavlink_read(direction: str, line: bytes, version: int = 2) -> list[Sent]:
+    common = _dialect(version)
     parser, found = common.MAVLink(None), []
     parser.robust_parsing = True
     for message in parser.parse_buffer(line) or []:
@@ -100,6 +97,14 @@ def mavlink_read(direction: str, line: bytes) -> list[Sent]:
             values = [getattr(message, name) for name in message.ordered_fieldnames]
             found.append((message.get_msgId(), type(message).unpacker.pack(*values)))
     return found
+
+
+def mavlink1_made(direction: str, id: int, data: bytes, number: int) -> bytes:
+    return mavlink_made(direction, id, data, number, 1)
+
+
+def mavlink1_read(direction: str, line: bytes) -> list[Sent]:
+    return mavlink_read(direction, line, 1)
 
 
 def ccsds_made(direction: str, id: int, data: bytes, number: int) -> bytes:
@@ -137,6 +142,70 @@ def slip_read(direction: str, line: bytes) -> list[Sent]:
     return found
 
 
+def kiss_made(direction: str, id: int, data: bytes, _: int) -> bytes:
+    import sliplib
+
+    return bytes(sliplib.encode(bytes([0, id]) + data)) + b"\xc0"
+
+
+def kiss_read(direction: str, line: bytes) -> list[Sent]:
+    return [(data[0], data[1:]) for command, data in slip_read(direction, line) if command == 0]
+
+
+def _crc32c(data: bytes) -> int:
+    register = 0xFFFFFFFF
+    for byte in data:
+        register ^= byte
+        for _ in range(8):
+            register = register >> 1 ^ (0x82F63B78 if register & 1 else 0)
+    return register ^ 0xFFFFFFFF
+
+
+def _csp_head(direction: str, id: int) -> bytes:
+    source, destination = (10, 2) if direction == "telecommand" else (2, 10)
+    return (2 << 30 | source << 25 | destination << 20 | id << 14 | 33 << 8 | 1).to_bytes(4, "big")
+
+
+def csp_made(direction: str, id: int, data: bytes, _: int) -> bytes:
+    import sliplib
+
+    packet = _csp_head(direction, id) + data + _crc32c(data).to_bytes(4, "big")
+    return bytes(sliplib.encode(b"\0" + packet)) + b"\xc0"
+
+
+def csp_read(direction: str, line: bytes) -> list[Sent]:
+    found = []
+    for command, packet in slip_read(direction, line):
+        id, data = packet[1] << 8 | packet[2], packet[4:-4]
+        id = id >> 6 & 0x3F
+        assert command == 0 and packet[:4] == _csp_head(direction, id)
+        assert int.from_bytes(packet[-4:], "big") == _crc32c(data)
+        found.append((id, data))
+    return found
+
+
+def _fcs(data: bytes) -> bytes:
+    from pymavlink.generator.mavcrc import x25crc
+
+    return int(x25crc(data).crc ^ 0xFFFF).to_bytes(2, "little")
+
+
+def hdlc_made(direction: str, id: int, data: bytes, _: int) -> bytes:
+    frame = b"\xff\x03" + id.to_bytes(2, "big") + data
+    escaped = b"".join(bytes([0x7D, one ^ 0x20]) if one in b"\x7d\x7e" else bytes([one]) for one in frame + _fcs(frame))
+    return b"\x7e" + escaped + b"\x7e"
+
+
+def hdlc_read(direction: str, line: bytes) -> list[Sent]:
+    found = []
+    for part in filter(None, line.split(b"\x7e")):
+        first, *others = part.split(b"\x7d")
+        frame = first + b"".join(bytes([one[0] ^ 0x20]) + one[1:] for one in others)
+        assert frame[:2] == b"\xff\x03" and frame[-2:] == _fcs(frame[:-2])
+        found.append((int.from_bytes(frame[2:4], "big"), frame[4:-2]))
+    return found
+
+
 def cobs_made(direction: str, id: int, data: bytes, number: int) -> bytes:
     from cobs import cobs
 
@@ -161,8 +230,16 @@ PEERS = {
     "MAVLink 2, pymavlink": Peer("autopilot", mavlink_made, mavlink_read, "sequence"),
     "space packets, spacepackets": Peer("payload", ccsds_made, ccsds_read, "sequence"),
     "SLIP, sliplib": Peer("logger", slip_made, slip_read),
+    "MAVLink 1, pymavlink": Peer("rover", mavlink1_made, mavlink1_read, "sequence"),
+    "KISS, sliplib": Peer("tnc", kiss_made, kiss_read),
+    "CSP over KISS, sliplib": Peer("power", csp_made, csp_read),
+    "HDLC, the FCS of pymavlink": Peer("modem", hdlc_made, hdlc_read),
     "COBS and CRC-32, cobs and zlib": Peer("probe", cobs_made, cobs_read, "sequence"),
 }
+
+
+ENDS = {"logger": b"\xc0", "tnc": b"\xc0", "power": b"\xc0", "modem": b"\x7e", "probe": b"\0"}
+"""What ends a message on links that are not delimited by a length."""
 
 
 @pytest.fixture(scope="module")
@@ -228,9 +305,8 @@ def test_what_the_library_sends_is_found_after_noise_and_in_pieces(name, directi
     peer, source = PEERS[name], random.Random(name)
     sent = messages_of(links, peer.node, direction, source)
     line = b"".join(peer.made(direction, id, data, number) for number, (id, data) in enumerate(sent))
-    delimited = peer.node in ("logger", "probe")
-    noise = source.randbytes(50) + (b"\xc0\x00" if delimited else b"") if peer.node != "payload" else b"\xff" * 50
-    if peer.node == "logger":
+    noise = source.randbytes(50) + ENDS.get(peer.node, b"") if peer.node != "payload" else b"\xff" * 50
+    if ENDS.get(peer.node) == b"\xc0":
         noise = noise.replace(b"\xdb", b"") + b"\xc0"
     cuts = sorted(source.sample(range(len(noise + line)), 30))
     pieces = [(noise + line)[a:b].hex() for a, b in zip([0, *cuts], [*cuts, None], strict=True)]
@@ -242,7 +318,9 @@ def test_what_the_library_sends_is_found_after_noise_and_in_pieces(name, directi
         assert not [one for one in found["events"] if one["event"] == "gap"]
 
 
-@pytest.mark.parametrize("name", [name for name in PEERS if "space" not in name and "SLIP" not in name])
+@pytest.mark.parametrize(
+    "name", [name for name in PEERS if "space" not in name and "SLIP" not in name and "KISS, s" not in name]
+)
 def test_a_message_that_was_damaged_on_the_way_is_told_of_and_the_others_are_found(name, testee, links):
     peer, source = PEERS[name], random.Random(name)
     sent = messages_of(links, peer.node, "telemetry", source)[:9]

@@ -98,21 +98,39 @@ FACTORS = {"lat": 1e7, "lon": 1e7, "alt": 1e3, "eph": 100, "epv": 100, "vel": 10
            "h_acc": 1e3, "v_acc": 1e3, "vel_acc": 1e3, "hdg_acc": 1e5, "yaw": 100}  # fmt: skip
 
 
+PARAMETERS = {
+    "COMMAND_LONG, NAV_TAKEOFF": {"pitch": 1, "yaw": 4, "latitude": 5, "longitude": 6, "altitude": 7},
+    "COMMAND_LONG, DO_SET_MODE": {"mode": 1, "custom_mode": 2, "custom_submode": 3},
+    "COMMAND_LONG, COMPONENT_ARM_DISARM": {"arm": 1, "force": 2},
+    "COMMAND_LONG, SET_MESSAGE_INTERVAL": {"message_id": 1, "interval": 2, "response_target": 7},
+}
+
+
 def mavlink_values(name: str, data: bytes) -> Values:
     from pymavlink.dialects.v20 import common
 
-    message = next(one for one in common.mavlink_map.values() if one.msgname == name)
+    message = next(one for one in common.mavlink_map.values() if one.msgname == name.partition(",")[0])
     found = mavlink_reads(common, message, data)
     if name == "GPS_RAW_INT":
         return {key: value / FACTORS[key] if key in FACTORS else value for key, value in found.items()}  # type: ignore[operator]
     if name == "COMMAND_LONG":
         found["param"] = [found[f"param{number}"] for number in range(1, 8)]
-    return found
+    return found | {key: found[f"param{number}"] for key, number in PARAMETERS.get(name, {}).items()}
 
 
 def test_mavlink_is_read_as_by_pymavlink(testee: Testee) -> None:
     agreement = agreed("mavlink", testee, mavlink_values)
-    assert agreement.messages == 6 and agreement.values > 1500
+    assert agreement.messages == 10 and agreement.values > 2500
+
+
+def test_the_commands_of_mavlink_have_the_numbers_of_pymavlink() -> None:
+    from pymavlink.dialects.v20 import common
+
+    commands = [one for one in devices().node("mavlink").messages if one.name in PARAMETERS]
+    assert len(commands) == len(PARAMETERS) == 4
+    for one in commands:
+        number = next(field.const for field in one.fields if field.name == "command")
+        assert number == getattr(common, f"MAV_CMD_{one.name.partition(', ')[2]}")
 
 
 def test_mavlink_frames_end_before_their_zeros(testee: Testee) -> None:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import pytest
 
 from tests.conformance.icds import LINKS
+from tests.conftest import ROOT
 from tests.python import packages
 
 
@@ -57,3 +61,39 @@ def test_fields_that_are_not_always_there_and_open_ends_of_structs_travel_in_env
     line = stream.stream_encode(node.LINK, points)
     (event,) = stream.StreamDecoder(node.LINK, "telecommand").feed(line)
     assert event.of(node.Points) == points
+
+
+ASKING = """\
+from collections.abc import Iterator
+
+from icdgen_messages.receiver import LINK, NavigationClock, PollClock, SetMessageRate
+from icdgen_messages.wire import Arrived, Session, StreamDecoder, stream_encode
+
+sent: list[bytes] = []
+heard: list[object] = []
+now = [0.0]
+
+
+def read(seconds: float) -> bytes:
+    now[0] += min(seconds, 0.5)
+    return stream_encode(LINK, NavigationClock(clock_bias=len(sent)), direction="telemetry")
+
+
+session = Session(LINK, sent.append, read, on_event=heard.append, clock=lambda: now[0])
+clock: NavigationClock = session.get(NavigationClock)
+assert clock.clock_bias == 1 and session.answer(PollClock(), NavigationClock).clock_bias == 2
+session.send(SetMessageRate(rate=5))
+asked = [event for line in sent for event in StreamDecoder(LINK, "telecommand").feed(line)]
+assert [event.kind for event in asked] == [PollClock, PollClock, SetMessageRate]
+came: Iterator[NavigationClock] = session.messages(NavigationClock, seconds=2)
+assert [one.clock_bias for one in came] == [3, 3, 3, 3]
+assert all(isinstance(event, Arrived) and event.of(NavigationClock) for event in heard) and len(heard) == 4
+"""
+
+
+def test_a_session_asks_is_answered_and_listens_and_its_types_are_known(tmp_path):
+    packages.write(packages.read(ROOT / "examples" / "links" / "ubx.yaml"), tmp_path, "icdgen_messages")
+    (tmp_path / "asking.py").write_text(ASKING)
+    for command in ([sys.executable, "asking.py"], [sys.executable, "-m", "mypy", "--strict", "asking.py"]):
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr

@@ -41,7 +41,8 @@ def monitor(
 ) -> None:
     """Show live telemetry of NODE as a table: MESSAGEs by id or name, default the identification.
 
-    NODE may be left out where there is one only. Frames that the device sends of its own accord (logs) are shown as well. On a
+    NODE may be left out where there is one only. Frames that the device sends of its own accord (logs) are shown as well; over a
+    link with envelopes they are all, or those of MESSAGEs, and only what a telecommand asks for is asked for. On a
     terminal the table stays in its place; in a pipe each round is printed; --format json prints an object for each frame. A line
     that is lost is taken up again as soon as it is there. Exit status: 1 if a frame was not answered in the last round.
     """
@@ -61,7 +62,7 @@ def monitor(
             try:
                 with open_session(icd, watched.known, **options, on_event=watched.event) as session:
                     reached = True
-                    if strange := stranger(session):
+                    if strange := stranger(session, watched.faults):
                         say(f"icdgen: {strange}", err=True)
                     elif lost:
                         say("icdgen: the line is back", err=True)
@@ -75,7 +76,7 @@ def monitor(
                     say(f"icdgen: {error}; trying again", err=True)
                 lost = True
                 rounds.miss(screen)
-    sys.exit(1 if watched.silent else 0)
+    sys.exit(1 if watched.failed else 0)
 
 
 class _Rounds:
@@ -94,14 +95,18 @@ class _Rounds:
         from icdgen_runtime.wire.client import Request
 
         end = time.monotonic() + self.every
-        for message in self.watched.messages:
+        self.watched.begin()
+        for message in self.watched.asked():
             assert message.telemetry_id is not None
             self.watched.took(message, session.start(Request("telemetry", message.telemetry_id)))
             screen.show()
-        self._print(screen)
-        while not self.over and time.monotonic() < end:
+        if not self.watched.listens:
+            self._print(screen)
+        while (self.watched.listens or not self.over) and time.monotonic() < end:
             if session.wait(end * 1000):
                 screen.show()
+        if self.watched.listens:
+            self._print(screen)
 
     def miss(self, screen: Screen) -> None:
         """A round without a line, and the pause after it."""

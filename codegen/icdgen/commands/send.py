@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from icdgen_runtime.wire.events import Refused, Timeout
 
     from icdgen.icd.model import Icd, Node
+    from icdgen.link.heard import Heard
+    from icdgen.protocol.facts import Facts
     from icdgen.values.frame import Frame
 
 
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 @click.option("--yes", "-y", is_flag=True, help="Send also what is dangerous, without asking.")
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, form: str, **options: Any) -> None:
-    """Send one telecommand and wait for its acknowledge.
+    """Send one telecommand and wait for its acknowledge, or for what the ICD says that it is answered with.
 
     For instance: icdgen send wheels "Set Speed" x=100 --port tcp://host:4000
 
@@ -39,10 +41,13 @@ def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, f
     from icdgen_runtime.wire.client import Request
     from icdgen_runtime.wire.events import Done
 
+    from icdgen import tables
+    from icdgen.link.heard import Heard
     from icdgen.link.options import open_session
     from icdgen.protocol import facts
     from icdgen.values.encode import encode
     from icdgen.values.find import find_frame
+    from icdgen.values.text import to_text
 
     icd = load_or_exit(icds).icd
     found, message, assignments = find_frame(icd, words)
@@ -51,17 +56,24 @@ def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, f
     if frame.message.hazard and not yes and not _is_meant(frame):
         say(f"{frame.message.name}: not sent", err=True)
         sys.exit(1)
-    with open_session(icd, facts.of(icd, found), **options) as session:
+    heard, known = Heard(icd, found), facts.of(icd, found)
+    with open_session(icd, known, **options, on_event=heard.event) as session:
         outcome = session.start(Request("telecommand", frame.message.telecommand_id, frame.data))
     ok = isinstance(outcome, Done)
+    reply = _reply(icd, found, known, frame, heard, outcome.data) if isinstance(outcome, Done) else None
     if form == "json":
-        known = {key: getattr(outcome, key, None) for key in ("code", "reason", "attempts")}
-        answer = {key: value for key, value in known.items() if value is not None}
+        told = {key: getattr(outcome, key, None) for key in ("code", "reason", "attempts")}
+        told["reply"] = reply.to_json() if reply else None
+        answer = {key: value for key, value in told.items() if value is not None}
         click.echo(json.dumps({"message": frame.message.name, "event": type(outcome).__name__.lower(), **answer}))
     elif isinstance(outcome, Done):
-        say(f"{_sent(frame)}: {_done(frame)}")
+        say(f"{_sent(frame)}: {_done(frame, known, reply)}")
+        if reply:
+            say(to_text(reply, tables.width_of(sys.stdout)).rstrip())
     else:
         say(f"{_sent(frame)}: {_failed(icd, found, outcome)}", err=True)
+    if what := heard.text():
+        say(f"icdgen: {what}", err=True)
     sys.exit(0 if ok else 1)
 
 
@@ -86,8 +98,20 @@ def _sent(frame: Frame) -> str:
     return f"{frame.message.name} with {said}" if said else frame.message.name
 
 
-def _done(frame: Frame) -> str:
+def _reply(icd: Icd, node: Node, known: Facts, sent: Frame, heard: Heard, data: bytes) -> Frame | None:
+    """The telemetry that answered the telecommand; None where nothing does."""
+    from icdgen.values.frame import frame
+
+    rows = known.stream.telecommands if known.stream else ()
+    id = next((row.reply for row in rows if row.id == sent.message.telecommand_id), None)
+    message = heard.message_of(id, data) if id is not None else None
+    return frame(icd, node, message, data) if message else None
+
+
+def _done(frame: Frame, known: Facts, reply: Frame | None) -> str:
     message = frame.message
+    if known.stream:
+        return f"answered with {reply.message.name}" if reply else "sent; the ICD names no reply to it"
     if message.acknowledge:
         return "acknowledged"
     if not message.expects_reset:

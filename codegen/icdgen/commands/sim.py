@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from icdgen.commands.common import PATH, icd_option, load_or_exit, say
+from icdgen.commands.common import PATH, SECONDS, icd_option, load_or_exit, say
 from icdgen.errors import UserError
 
 _PORT = click.IntRange(0, 65535)
@@ -36,6 +36,7 @@ class _Sim(click.Command):
 @click.option("--pty", is_flag=True, help="Serve on a pseudo-terminal, whose path is printed.")
 @click.option("--tcp", type=_PORT, metavar="PORT", help="Serve on a TCP port; 0 takes a free one, which is printed.")
 @click.option("--udp", type=_PORT, metavar="PORT", help="Serve on a UDP port: each datagram is a piece of the stream.")
+@click.option("--connect", metavar="PORT", help="Be the client of tcp://HOST:PORT or udp://HOST:PORT.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
 @click.option(
     "--set",
@@ -58,6 +59,12 @@ class _Sim(click.Command):
 @click.option("--busy", type=click.IntRange(0), default=20, show_default=True, help="Loading, erasing ... takes, ms.")
 @click.option("--processing", type=click.IntRange(0), default=0, show_default=True, help="A telecommand takes, ms.")
 @click.option("--strict", is_flag=True, help="Refuse also values that are no member, or beyond a limit.")
+@click.option(
+    "--every", type=SECONDS, default=1.0, show_default=True, help="Telemetry in envelopes goes out each, s; 0: none."
+)
+@click.option(
+    "--envelope", "chosen", multiple=True, metavar="ROLE=NUMBER", help="A field of the envelope, e.g. source=3."
+)
 @click.option("--orders", is_flag=True, help="Take orders from standard input: set, fault, log, restart.")
 @icd_option
 def sim(
@@ -71,6 +78,8 @@ def sim(
 
     ways: list[tuple[Any, ...]] = [("pty",)] if pty else []
     ways += [(way, host, port) for way, port in (("tcp", tcp), ("udp", udp)) if port is not None]
+    if (to := options.pop("connect")) is not None:
+        ways.append(("connect", *_place(to)))
     if not ways:
         ways = [("tcp", host, 0)] if sys.platform == "win32" else [("pty",)]
     if pty and sys.platform == "win32":
@@ -79,6 +88,16 @@ def sim(
     if loss is not None:
         options["faults"] = (*options["faults"], f"drop={loss}@packet,upload")
     run.run(load_or_exit(icds).icd, name, ways, run.Options(**options), lambda text: _print(text))
+
+
+def _place(text: str) -> tuple[str, str, int]:
+    """Kind, host and port. Raises `UserError`."""
+    from icdgen.link.ports import address
+
+    kind = text.partition("://")[0]
+    if kind not in ("tcp", "udp"):
+        raise UserError(f"`{text}` is nothing to connect to", "--connect tcp://HOST:PORT or udp://HOST:PORT")
+    return kind, *address(text)
 
 
 def _print(text: str) -> None:

@@ -6,11 +6,12 @@ import sys
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from icdgen_runtime.wire.events import Done, Log, Outcome
+from icdgen_runtime.wire.events import Arrived, Done, LineError, Log, Malformed, Outcome
 
 from icdgen import tables
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Message
+from icdgen.link.heard import FAULTS, Heard
 from icdgen.protocol import facts
 from icdgen.tables import Column, clean
 from icdgen.values.find import find_message, find_node
@@ -29,52 +30,90 @@ class Monitor:
     def __init__(self, icd: Icd, node: str, names: Sequence[str]) -> None:
         self.icd, self.node = icd, find_node(icd, node)
         self.known = facts.of(icd, self.node)
+        self.heard = Heard(icd, self.node)
         self.messages: list[Message] = []
         for name in names:
             message = find_message(icd, node, name, "telemetry")
             if message not in self.messages:
                 self.messages.append(message)
-        if not names:
+        if not names and not self.listens:
             if self.known.identification is None:
                 raise UserError("it is not said what to show", "name messages: icdgen monitor NODE MESSAGE ...")
             self.messages.append(self.known.identification.message)
         self.last: dict[str, bytes] = {}
-        self.silent: set[str] = set()  # what was not answered in this round
+        self.silent: set[str] = set()  # what was not answered in this round, or did not come
+        self.faults: dict[int, str] = {}  # what was wrong with what came, by id
+
+    @property
+    def listens(self) -> bool:
+        """Whether telemetry comes unasked, in envelopes, so that a round is over when its time is."""
+        return self.known.stream is not None
+
+    @property
+    def failed(self) -> bool:
+        """Whether something that is watched was not there in the last round."""
+        return bool(self.silent) or (self.listens and not self.messages and not self.last)
+
+    def asked(self) -> Iterator[Message]:
+        """What has to be asked for."""
+        rows = self.known.stream.telecommands if self.known.stream else ()
+        asking = {row.reply for row in rows if row.least == 0}
+        yield from (one for one in self.messages if not self.listens or one.telemetry_id in asking)
+
+    def begin(self) -> None:
+        """A round begins."""
+        if self.listens:
+            self.silent = {message.name for message in self.messages}
 
     def took(self, message: Message, outcome: Outcome) -> None:
         """What became of a request for the frame."""
         if isinstance(outcome, Done):
-            self.silent.discard(message.name)
-            self.last[message.name] = outcome.data
+            self._came(message, outcome.id, outcome.data)
         else:
             self.silent.add(message.name)
+
+    def _came(self, message: Message, id: int, data: bytes) -> None:
+        self.silent.discard(message.name)
+        self.faults.pop(id, None)
+        self.last[message.name] = data
 
     def miss(self) -> None:
         """There is no line: nothing was answered."""
         self.silent = {message.name for message in self.messages}
+        self.faults.clear()
 
     def event(self, event: Event) -> None:
-        """Takes what came unasked: frames of a log."""
-        if not isinstance(event, Log):
-            return
-        for one in event.log.frames:
-            message = self.known.telemetry.get(one.id) if one.id is not None else None
-            if message and message.length == len(one.data):
-                self.last[message.name] = one.data
+        """Takes what came unasked, and what was wrong with what came."""
+        self.heard.event(event)
+        if isinstance(event, Malformed):
+            self.faults[event.id] = "wrong length"
+        elif isinstance(event, LineError) and event.id is not None and event.error in FAULTS:
+            self.faults[event.id] = FAULTS[event.error]
+        elif isinstance(event, Arrived):
+            message = self.heard.message_of(event.id, event.data)
+            if message and (not self.messages or message in self.messages):
+                self._came(message, event.id, event.data)
+        elif isinstance(event, Log):
+            for one in event.log.frames:
+                message = self.known.telemetry.get(one.id) if one.id is not None else None
+                if message and message.length == len(one.data):
+                    self.last[message.name] = one.data
 
     def frames(self) -> Iterator[Frame]:
         """What was answered, and what came unasked."""
         for name in self._names():
             if name in self.last and name not in self.silent:
-                message = next(m for m in self.known.telemetry.values() if m.name == name)
+                message = next(m for m in self.icd.messages_of(self.node) if m.name == name)
                 yield frame(self.icd, self.node, message, self.last[name])
 
     def rows(self) -> Iterator[tuple[str, str, str, str, str]]:
         """Frame, field, value, unit, remarks."""
         found = {one.message.name: one for one in self.frames()}
+        ids = {message.name: message.telemetry_id for message in self.messages}
+        nothing = "nothing came" if self.listens else "no answer"
         for name in self._names():
             if name in self.silent:
-                yield name, "", "", "", "no answer"
+                yield name, "", "", "", self.faults.get(ids.get(name) or 0, nothing)
             elif name in found:
                 for number, row in enumerate(found[name].rows):
                     unit = row.field.unit.symbol if row.field.unit else ""
@@ -87,7 +126,8 @@ class Monitor:
     def text(self) -> str:
         """The table for a pipe, or for a single round."""
         columns = [Column(title, right=title == "value") for title in _COLUMNS]
-        return tables.render(columns, list(self.rows()), tables.width_of(sys.stdout)).rstrip("\n")
+        table = tables.render(columns, list(self.rows()), tables.width_of(sys.stdout)).rstrip("\n")
+        return "\n".join(filter(None, (table, self.heard.text())))
 
 
 class Screen:
@@ -122,6 +162,6 @@ class Screen:
         for title in _COLUMNS:
             table.add_column(title, justify="right" if title == "value" else "left")
         for row in self.monitor.rows():
-            style = "red" if row[4] == "no answer" else ""
+            style = "red" if row[0] in self.monitor.silent else ""
             table.add_row(*(Text(clean(cell), style=style) for cell in row))
         return table

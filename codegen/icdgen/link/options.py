@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from icdgen.errors import UserError, no_talk
+from icdgen.errors import UserError
 from icdgen.icd.model import Icd
+from icdgen.values.chosen import values_of
 
 if TYPE_CHECKING:
     from icdgen_runtime.wire.session import BusSession
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def session_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """--port, --crc, --address, --timeout, --retries."""
+    """--port, --crc, --address, --envelope, --timeout, --retries."""
     options = [
         click.option(
             "--port",
@@ -28,8 +29,15 @@ def session_options(command: Callable[..., Any]) -> Callable[..., Any]:
             metavar="PORT",
             help="tcp://HOST:PORT, udp://HOST:PORT, a terminal or serial port (/dev/ttyUSB0, COM3), can://INTERFACE/CHANNEL.",
         ),
-        click.option("--crc", is_flag=True, help="Send checksums, where the ICD has them."),
+        click.option("--crc", is_flag=True, help="Use checksums where the ICD leaves that to the client."),
         click.option("--address", type=click.IntRange(0), default=0, help="Our address, on CAN."),
+        click.option(
+            "--envelope",
+            "chosen",
+            multiple=True,
+            metavar="ROLE=NUMBER",
+            help="What we put into a field of the envelope, such as source=3. Repeatable.",
+        ),
         click.option("--timeout", type=click.IntRange(1), metavar="MS", help="How long a reply is waited for."),
         click.option("--retries", type=click.IntRange(0, 255), help="How often a request is sent again."),
     ]
@@ -47,6 +55,7 @@ def open_session(
     address: int,
     timeout: int | None,
     retries: int | None,
+    chosen: Sequence[str] = (),
     on_event: OnEvent | None = None,
 ) -> Iterator[BusSession]:
     """A session with a node, of which ``known`` are the facts. Raises `icdgen.errors.UserError`."""
@@ -55,9 +64,7 @@ def open_session(
     from icdgen.link.session import session
 
     node, is_can = known.node, port.startswith("can://")
-    if known.stream:
-        raise no_talk(node.name)
-    if (known.can if is_can else known.framing) is None:
+    if (known.can if is_can else known.framing or known.stream) is None:
         what = "CAN" if is_can else "a stream of bytes"
         raise UserError(f"the ICD does not say how to talk to {node.name} over {what}", "see docs/icd-format.md")
     if known.can and not 0 <= address < 1 << known.can.parts["source"].bits:
@@ -68,12 +75,16 @@ def open_session(
         settings = settings._replace(reply_timeout=timeout)
     if retries is not None:
         settings = settings._replace(retries=retries)
-    with session(link, open_port(port, icd.protocol_of(node)), crc, address, settings, on_event) as opened:
+    values = values_of(known, chosen)
+    with session(link, open_port(port, icd.protocol_of(node)), crc, address, settings, on_event, values) as opened:
         yield opened
 
 
-def stranger(session: BusSession) -> str | None:
-    """What is to be said if the node is another one than the ICD describes, or does not answer."""
+def stranger(session: BusSession, faults: Mapping[int, str]) -> str | None:
+    """What is to be said if the node is another one than the ICD describes, or does not answer.
+
+    ``faults``: what was wrong with what came, by id.
+    """
     from icdgen_runtime.wire.client import Request
     from icdgen_runtime.wire.events import Done
     from icdgen_runtime.wire.identity import identify
@@ -83,7 +94,8 @@ def stranger(session: BusSession) -> str | None:
         return None
     outcome = session.start(Request("telemetry", link.identification.telemetry))
     if not isinstance(outcome, Done):
-        return "the device does not answer"
+        fault = faults.get(link.identification.telemetry)
+        return f"the device answers, but: {fault}" if fault else "the device does not answer"
     found = identify(link, outcome.data)
     if found.matches:
         return None

@@ -22,6 +22,8 @@ from icdgen.errors import UserError
 
 CONNECT_TIMEOUT = 5.0  # s
 WRITE_TIMEOUT = 5.0
+MOST_OF_A_PACKET = 1400  # bytes of a stream in one datagram
+MOST_OF_A_DATAGRAM = 65507
 _BARE_ADDRESS = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[\w.-]+):\d{1,5}")  # host and port without tcp:// or udp://
 FORMS = "tcp://HOST:PORT, udp://HOST:PORT, /dev/ttyUSB0, COM3, can://socketcan/can0"
 
@@ -52,9 +54,10 @@ def _failures(name: str, *kinds: type[Exception], help: str = "") -> Iterator[No
 
 
 class Socket:
-    """TCP or UDP."""
+    """TCP or UDP. ``piece``: bytes of a datagram at most, for what is cut at any place."""
 
-    def __init__(self, kind: str, host: str, port: int) -> None:
+    def __init__(self, kind: str, host: str, port: int, piece: int = MOST_OF_A_PACKET) -> None:
+        self.piece = piece
         self.name = f"{kind}://{host}:{port}"
         with _failures(f"cannot connect to {self.name}", OSError, help="is it running?"):
             if kind == "tcp":
@@ -86,8 +89,8 @@ class Socket:
             if self.stream:
                 self.socket.sendall(data)
             else:
-                for at in range(0, len(data), 1400):
-                    self.socket.send(data[at : at + 1400])
+                for at in range(0, len(data), self.piece):
+                    self.socket.send(data[at : at + self.piece])
 
     def close(self) -> None:
         self.socket.close()
@@ -194,10 +197,13 @@ class Can:
 def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
     """The port. ``protocol`` is the ICD's section: baud rate and the like. Raises `icdgen.errors.UserError`."""
     scheme, separator, rest = text.partition("://")
+    whole = protocol.get("stream", {}).get("delimited_by") == "none"
+    if whole and scheme != "udp":
+        raise PortError(f"{text} keeps no packets apart, and only they delimit messages here", "udp://HOST:PORT does")
     if separator:
         makers: dict[str, Callable[[], Port | Can]] = {
-            "tcp": lambda: Socket("tcp", *_address(text)),
-            "udp": lambda: Socket("udp", *_address(text)),
+            "tcp": lambda: Socket("tcp", *address(text)),
+            "udp": lambda: Socket("udp", *address(text), MOST_OF_A_DATAGRAM if whole else MOST_OF_A_PACKET),
             "can": lambda: _can(rest, protocol.get("can", {})),
         }
         if scheme not in makers:
@@ -212,7 +218,8 @@ def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
     return Serial(text, protocol.get("uart", {}))
 
 
-def _address(text: str) -> tuple[str, int]:
+def address(text: str) -> tuple[str, int]:
+    """Host and port of ``tcp://HOST:PORT``. Raises `PortError`."""
     try:
         parts = urlsplit(text)
         host, port = parts.hostname, parts.port

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
 from icdgen_runtime._errors import IcdError
@@ -23,16 +23,17 @@ class CanSession(BusSession):
     def __init__(
         self, link: Link, port: Can, crc: bool, address: int, settings: Settings, on_event: OnEvent | None
     ) -> None:
-        super().__init__(Client(link, "can", crc, address, settings), on_event)
+        self._can = Client(link, "can", crc, address, settings)
+        super().__init__(self._can, on_event)
         self._port = port
 
     def _flush(self) -> None:
-        for packet in self.client.packets():
+        for packet in self._can.packets():
             self._port.send(packet)
 
     def _receive(self, seconds: float) -> list[Event]:
         packet = self._port.receive(seconds)
-        return self.client.packet(self._now(), packet) if packet else self.client.tick(self._now())
+        return self._can.packet(self._now(), packet) if packet else self._can.tick(self._now())
 
 
 @contextmanager
@@ -43,8 +44,10 @@ def session(
     address: int = 0,
     settings: Settings | None = None,
     on_event: OnEvent | None = None,
+    values: Mapping[str, int] | None = None,
 ) -> Iterator[BusSession]:
-    """A session that closes the port at its end; ``on_event`` is told of what comes unasked, such as logs.
+    """A session that closes the port at its end; ``on_event`` is told of what comes unasked, such as logs; ``values``: what we
+    put into fields of the envelope.
 
     Raises `icdgen.errors.UserError` for a request that the ICD does not allow on this bus.
     """
@@ -52,7 +55,7 @@ def session(
         if isinstance(port, Can):
             yield CanSession(link, port, crc, address, settings or link.settings, on_event)
         else:
-            yield Session(link, port.write, port.read, crc, settings, on_event)
+            yield Session(link, port.write, port.read, crc, settings, on_event, values=values)
     except IcdError as error:
         raise UserError(str(error), "see docs/wire.md") from None
     finally:

@@ -5,6 +5,7 @@ sent, and each call returns events, mappings with the key ``event``:
 
 - ``done``, ``refused``, ``timeout``: the end of the request, each with ``id`` and ``attempts``
 - ``packet``, ``log``: what the node sent of its own accord
+- ``checksum``, ``unchecked``: a frame with a wrong checksum, or without the one that it must have; it is waited on
 - ``stray``: what nobody waits for, such as a late acknowledge
 - the events of the UART decoder and of the CAN joiner that tell of errors
 """
@@ -17,7 +18,7 @@ from typing import Any
 from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol import can, i2c, uart
-from icdgen.protocol.errors import BusyError, LengthError, UnknownIdError
+from icdgen.protocol.errors import BusyError, ChecksumError, LengthError, UnknownIdError
 from icdgen.protocol.facts import Facts, need
 from icdgen.protocol.sections import CAN, I2C, UART, Settings
 
@@ -45,9 +46,9 @@ class Client:
     ) -> None:
         self.known, self.bus, self.address = known, bus, address
         self.settings = settings or known.client
-        form = known.checksum if crc else None
-        self._checks_sent = bool(form and bus in form.telecommand_buses)
-        self._checks_frames = bool(form and bus in form.telemetry_buses)
+        form = known.checksum
+        self._checks_sent = bool(form and bus in (form.telecommand_buses if crc else form.telecommand_always))
+        self._checks_frames = bool(form and bus in (form.telemetry_buses if crc else form.telemetry_always))
         if bus == UART:
             self._decoder = uart.Decoder(need(known.framing, "uart"), known.longest)
         elif bus == CAN:
@@ -235,9 +236,7 @@ class Client:
             return [{"event": "packet", "number": self.known.number(message[1:at]), "bytes": message[at:].hex()}]
         request = self._asked if self.state == WAIT else None
         if request and kind == uart.REPLY and request.kind == TELEMETRY and id == request.id:
-            if len(message) - 1 == self._message(request).length:
-                return self._done(now, message[1:])
-            return [{"event": "malformed", "id": id}]
+            return self._replied(now, id, message[1:])
         if request and kind == uart.ACKNOWLEDGE and request.kind == TELECOMMAND:
             acknowledged, code = uart.acknowledged(self.known, message)
             if acknowledged == request.id:
@@ -253,10 +252,20 @@ class Client:
             if (request.kind, message.kind) in ((TELECOMMAND, "refusal"), (TELEMETRY, "request_refusal")):
                 return self._refused(now, None)
             if request.kind == TELEMETRY and message.kind == "reply":
-                if len(message.data) == self._message(request).length:
-                    return self._done(now, message.data)
-                return [{"event": "malformed", "id": message.id}]
+                return self._replied(now, message.id, message.data)
         return [{"event": "stray", "bytes": bytes([message.id]).hex() + message.data.hex()}]
+
+    def _replied(self, now: int, id: int, data: bytes) -> list[Event]:
+        """What came as the frame: with a checksum where there may be one, without where there need not."""
+        form, length = self.known.checksum, self.known.telemetry[id].length
+        if form and self.bus in form.telemetry_buses and len(data) == length + form.bytes:
+            try:
+                return self._done(now, i2c.reply(self.known, id, data, True))
+            except ChecksumError:
+                return [{"event": "checksum", "id": id}]
+        if len(data) != length:
+            return [{"event": "malformed", "id": id}]
+        return [{"event": "unchecked", "id": id}] if self._checks_frames else self._done(now, data)
 
     def _line_errors(self, events: list[can.Event]) -> list[Event]:
         return [{"event": event.event, "id": event.id} for event in events]

@@ -63,6 +63,7 @@ class StreamRow:
     most: int
     cuts_zeros: bool  # whether zeros at the end of the data are not sent, but for one byte
     seed: int
+    reply: int | None  # id of the telemetry that a telecommand is answered with
     name: str
 
 

@@ -39,15 +39,18 @@ def values_of(row: Section, little: bool) -> tuple[int, int]:
     return first, second
 
 
-def rows_of(ids: Mapping[int, tuple[Variant, ...]], seeds: Mapping[str, int]) -> tuple[StreamRow, ...]:
+def rows_of(
+    ids: Mapping[int, tuple[Variant, ...]], seeds: Mapping[str, int], replies: Mapping[str, int] | None = None
+) -> tuple[StreamRow, ...]:
     """The messages of a direction, those that share an id as one: in the envelope they are alike (ICD174)."""
-    return tuple(_row(id, [one.message for one in those], seeds) for id, those in sorted(ids.items()))
+    return tuple(_row(id, [one.message for one in those], seeds, replies or {}) for id, those in sorted(ids.items()))
 
 
-def _row(id: int, messages: list[Message], seeds: Mapping[str, int]) -> StreamRow:
+def _row(id: int, messages: list[Message], seeds: Mapping[str, int], replies: Mapping[str, int]) -> StreamRow:
     least, most = min(one.least for one in messages), max(one.length for one in messages)
     first, name = messages[0], " or ".join(one.name for one in messages)
-    return StreamRow(id, least, most, bool(first.may_end_early), seeds.get(first.name, 0), name)
+    reply = next((replies[one.name] for one in messages if one.name in replies), None)
+    return StreamRow(id, least, most, bool(first.may_end_early), seeds.get(first.name, 0), reply, name)
 
 
 def place_of(rows: Iterable[Section], name: str, last: bool) -> Section | None:
@@ -91,6 +94,8 @@ def stream_of(
     length, sequence = (place_of((*header, *trailer), role, False) or {} for role in ("length", "sequence"))
     check = place_of((*header, *trailer), "checksum", False) or {}
     seeds = checksums.get(check.get("checksum", ""), {}).get("seeds", {})
+    named = {one.message.name: id for id, those in ids.telemetry.items() for one in those}
+    replies = {sent: named[came] for sent, came in section.get("replies", {}).items() if came in named}
     counts_all = length.get("counts", DATA) == "message"
     assert all(field.role in ROLES for field in fields)
     return {
@@ -101,6 +106,6 @@ def stream_of(
         "per_id": sequence.get("per", "link") == "id",
         "fields": tuple(fields),
         "check": check_of(section, checksums),
-        "telecommands": rows_of(ids.telecommand, seeds),
+        "telecommands": rows_of(ids.telecommand, seeds, replies),
         "telemetry": rows_of(ids.telemetry, seeds),
     }

@@ -5,7 +5,8 @@ Facts are read as they are declared; here is what takes more: lists by role, mes
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from math import ceil
 from typing import Any, NamedTuple, TypeVar
 
 from icdgen.icd.model import Icd, Message, Node
@@ -147,9 +148,11 @@ class Reader:
             "crc8",
             Checksum,
             crc=crc,
-            telecommand_buses=tuple(telecommand.get("buses", BUSES)) if telecommand else (),
-            telemetry_buses=tuple(telemetry.get("buses", BUSES)) if telemetry else (),
-            bytes=telecommand.get("extra_bytes", telemetry.get("extra_bytes", 1)),
+            telecommand_buses=_buses(telecommand, False),
+            telemetry_buses=_buses(telemetry, False),
+            telecommand_always=_buses(telecommand, True),
+            telemetry_always=_buses(telemetry, True),
+            bytes=telecommand.get("extra_bytes", telemetry.get("extra_bytes", ceil(crc.width / 8))),
         )
 
     def stream(self) -> Stream | None:
@@ -225,6 +228,12 @@ class Reader:
         for message in self.messages.values():
             for key, why in message.assumptions:
                 yield Assumption(f"message {message.name}", key, held(message, key), why)
+
+
+def _buses(use: Mapping[str, Any], always: bool) -> tuple[str, ...]:
+    """Where a direction has the checksum, or always has it; without `optional`, that is the client's choice."""
+    has = bool(use) and (not always or use.get("optional", True) is False)
+    return tuple(use.get("buses", BUSES)) if has else ()
 
 
 def held(message: Message, key: str) -> object:

@@ -101,12 +101,14 @@ class Crc:
 
 @rare(frozen=True, kw_only=True)
 class Checksum:
-    """The optional checksum of telecommands and frames."""
+    """The checksum of telecommands and frames."""
 
     crc: Crc
     covers_id: bool = flag("covers_id", "whether the id byte is part of what the checksum covers", False)
     telecommand_buses: tuple[str, ...] = buses("telecommand", "where telecommands have it")
     telemetry_buses: tuple[str, ...] = buses("telemetry", "where telemetry has it")
+    telecommand_always: tuple[str, ...] = buses("telecommand", "where telecommands are not taken without it")
+    telemetry_always: tuple[str, ...] = buses("telemetry", "where telemetry never is without it")
     bytes: int = octets("", "bytes that it adds to a message", 1, BYTE)
 
 

@@ -11,7 +11,7 @@ from icdgen_runtime.wire.uart import UartDecoder, UartEvent
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol import facts
-from icdgen.recognize import bus, match
+from icdgen.recognize import bus, envelopes, match
 from icdgen.recognize.given import of_message
 from icdgen.recognize.pasted import Pasted, read
 from icdgen.recognize.reading import Reading, Speaker
@@ -99,6 +99,8 @@ def _framed(speakers: Sequence[Speaker], data: bytes, message: Message | None) -
     """The messages in a stream with framing; none if it has none, or its bytes are just those of the message asked for."""
     if message is not None and len(data) in message.lengths:
         return []
+    if enveloped := envelopes.readings(speakers, data):
+        return enveloped
     for framing in dict.fromkeys(speaker.link.framing for speaker in speakers if speaker.link.framing):
         if bytes((framing.escape, framing.start)) not in data:
             continue

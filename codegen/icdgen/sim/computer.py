@@ -79,4 +79,5 @@ class Computer:
 
 def has_protocol(icd: Icd, node: Node) -> bool:
     """Whether the ICD says how the node is talked to over a stream of bytes."""
-    return facts.of(icd, node).framing is not None
+    known = facts.of(icd, node)
+    return known.framing is not None or known.stream is not None

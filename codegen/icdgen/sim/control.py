@@ -14,6 +14,7 @@ import yaml
 from icdgen.errors import UserError
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.sim import faults
+from icdgen.sim.envelopes import EnvelopeLine
 from icdgen.sim.line import Line
 from icdgen.sim.values import raw_of
 from icdgen.values.encode import listed
@@ -40,7 +41,7 @@ class Step:
 class Control:
     """Carries out a user's orders on a line."""
 
-    def __init__(self, icd: Icd, node: Node, line: Line, steps: list[Step]) -> None:
+    def __init__(self, icd: Icd, node: Node, line: Line | EnvelopeLine, steps: list[Step]) -> None:
         self.icd, self.node, self.line = icd, node, line
         self.steps = sorted(steps, key=lambda step: step.at)
         self.moving: list[tuple[Message, Field, Wave]] = []

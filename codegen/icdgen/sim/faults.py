@@ -8,7 +8,7 @@ from random import Random
 
 from icdgen.errors import UserError
 
-OUT = ("acknowledge", "reply", "packet", "log")  # what the device sends
+OUT = ("acknowledge", "reply", "packet", "log", "telemetry")  # what the device sends
 IN = ("telecommand", "request", "upload")  # what it receives
 KINDS = {
     "drop": "the message is lost",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import heapq
 
+from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
 from icdgen.protocol.sections import UART
@@ -51,6 +52,12 @@ class Line:
         if message is not None:
             self._send(now, "log", message)
 
+    keeps_packets = False  # its bytes may be cut anywhere
+
+    def pieces(self, now: int) -> list[bytes]:
+        """The bytes that are due, as they go to the port."""
+        return [self.take(now)]
+
     def take(self, now: int) -> bytes:
         """The bytes that are due."""
         out = bytearray()
@@ -82,7 +89,9 @@ class Line:
             return
         frame = self.computer.frame(now, message[0])
         if frame is not None:
-            self._send(now, "reply", message + frame)
+            form = self.computer.program.known.checksum
+            checked = form is not None and UART in form.telemetry_always
+            self._send(now, "reply", i2c_write(self.link, message[0], frame, checked))
 
     def _telecommand(self, now: int, message: bytes) -> None:
         if not message:

@@ -123,6 +123,8 @@ class Program:
             data = data[: known.length]
             if message != i2c_write(self.link, message[0], data, crc=True):
                 return self._refusal("checksum")
+        elif form and bus in form.telecommand_always and len(data) == known.length:
+            return self._refusal("checksum")
         if len(data) != known.length:
             return self._refusal("length")
         raw = codec.decode(self.icd.node(known.node), known, data)

@@ -15,15 +15,17 @@ from icdgen_runtime._errors import IcdError
 from icdgen_runtime.wire.times import dos_time_pack
 
 from icdgen.backends.python.objects.links import link_of
-from icdgen.errors import UserError, no_talk
+from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts
 from icdgen.sim import control, faults, serve
 from icdgen.sim.computer import Computer, has_protocol
+from icdgen.sim.envelopes import EnvelopeLine
 from icdgen.sim.line import Line
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import File, Storage
 from icdgen.values import numbers
+from icdgen.values.chosen import values_of
 from icdgen.values.find import find_node, is_part
 
 Way = tuple[Any, ...]  # name of a function of `serve`, and what it is given
@@ -45,6 +47,8 @@ class Options:
     processing: int = 0
     strict: bool = False
     orders: bool = False
+    every: float = 1.0
+    chosen: Sequence[str] = ()
 
 
 def node_of(icd: Icd, name: str | None) -> Node:
@@ -53,28 +57,25 @@ def node_of(icd: Icd, name: str | None) -> Node:
     if name is None:
         if len(able) == 1:
             return able[0]
-        enveloped = [node.name for node in icd.nodes if facts.of(icd, node).stream]
-        if enveloped and not able:
-            raise no_talk(enveloped[0])
         names = ", ".join(node.name for node in able)
         raise UserError("it is not said which node is meant", f"--node NAME; nodes: {names}" if able else "")
     node = find_node(icd, name)
-    if facts.of(icd, node).stream:
-        raise no_talk(name)
     if not has_protocol(icd, node):
         text = f"the ICD does not say how messages of {node.name} are framed on a stream of bytes"
-        raise UserError(text, "`protocol.uart.framing` says so, see docs/icd-format.md")
+        raise UserError(text, "`protocol.uart.framing` or `stream` says so, see docs/icd-format.md")
     return node
 
 
-def build(icd: Icd, name: str | None, options: Options) -> tuple[Line, control.Control]:
+def build(icd: Icd, name: str | None, options: Options) -> tuple[Line | EnvelopeLine, control.Control]:
     """The device on its line, and who gives it orders. Raises `icdgen.errors.UserError`."""
     node = node_of(icd, name)
     storage = Storage(on_upload=_saver(options.uploads))
     storage.files.update(_file(icd, node, text) for text in options.files)
-    settings = Settings(options.boot, options.busy, options.processing, options.strict)
+    settings = Settings(options.boot, options.busy, options.processing, options.strict, round(options.every * 1000))
     spoil = faults.Faults(Random(options.seed), [faults.parse(one) for one in options.faults], options.late)
-    line = Line(Computer(icd, node, settings, storage), spoil)
+    chosen = values_of(facts.of(icd, node), options.chosen)
+    computer = Computer(icd, node, settings, storage)
+    line = EnvelopeLine(computer, spoil, chosen) if computer.program.known.stream else Line(computer, spoil)
     steps = control.read(options.script, icd, node) if options.script else []
     controlled = control.Control(icd, node, line, steps)
     for message, text in options.values:
@@ -85,11 +86,13 @@ def build(icd: Icd, name: str | None, options: Options) -> tuple[Line, control.C
 def run(icd: Icd, name: str | None, ways: list[Way], options: Options, tell: Callable[[str], None]) -> None:
     """Serves until interrupted."""
     line, controlled = build(icd, name, options)
+    if line.keeps_packets and any("udp" not in way[:2] for way in ways):
+        raise UserError("only packets delimit messages here, and a stream of bytes keeps none apart", "use --udp PORT")
     asyncio.run(_run(line, controlled, ways, options.orders, tell))
 
 
 async def _run(
-    line: Line, controlled: control.Control, ways: list[Way], listens: bool, tell: Callable[[str], None]
+    line: Line | EnvelopeLine, controlled: control.Control, ways: list[Way], listens: bool, tell: Callable[[str], None]
 ) -> None:
     server, kept = serve.Server(line, controlled), []
     for way, *where in ways:

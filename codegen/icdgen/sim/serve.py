@@ -12,16 +12,19 @@ from typing import Any, cast
 
 from icdgen.errors import UserError
 from icdgen.sim.control import Control
+from icdgen.sim.envelopes import EnvelopeLine
 from icdgen.sim.line import Line
 
 Send = Callable[[bytes], None]
+PIECE = 1400  # bytes of a stream in one datagram
+AGAIN = 1.0  # s between two attempts to connect
 IDLE = 0.5  # s; the longest sleep, in which an interrupt is noticed everywhere
 
 
 class Server:
     """Gives the line what comes, and sends what is due to everybody who is connected."""
 
-    def __init__(self, line: Line, control: Control) -> None:
+    def __init__(self, line: Line | EnvelopeLine, control: Control) -> None:
         self.line, self.control = line, control
         self.begin = time.monotonic()
         self.clients: list[Send] = []
@@ -63,8 +66,7 @@ class Server:
                 continue
 
     def _flush(self, now: int) -> None:
-        data = self.line.take(now)
-        if data:
+        for data in filter(None, self.line.pieces(now)):
             for send in list(self.clients):
                 send(data)
 
@@ -73,19 +75,12 @@ async def tcp(server: Server, host: str, port: int) -> tuple[str, object]:
     """Listens; where."""
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        send = writer.write
-        server.clients.append(send)
         try:
-            while data := await reader.read(65536):
-                server.received(data)
-                await writer.drain()
+            await _served(server, reader, writer)
         except OSError:
             return  # the client is gone
         except asyncio.CancelledError:
             return  # the simulator ends; asyncio would print the cancellation of what it started itself
-        finally:
-            server.clients.remove(send)
-            writer.close()
 
     try:
         listening = await asyncio.start_server(serve, host, port)
@@ -94,8 +89,8 @@ async def tcp(server: Server, host: str, port: int) -> tuple[str, object]:
     return f"tcp://{host}:{listening.sockets[0].getsockname()[1]}", listening
 
 
-async def udp(server: Server, host: str, port: int) -> tuple[str, object]:
-    """Each datagram is a piece of the stream; answers go to whoever sent last."""
+async def udp(server: Server, host: str, port: int, connects: bool = False) -> tuple[str, object]:
+    """Each datagram is a piece of the stream, or a packet; answers go to whoever sent last, or whom we connect to."""
 
     class Protocol(asyncio.DatagramProtocol):
         def __init__(self) -> None:
@@ -114,15 +109,48 @@ async def udp(server: Server, host: str, port: int) -> tuple[str, object]:
             self.peer = None
 
         def send(self, data: bytes) -> None:
-            for at in range(0, len(data), 1400):
-                if self.peer is not None and self.transport:
-                    self.transport.sendto(data[at : at + 1400], self.peer)
+            size = len(data) if server.line.keeps_packets else PIECE
+            for at in range(0, len(data), size):
+                if (connects or self.peer is not None) and self.transport:
+                    self.transport.sendto(data[at : at + size], None if connects else self.peer)
 
+    loop = asyncio.get_running_loop()
     try:
-        transport, _ = await asyncio.get_running_loop().create_datagram_endpoint(Protocol, (host, port))
+        if connects:
+            transport, _ = await loop.create_datagram_endpoint(Protocol, remote_addr=(host, port))
+            return f"to udp://{host}:{port}", transport
+        transport, _ = await loop.create_datagram_endpoint(Protocol, (host, port))
     except OSError as error:
         raise _cannot("udp", host, port, error) from None
     return f"udp://{host}:{transport.get_extra_info('sockname')[1]}", transport
+
+
+async def connect(server: Server, kind: str, host: str, port: int) -> tuple[str, object]:
+    """Connects to somebody who listens, and does so again whenever the line is lost; to whom."""
+    if kind == "udp":
+        return await udp(server, host, port, connects=True)
+    return f"to tcp://{host}:{port}", asyncio.create_task(_kept(server, host, port))
+
+
+async def _kept(server: Server, host: str, port: int) -> None:
+    while True:
+        with suppress(OSError):
+            reader, writer = await asyncio.open_connection(host, port)
+            await _served(server, reader, writer)
+        await asyncio.sleep(AGAIN)
+
+
+async def _served(server: Server, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    """A connection, until it ends."""
+    send = writer.write
+    server.clients.append(send)
+    try:
+        while data := await reader.read(65536):
+            server.received(data)
+            await writer.drain()
+    finally:
+        server.clients.remove(send)
+        writer.close()
 
 
 async def pty(server: Server) -> tuple[str, object]:

@@ -712,6 +712,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         false, /* covers_id */
         3u, /* telecommand_buses */
         2u, /* telemetry_buses */
+        0u, /* telecommand_always */
+        0u, /* telemetry_always */
         1u, /* bytes */
         /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, table */
         {8u, 0x12u, 0x0u, true, true, 0x0u, true, 0xffu, ICDGEN_TABLE(crc8_table)},

@@ -10,6 +10,11 @@ ICDGEN_API size_t icd_client_bytes(const icd_link_t *link)
     return ICDGEN_SIZE(link->longest_telecommand + (slot > link->longest ? slot : link->longest));
 }
 
+static inline bool icdgen_on_bus(uint8_t buses, icd_bus_t bus)
+{
+    return ((ICDGEN_U32(buses) >> ICDGEN_U32(bus)) & 1u) != 0u;
+}
+
 /* What is common to all buses. */
 static inline icd_status_t icdgen_client_init(
     icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
@@ -18,6 +23,10 @@ static inline icd_status_t icdgen_client_init(
     client->link = link;
     client->bus = bus;
     client->settings = link->client;
+    if (link->checksum != NULL) {
+        client->checks_telecommands = icdgen_on_bus(link->checksum->telecommand_always, bus);
+        client->checks_telemetry = icdgen_on_bus(link->checksum->telemetry_always, bus);
+    }
     client->whole = buffer;
     client->encoder.ended = true;
     return size < icd_client_bytes(link) ? ICD_ERROR_LENGTH : ICD_OK;
@@ -81,10 +90,8 @@ icd_client_can(icd_client_t *client, const icd_link_t *link, uint8_t address, ui
 ICDGEN_API void icd_client_use_checksums(icd_client_t *client)
 {
     const icd_checksum_form_t *const form = client->link->checksum;
-    client->checks_telecommands =
-        form != NULL && ((ICDGEN_U32(form->telecommand_buses) >> ICDGEN_U32(client->bus)) & 1u) != 0u;
-    client->checks_telemetry =
-        form != NULL && ((ICDGEN_U32(form->telemetry_buses) >> ICDGEN_U32(client->bus)) & 1u) != 0u;
+    client->checks_telecommands = form != NULL && icdgen_on_bus(form->telecommand_buses, client->bus);
+    client->checks_telemetry = form != NULL && icdgen_on_bus(form->telemetry_buses, client->bus);
 }
 
 ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadline)

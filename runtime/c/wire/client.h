@@ -88,7 +88,7 @@ ICDGEN_API icd_status_t icd_client_i2c(icd_client_t *client, const icd_link_t *l
 ICDGEN_API icd_status_t
 icd_client_can(icd_client_t *client, const icd_link_t *link, uint8_t address, uint8_t *buffer, size_t size);
 
-/** Uses checksums where the ICD has them for the bus. */
+/** Uses checksums where the ICD leaves the choice for the bus. Where it demands them, they are used in any case. */
 ICDGEN_API void icd_client_use_checksums(icd_client_t *client);
 
 /** When icd_client_tick() wants to be called at the latest; false: not at all. */

@@ -76,6 +76,31 @@ typedef struct {
     void *context;
 } icdgen_client_call_t;
 
+/* What came as the frame: with a checksum where there may be one, without where there need not. */
+static inline void icdgen_client_replied(const icdgen_client_call_t *call, const uint8_t *data, size_t length)
+{
+    icd_client_t *const client = call->client;
+    const icd_checksum_form_t *const form = client->link->checksum;
+    const uint8_t id = client->message->id;
+    size_t frame = client->message->length;
+    icd_event_kind_t fault = ICD_EVENT_DONE;
+    if (form != NULL && icdgen_on_bus(form->telemetry_buses, client->bus) && length == frame + form->bytes) {
+        fault =
+            icd_i2c_reply(client->link, id, data, length, true, &frame) == ICD_OK ? ICD_EVENT_DONE : ICD_EVENT_CHECKSUM;
+    } else if (length != frame) {
+        fault = ICD_EVENT_MALFORMED;
+    } else if (client->checks_telemetry) {
+        fault = ICD_EVENT_UNCHECKED;
+    } else {
+        /* it need not have one */
+    }
+    if (fault == ICD_EVENT_DONE) {
+        icdgen_client_done(client, call->now, data, frame, call->on_event, call->context);
+    } else {
+        icdgen_client_tell(fault, id, NULL, 0, call->on_event, call->context);
+    }
+}
+
 static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, const uint8_t *message, size_t length)
 {
     icd_client_t *const client = call->client;
@@ -95,11 +120,7 @@ static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, 
         return;
     }
     if (waits && kind == ICD_UART_REPLY && client->direction == ICD_TELEMETRY && message[0] == client->message->id) {
-        if (length - 1u == client->message->length) {
-            icdgen_client_done(client, call->now, message + 1, length - 1u, call->on_event, call->context);
-        } else {
-            icdgen_client_tell(ICD_EVENT_MALFORMED, message[0], NULL, 0, call->on_event, call->context);
-        }
+        icdgen_client_replied(call, message + 1, length - 1u);
         return;
     }
     if (waits && kind == ICD_UART_ACKNOWLEDGE && client->direction == ICD_TELECOMMAND &&
@@ -145,11 +166,7 @@ static inline void icdgen_client_on_can(void *context, const icd_event_t *event)
             return;
         }
         if (!telecommand && event->can_kind == ICD_CAN_REPLY) {
-            if (event->length == client->message->length) {
-                icdgen_client_done(client, call->now, event->data, event->length, call->on_event, call->context);
-            } else {
-                icdgen_client_tell(ICD_EVENT_MALFORMED, event->id, NULL, 0, call->on_event, call->context);
-            }
+            icdgen_client_replied(call, event->data, event->length);
             return;
         }
     }

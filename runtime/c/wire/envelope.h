@@ -3,6 +3,8 @@
 
 #include "stream.h"
 
+#define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF) /* which no sequence number is: they have at most 31 bits */
+
 /* Fields and checksum of a frame, for both encoder and decoder. */
 
 static inline uint32_t icdgen_envelope_mask(const icd_envelope_field_t *field)

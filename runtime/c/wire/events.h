@@ -22,7 +22,9 @@ typedef enum {
     ICD_EVENT_TIMEOUT,      /**< Client: no reply, or the telecommand was never processed. */
     ICD_EVENT_PACKET,       /**< Client: a packet of a download. */
     ICD_EVENT_LOG,          /**< Client: an unsolicited log, with its id. */
-    ICD_EVENT_STRAY         /**< Client: what nobody waits for, with its id (I2C: what was read). */
+    ICD_EVENT_STRAY,        /**< Client: what nobody waits for, with its id (I2C: what was read). */
+    ICD_EVENT_CHECKSUM,     /**< Client: the checksum of a frame is wrong; it is waited on. */
+    ICD_EVENT_UNCHECKED     /**< Client: a frame has no checksum, though it must; it is waited on. */
 } icd_event_kind_t;
 
 /** Kinds of messages on the UART. */

@@ -111,6 +111,10 @@ typedef struct {
     uint8_t telecommand_buses;
     /** Where telemetry has it; bit n: on bus n of icd_bus_t. */
     uint8_t telemetry_buses;
+    /** Where telecommands are not taken without it; bit n: on bus n of icd_bus_t. */
+    uint8_t telecommand_always;
+    /** Where telemetry never is without it; bit n: on bus n of icd_bus_t. */
+    uint8_t telemetry_always;
     /** Bytes that it adds to a message. */
     uint8_t bytes;
     icd_crc_form_t crc;

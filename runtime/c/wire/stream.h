@@ -32,6 +32,36 @@ ICDGEN_API icd_status_t icd_stream_encode(
     size_t capacity,
     size_t *written);
 
+/** Sends messages of a direction, and counts them. */
+typedef struct {
+    const icd_link_t *link;
+    icd_direction_t direction;
+    icd_envelope_values_t values; /**< Those of the ICD, until others are set; the sequence is the first one. */
+    uint32_t *sequences;
+    size_t sequence_count;
+} icd_stream_sender_t;
+
+/**
+ * `sequences` are NODE_SEQUENCES numbers, the last ones that were sent; with less, some messages are not counted.
+ * ICD_ERROR_UNSUPPORTED if the ICD describes no envelope.
+ */
+ICDGEN_API icd_status_t icd_stream_sender_init(
+    icd_stream_sender_t *sender,
+    const icd_link_t *link,
+    icd_direction_t direction,
+    uint32_t *sequences,
+    size_t sequence_count);
+
+/** A message as it is sent, with the next sequence number, as icd_stream_encode(). */
+ICDGEN_API icd_status_t icd_stream_send(
+    icd_stream_sender_t *sender,
+    uint32_t id,
+    const uint8_t *data,
+    size_t length,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written);
+
 typedef enum {
     ICD_STREAM_MESSAGE = 0,
     ICD_STREAM_GAP = 1,        /**< Before this message `missing` others did not come; 0: it came again. */

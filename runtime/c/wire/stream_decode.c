@@ -4,8 +4,6 @@
 #include "envelope.h"
 #include "stream_encode.c"
 
-#define ICDGEN_NO_SEQUENCE UINT32_C(0xFFFFFFFF)
-
 /* What a frame turned out to be: taken; one beyond doubt, though of no use; perhaps none at all. */
 typedef enum { ICDGEN_TAKEN, ICDGEN_PROVEN, ICDGEN_DOUBTFUL } icdgen_verdict_t;
 
@@ -66,7 +64,7 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
     decoder->form = link->stream;
     decoder->direction = direction;
     decoder->buffer = buffer;
-    decoder->capacity = capacity < link->longest ? capacity : (size_t)link->longest;
+    decoder->capacity = capacity < link->longest ? capacity : ICDGEN_SIZE(link->longest);
     decoder->sequences = sequences;
     decoder->sequence_count = sequence_count;
     for (size_t i = 0; i < sequence_count; ++i) {

@@ -202,4 +202,54 @@ ICDGEN_API icd_status_t icd_stream_encode(
     return line.full ? ICD_ERROR_LENGTH : ICD_OK;
 }
 
+ICDGEN_API icd_status_t icd_stream_sender_init(
+    icd_stream_sender_t *sender,
+    const icd_link_t *link,
+    icd_direction_t direction,
+    uint32_t *sequences,
+    size_t sequence_count)
+{
+    (void)memset(sender, 0, sizeof *sender);
+    sender->link = link;
+    sender->direction = direction;
+    sender->values = icd_envelope_values(link, direction);
+    sender->sequences = sequences;
+    sender->sequence_count = sequence_count;
+    for (size_t i = 0; i < sequence_count; ++i) {
+        sequences[i] = ICDGEN_NO_SEQUENCE;
+    }
+    return link->stream != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED;
+}
+
+ICDGEN_API icd_status_t icd_stream_send(
+    icd_stream_sender_t *sender,
+    uint32_t id,
+    const uint8_t *data,
+    size_t length,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
+{
+    const icd_stream_form_t *const form = sender->link->stream;
+    icd_envelope_values_t values = sender->values;
+    size_t place = 0;
+    icd_status_t status;
+    if (form == NULL) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    const icd_stream_row_t *const row = icdgen_stream_row(form, sender->direction, id);
+    const icd_envelope_field_t *const field = icdgen_envelope_field(form, ICD_ENVELOPE_SEQUENCE);
+    if (row != NULL && form->per_id) {
+        place = ICDGEN_SIZE(row - form->rows[sender->direction]);
+    }
+    if (field != NULL && place < sender->sequence_count && sender->sequences[place] != ICDGEN_NO_SEQUENCE) {
+        values.of[ICD_ENVELOPE_SEQUENCE] = (sender->sequences[place] + 1u) & icdgen_envelope_mask(field);
+    }
+    status = icd_stream_encode(sender->link, sender->direction, id, data, length, &values, buffer, capacity, written);
+    if (status == ICD_OK && place < sender->sequence_count) {
+        sender->sequences[place] = values.of[ICD_ENVELOPE_SEQUENCE];
+    }
+    return status;
+}
+
 #endif /* ICDGEN_WIRE_STREAM_ENCODE_C */

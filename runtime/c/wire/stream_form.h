@@ -67,6 +67,8 @@ typedef struct {
     uint16_t most;
     bool cuts_zeros; /**< Whether zeros at the end of the data are not sent, but for one byte. */
     uint8_t seed;
+    bool is_answered; /**< Whether it is a telecommand that is answered with telemetry, that of the id `reply`. */
+    uint32_t reply;
 } icd_stream_row_t;
 
 /** How messages are put into a stream of bytes, or into packets. */

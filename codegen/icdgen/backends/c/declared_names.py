@@ -17,7 +17,16 @@ FILES = "C header files"
 
 _STATUS = ("LENGTH", "RANGE", "UNKNOWN_ID", "UNSUPPORTED", "CHECKSUM", "BUSY")
 _SUPPORT = ("ICDGEN_SHARED", "icd_status_t", "ICD_OK", *(f"ICD_ERROR_{end}" for end in _STATUS))
-_SIZES = ("LONGEST", "CAN_SLOT_BYTES", "CLIENT_BYTES", "LOG_BYTES", "BLOCK_BYTES", "BLOCK_BITMAP_BYTES")
+_SIZES = (
+    "LONGEST",
+    "CAN_SLOT_BYTES",
+    "CLIENT_BYTES",
+    "LOG_BYTES",
+    "BLOCK_BYTES",
+    "BLOCK_BITMAP_BYTES",
+    "LINE_BYTES",
+    "SEQUENCES",
+)
 _BUSES = ("uart", "i2c", "can")
 
 

@@ -295,7 +295,8 @@ class _Tables:
     @staticmethod
     def enveloped(row: StreamRow) -> Row:
         """A message in an envelope."""
-        numbers = f"{row.id:#x}u, {row.least}u, {row.most}u, {boolean(row.cuts_zeros)}, {row.seed}u"
+        numbers = f"{row.id:#x}u, {row.least}u, {row.most}u, {boolean(row.cuts_zeros)}, {row.seed}u, "
+        numbers += f"{boolean(row.reply is not None)}, {row.reply or 0:#x}u"
         return Row(f"{{{numbers}}}", plain(row.name))
 
     def log_mask(self) -> str:

@@ -104,7 +104,8 @@ def _framing(known: Facts) -> list[Box]:
     if form is None:
         return []
     pieces = [(f"{form.escape:02X}", "escape", 1), (f"{form.start:02X}", "start", 1), ("id", "", 1.4), ("data", "", 4)]
-    pieces += [("CRC", "optional", 1.4)] if known.checksum and "uart" in known.checksum.telecommand_buses else []
+    if known.checksum and "uart" in known.checksum.telecommand_buses:
+        pieces.append(("CRC", "" if "uart" in known.checksum.telecommand_always else "optional", 1.4))
     pieces += [(f"{form.escape:02X}", "escape", 1), (f"{form.end:02X}", "end", 1)]
     return _row([(text, about, share, "") for text, about, share in pieces])
 

@@ -38,6 +38,10 @@ def _field(one: EnvelopeField) -> Call:
 
 def _rows(rows: Iterable[StreamRow]) -> tuple[Call, ...]:
     return tuple(
-        Call("link.StreamRow", (row.id, row.least, row.most, row.cuts_zeros, row.seed), {}, is_flat=True)
+        Call("link.StreamRow", (row.id, row.least, row.most, row.cuts_zeros, row.seed, *_reply(row)), {}, is_flat=True)
         for row in rows
     )
+
+
+def _reply(row: StreamRow) -> tuple[int, ...]:
+    return () if row.reply is None else (row.reply,)

@@ -67,4 +67,5 @@ def _rows(found: Iterable[StreamRow]) -> Brackets:
 
 def _row(row: StreamRow) -> Brackets:
     sizes = {"least": row.least, "most": row.most, "cuts_zeros": row.cuts_zeros}
-    return flat("StreamRow", id=row.id, **sizes, seed=row.seed)
+    reply = None if row.reply is None else integer(row.reply)
+    return flat("StreamRow", id=row.id, **sizes, seed=row.seed, reply=some(reply))

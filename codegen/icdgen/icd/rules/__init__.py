@@ -26,6 +26,7 @@ from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its r
     limits,
     loggable,
     protocol,
+    protocol_heeded,
     protocol_limits,
     protocol_meaning,
     protocol_names,

@@ -11,6 +11,7 @@ from icdgen.icd.rules.context import Context, mappings, section_of
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, listing, quote
+from icdgen.suggest import close_to
 
 PARTS = ("header", "trailer")
 FIXED = ("sync", "constant")
@@ -19,7 +20,7 @@ MOST_SEQUENCE_BITS = 31
 MOST_SPAN = 4  # bytes that a field may have part in
 DATA = "data"
 ONLY_WITH = {"counts": "length", "plus": "length", "per": "sequence", "checksum": "checksum"}  # keys of one role
-BESIDE = ("stream", "checksums", "uart", "boot")  # what else may be said of such a link
+BESIDE = ("stream", "checksums", "client", "uart", "boot")  # what else may be said of such a link
 BITS_OF = {"fletcher": 16, "fletcher_255": 16, "xor": 8}
 
 
@@ -62,6 +63,11 @@ def described_once(ctx: Context) -> Iterator[Fault]:
                 message = f"`{key}` is of another kind of link than `stream`, and nothing would heed it"
                 yield Fault(protocol, protocol.key_at(key), message, f"remove `{key}` or `stream`")
         uart = protocol.get("uart")
+        client = protocol.get("client")
+        for key in ("poll_interval_ms", "poll_timeout_ms"):
+            if isinstance(client, Map) and key in client:
+                message = f"nothing is polled where messages travel in envelopes, and nothing would heed `{key}`"
+                yield Fault(client, client.key_at(key), message, "remove it")
         for key in ("framing", "acknowledge"):
             if isinstance(uart, Map) and key in uart:
                 message = f"`uart: {key}` and `stream` describe how messages are delimited, each in another way"
@@ -309,3 +315,21 @@ def alike_under_an_id(ctx: Context) -> Iterator[Fault]:
                     if one.name in known and other.name in known and known[one.name] != known[other.name]:
                         message = f"{quote(one.name)} has another seed than {quote(other.name)}, which has the same id"
                         yield Fault(known, known.at(one.name), message, "give both the same seed, or other ids")
+
+
+@rule("ICD176")
+def replies_that_can_come(ctx: Context) -> Iterator[Fault]:
+    for link in links(ctx):
+        replies = link.section.get("replies")
+        if not isinstance(replies, Map):
+            continue
+        for sent, came in replies.items():
+            for direction, name, place in (
+                ("telecommand", sent, replies.key_at(sent)),
+                ("telemetry", came, replies.at(sent)),
+            ):
+                names = {one.name for _, one in _ids(ctx, link.node, direction)}
+                if isinstance(name, str) and name not in names:
+                    message = f"there is no {direction} {quote(name)}"
+                    help = f"did you mean {quote(near)}?" if (near := close_to(name, names)) else "correct the name"
+                    yield Fault(replies, place, message, help)

@@ -57,6 +57,10 @@ def scripts(known: Facts) -> Requests:
         if known.checksum and UART in known.checksum.telecommand_buses:
             for why, rows in _checked(known, sample):
                 yield f"UART with checksum: {why}", _op(UART, rows, crc=True)
+        if known.checksum and UART in known.checksum.telemetry_buses:
+            for why, rows in _checked_frames(known, sample):
+                yield f"UART, {why}", _op(UART, rows)
+                yield f"UART with checksum, {why}", _op(UART, rows, crc=True)
     if known.polled and known.i2c_address is not None:
         for checked in (False, True) if known.checksum else (False,):
             for why, rows in _i2c(known, sample, checked):
@@ -169,6 +173,19 @@ def _checked(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]
     good = {"receive": _acknowledge(known, s.plain)}
     yield "sent again after a wrong checksum", [s.ask(0, s.plain), {"at": 1, **bad}, {"at": 2, **good}]
     yield "always a wrong checksum", [s.ask(0, s.plain), *({"at": at, **bad} for at in range(1, 5))]
+
+
+def _checked_frames(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+    id, data = s.frame.telemetry_id or 0, s.source.randbytes(s.frame.length)
+    right, bare = i2c.telecommand(known, id, data, True), i2c.telecommand(known, id, data, False)
+    wrong = right[:-1] + bytes([right[-1] ^ 1])
+    good, bad, none = ({"receive": _line(known, one)} for one in (right, wrong, bare))
+    yield "a frame with its checksum", [s.request(0, s.frame), {"at": 1, **good}]
+    yield "a wrong checksum, then the right one", [s.request(0, s.frame), {"at": 1, **bad}, {"at": 2, **good}]
+    yield "a frame without its checksum, then with it", [s.request(0, s.frame), {"at": 1, **none}, {"at": 2, **good}]
+    yield "always a wrong checksum", [s.request(0, s.frame), *({"at": at, **bad} for at in (1, 101, 201)), {"at": 301}]
+    longer = {"receive": _line(known, bare + bytes(known.checksum.bytes + 1 if known.checksum else 1))}
+    yield "more than a checksum behind a frame", [s.request(0, s.frame), {"at": 1, **longer}, {"at": 2, **good}]
 
 
 def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dict[str, Any]]]]:

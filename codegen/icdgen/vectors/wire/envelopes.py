@@ -152,11 +152,13 @@ def _strangers(
 
     place = form.of("id")
     id = next((one for one in range(1, 1000) if all(one != row.id for row in form.rows(direction))), 0)
-    others = [("of an unknown id", StreamRow(id, 0, row.most, False, 0, ""))] if place and id <= place.mask else []
+    others = (
+        [("of an unknown id", StreamRow(id, 0, row.most, False, 0, None, ""))] if place and id <= place.mask else []
+    )
     if form.longest_data > row.most:
-        others.append(("that is too long by one", StreamRow(row.id, 0, row.most + 1, False, row.seed, "")))
+        others.append(("that is too long by one", StreamRow(row.id, 0, row.most + 1, False, row.seed, None, "")))
     if row.most:
-        others.append(("that is too short by one", StreamRow(row.id, 0, row.most - 1, False, row.seed, "")))
+        others.append(("that is too short by one", StreamRow(row.id, 0, row.most - 1, False, row.seed, None, "")))
     for why, one in others:
         strange = replace(form, telecommands=(one,), telemetry=(one,))
         data = b"\x2a" * one.most

@@ -311,6 +311,8 @@ LINK: link.Link[_Node] = link.Link(
         #   tell the checksum from the fill.
         telecommand_buses=("uart", "i2c"),
         telemetry_buses=("i2c",),
+        telecommand_always=(),
+        telemetry_always=(),
         bytes=1,
         crc=link.CrcForm(
             width=8,

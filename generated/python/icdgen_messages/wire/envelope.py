@@ -65,6 +65,8 @@ class StreamRow(NamedTuple):
     cuts_zeros: bool
     """Whether zeros at the end of the data are not sent, but for one byte."""
     seed: int
+    reply: Optional[int] = None
+    """Of a telecommand: the id of the telemetry that it is answered with."""
 
 
 class Stream(NamedTuple):

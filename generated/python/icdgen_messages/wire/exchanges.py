@@ -4,15 +4,21 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator, Mapping
 from typing import Any, Generic, Literal, Optional, TypeVar, Union, cast
 
-from .._hints import N
+from .._base import Message
+from .._errors import IcdError
+from .._hints import KindOf, N, SpokenBy
 from .client import Client, Request
+from .envelope_client import EnvelopeClient
+from .errors import UnsupportedError
 from .events import (
     AnyDone,
+    Arrived,
     Done,
     Event,
+    Malformed,
     Outcome,
     OutcomeOf,
     R_co,
@@ -20,8 +26,10 @@ from .events import (
     Timeout,
 )
 from .failures import FailedError, RefusedError, ReplyTimeoutError
+from .link import Link, Settings
 from .procedures import Procedure
 
+AnyClient = Union[Client[N], EnvelopeClient[N]]
 P = TypeVar("P", bound=Procedure)
 T = TypeVar("T")
 Step = Union[Literal["send"], float, None]
@@ -33,12 +41,30 @@ Progress = Callable[[int, Optional[int]], object]
 _LONGEST_WAIT = 1000.0  # ms in one go
 
 
+def client_of(
+    link: Link[N],
+    crc: bool,
+    settings: Optional[Settings],
+    values: Optional[Mapping[str, int]],
+) -> AnyClient[N]:
+    """The client for a stream of bytes. Raises `UnsupportedError`."""
+    if link.stream:
+        if crc:
+            raise UnsupportedError(
+                "the envelope has the checksum, and leaves no choice"
+            )
+        return EnvelopeClient(link, settings, values)
+    if values:
+        raise UnsupportedError("only envelopes have values to choose")
+    return Client(link, "uart", crc, settings=settings)
+
+
 class Exchanges(Generic[N]):
     """A client, a clock, and whom to tell what comes unasked."""
 
     def __init__(
         self,
-        client: Client[N],
+        client: AnyClient[N],
         on_event: Optional[Callable[[Event], object]] = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
@@ -63,6 +89,30 @@ class Exchanges(Generic[N]):
             if not isinstance(event, (Done, Refused, Timeout)):
                 self._tell(event)
         return events
+
+    def _answered(
+        self, message: SpokenBy[N], reply: KindOf[N, Message], repeat: bool
+    ) -> Exchange[Outcome]:
+        """A telecommand, to the telemetry that answers it."""
+        if isinstance(self.client, Client):
+            what = "telecommands are acknowledged, and answered with nothing"
+            raise UnsupportedError(what)
+        return self._exchange(self.client.send, message, repeat, reply)
+
+    def _messages_in(
+        self, events: list[Event], kinds: tuple[KindOf[N, Message], ...]
+    ) -> Iterator[Message]:
+        """The messages of these kinds that came unasked; without kinds all."""
+        for event in events:
+            if not isinstance(event, Arrived) or (kinds and event.type not in kinds):
+                continue
+            try:
+                message = event.message
+            except IcdError:  # what the frame counts does not fit its length
+                self._tell(Malformed(event.id))
+                continue
+            if message is not None:
+                yield message
 
     def _exchange(
         self, start: Callable[..., list[Event]], *arguments: Any

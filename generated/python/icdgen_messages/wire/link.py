@@ -100,6 +100,10 @@ class Checksum(NamedTuple):
     """Where telecommands have it."""
     telemetry_buses: tuple[str, ...]
     """Where telemetry has it."""
+    telecommand_always: tuple[str, ...]
+    """Where telecommands are not taken without it."""
+    telemetry_always: tuple[str, ...]
+    """Where telemetry never is without it."""
     bytes: int
     """Bytes that it adds to a message."""
     crc: CrcForm

@@ -21,7 +21,8 @@ MessageClassOf = type[M]
 Found = Literal[
     "message", "gap", "checksum", "length", "unknown_id", "overrun", "framing"
 ]
-_GIVEN = ("sequence", "source", "destination", "type", "flags", "time")
+GIVEN = ("sequence", "source", "destination", "type", "flags", "time")
+"""Roles of the fields whose values the sender chooses."""
 
 
 class StreamEvent(NamedTuple):
@@ -84,7 +85,7 @@ def stream_encode(
     for field in form.fields:
         if field.role != "checksum":
             value = made.get(field.role, field.values[direction == "telemetry"])
-            if field.role in _GIVEN:
+            if field.role in GIVEN:
                 value = values.get(field.role, value)
             _put(field, tail if field.in_trailer else head, value)
     place = form.of("checksum")
@@ -145,7 +146,7 @@ class StreamDecoder:
             for field in form.fields
             if field.role == "constant"
         ]
-        self._values = [field for field in form.fields if field.role in _GIVEN]
+        self._values = [field for field in form.fields if field.role in GIVEN]
         self._id, self._length, self._sequence, self._checksum = map(
             form.of, ("id", "length", "sequence", "checksum")
         )

@@ -55,6 +55,16 @@ pub enum Event<'a> {
         /// The id.
         id: u32,
     },
+    /// The checksum of a frame is wrong; it is waited on.
+    Checksum {
+        /// The id.
+        id: u32,
+    },
+    /// A frame has no checksum, though it must; it is waited on.
+    Unchecked {
+        /// The id.
+        id: u32,
+    },
     /// A packet of a file.
     Packet {
         /// Its number.

@@ -10,6 +10,7 @@ from __future__ import annotations
 from importlib import import_module
 
 __all__ = [
+    "Arrived",
     "AsyncSession",
     "BusyError",
     "CanEvent",
@@ -22,12 +23,14 @@ __all__ = [
     "Done",
     "DosTime",
     "Download",
+    "EnvelopeClient",
     "Erase",
     "Event",
     "FailedError",
     "FileEntry",
     "FileList",
     "Format",
+    "Gap",
     "HoleMap",
     "I2cTransfer",
     "Identity",
@@ -50,6 +53,7 @@ __all__ = [
     "RefusedError",
     "ReplyTimeoutError",
     "Request",
+    "Sender",
     "Session",
     "Settings",
     "Stray",
@@ -92,12 +96,15 @@ if TYPE_CHECKING:
     from .crc import Crc as Crc
     from .crc import crc8 as crc8
     from .crc import crc16 as crc16
+    from .envelope_client import EnvelopeClient as EnvelopeClient
     from .errors import BusyError as BusyError
     from .errors import ChecksumError as ChecksumError
     from .errors import TooLongError as TooLongError
     from .errors import UnsupportedError as UnsupportedError
+    from .events import Arrived as Arrived
     from .events import Done as Done
     from .events import Event as Event
+    from .events import Gap as Gap
     from .events import LineError as LineError
     from .events import Log as Log
     from .events import Malformed as Malformed
@@ -131,6 +138,7 @@ if TYPE_CHECKING:
     from .procedures import Procedure as Procedure
     from .programs import ProgramCopy as ProgramCopy
     from .programs import ProgramInformation as ProgramInformation
+    from .sender import Sender as Sender
     from .session import Session as Session
     from .stream import StreamDecoder as StreamDecoder
     from .stream import StreamEvent as StreamEvent
@@ -154,6 +162,7 @@ _HOMES = {
     "can": ("CanEvent", "CanJoiner", "CanMessage", "CanPacket", "can_split"),
     "client": ("Client", "Request"),
     "crc": ("Crc", "crc16", "crc8"),
+    "envelope_client": ("EnvelopeClient",),
     "errors": (
         "BusyError",
         "ChecksumError",
@@ -161,8 +170,10 @@ _HOMES = {
         "UnsupportedError",
     ),
     "events": (
+        "Arrived",
         "Done",
         "Event",
+        "Gap",
         "LineError",
         "Log",
         "Malformed",
@@ -181,6 +192,7 @@ _HOMES = {
     "ports": ("serial_port", "socket_port"),
     "procedures": ("Procedure",),
     "programs": ("ProgramCopy", "ProgramInformation"),
+    "sender": ("Sender",),
     "session": ("Session",),
     "stream": ("StreamDecoder", "StreamEvent", "stream_encode"),
     "times": ("DosTime", "dos_time_pack", "dos_time_unpack"),

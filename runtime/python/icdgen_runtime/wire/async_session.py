@@ -4,13 +4,23 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Callable
-from typing import Optional
+from collections.abc import AsyncIterator, Callable, Mapping
+from typing import Optional, overload
 
+from .._base import Message
 from .._hints import KindOf, M, N, SpokenBy, class_of, message_of
-from .client import Client, Request
+from .client import Request
 from .events import Event, Outcome, OutcomeOf
-from .exchanges import Exchange, Exchanges, P, Progress, T, executed, outcome_of
+from .exchanges import (
+    Exchange,
+    Exchanges,
+    P,
+    Progress,
+    T,
+    client_of,
+    executed,
+    outcome_of,
+)
 from .link import Link, Settings
 
 _PIECE = 4096  # bytes that are read at a time
@@ -23,7 +33,7 @@ class AsyncSession(Exchanges[N]):
     (pyserial-asyncio). What they raise ends the request, as does its cancellation, and
     `ConnectionResetError` tells that the other side closed. Requests of several tasks
     wait for each other. ``clock`` gives seconds; ``on_event`` is told of what comes
-    unasked.
+    unasked. ``values``: see `Session`.
     """
 
     def __init__(
@@ -35,8 +45,9 @@ class AsyncSession(Exchanges[N]):
         settings: Optional[Settings] = None,
         on_event: Optional[Callable[[Event], object]] = None,
         clock: Callable[[], float] = time.monotonic,
+        values: Optional[Mapping[str, int]] = None,
     ) -> None:
-        super().__init__(Client(link, "uart", crc, settings=settings), on_event, clock)
+        super().__init__(client_of(link, crc, settings, values), on_event, clock)
         self._reader, self._writer = reader, writer
         self._turn: Optional[asyncio.Lock] = None
         self._read_before: Optional[asyncio.Future[bytes]] = None
@@ -63,6 +74,43 @@ class AsyncSession(Exchanges[N]):
         """Sends a telecommand or a setting; raises like `get` and `Client.send`."""
         outcome = await self._run(self._exchange(self.client.send, message, repeat))
         executed(outcome, message_of(message).NAME)
+
+    async def answer(
+        self, message: SpokenBy[N], reply: KindOf[N, M], repeat: bool = False
+    ) -> M:
+        """Sends a telecommand in an envelope; the telemetry that it is answered with.
+
+        Raises like `get` and `EnvelopeClient.send`.
+        """
+        outcome = await self._run(self._answered(message, reply, repeat))
+        name = message_of(message).NAME
+        return class_of(reply).from_bytes(executed(outcome, name).data)
+
+    @overload
+    def messages(
+        self, *, seconds: Optional[float] = None
+    ) -> AsyncIterator[Message]: ...
+
+    @overload
+    def messages(
+        self,
+        kind: KindOf[N, M],
+        /,
+        *others: KindOf[N, M],
+        seconds: Optional[float] = None,
+    ) -> AsyncIterator[M]: ...
+
+    async def messages(
+        self, *kinds: KindOf[N, Message], seconds: Optional[float] = None
+    ) -> AsyncIterator[Message]:
+        """The messages that come unasked in envelopes, for ever or for so many seconds.
+
+        Without ``kinds`` all of them. What else happens is told to ``on_event``.
+        """
+        end = None if seconds is None else self._now() + 1000 * seconds
+        while end is None or self._now() < end:
+            for message in self._messages_in(await self.wait(end), kinds):
+                yield message
 
     async def start(self, request: Request) -> Outcome:
         """Any request; its outcome. Raises what `Client.start` does."""
@@ -126,7 +174,6 @@ class AsyncSession(Exchanges[N]):
         return reading.result()
 
     async def _flush(self) -> None:
-        data = self.client.output()
-        if data:
+        while data := self.client.output():
             self._writer.write(data)
             await self._writer.drain()

@@ -8,7 +8,7 @@ from .._base import Message
 from .._errors import IcdError, LengthError, UnknownIdError
 from .._hints import Buffer, KindOf, N, SpokenBy, class_of, message_of
 from .can import CanEvent, CanJoiner, CanMessage, CanPacket, can_split
-from .errors import BusyError, need
+from .errors import BusyError, ChecksumError, need
 from .events import (
     Done,
     Event,
@@ -46,7 +46,7 @@ class Client(Generic[N]):
     `received`, `packet` or `transferred`, and `tick` at the latest at `deadline`. What
     is to be sent is taken from `output`, `packets` or `transfers`.
 
-    ``crc``: with checksums, where the ICD has them for the bus. ``address``: ours, on
+    ``crc``: with checksums, where the ICD leaves the choice for the bus. ``address``: ours, on
     CAN. Raises `UnsupportedError` for a bus that the ICD does not describe.
     """
 
@@ -60,9 +60,11 @@ class Client(Generic[N]):
     ) -> None:
         self.link, self.bus = link, bus
         self.settings = settings or link.settings
-        form = link.checksum if crc else None
-        self._checks_sent = form is not None and bus in form.telecommand_buses
-        self._checks_frames = form is not None and bus in form.telemetry_buses
+        self._checks_sent = self._checks_frames = False
+        if form := link.checksum:
+            sent = form.telecommand_buses if crc else form.telecommand_always
+            frames = form.telemetry_buses if crc else form.telemetry_always
+            self._checks_sent, self._checks_frames = bus in sent, bus in frames
         self._address = address
         self._decoder: Optional[UartDecoder] = None
         self._joiner: Optional[CanJoiner] = None
@@ -358,9 +360,18 @@ class Client(Generic[N]):
         return [Stray(bytes((message.id,)) + message.data)]
 
     def _replied(self, now: float, frame: bytes) -> list[Event]:
-        id = self._asked.id
-        if len(frame) != self.link.frames[id]:
+        id, form = self._asked.id, self.link.checksum
+        length = self.link.frames[id]
+        may_be_checked = form is not None and self.bus in form.telemetry_buses
+        if form and may_be_checked and len(frame) == length + form.bytes:
+            try:
+                return self._done(now, i2c_reply(self.link, id, frame, True))
+            except ChecksumError:
+                return [LineError("checksum", id)]
+        if len(frame) != length:
             return [Malformed(id)]
+        if self._checks_frames:
+            return [LineError("unchecked", id)]
         return self._done(now, frame)
 
     def _done(self, now: float, frame: bytes = b"") -> list[Event]:

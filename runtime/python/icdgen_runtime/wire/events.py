@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Generic, Optional, TypeVar, Union, cast
 
@@ -93,13 +94,44 @@ class Stray:
 
 @dataclass(frozen=True)
 class LineError:
-    """What the UART decoder or the CAN joiner found wrong; on CAN, with the id."""
+    """What a decoder or the CAN joiner found wrong; on CAN and in envelopes, with the id.
+
+    ``checksum``: that of a frame is wrong; ``unchecked``: it has none, though it must. With
+    the id; the frame is waited on. In envelopes, `StreamEvent` has the others.
+    """
 
     error: str
     id: Optional[int] = None
 
 
+@dataclass(frozen=True)
+class Arrived:
+    """Telemetry that came unasked in an envelope, with what its sender chose of that."""
+
+    id: int
+    data: bytes
+    values: Mapping[str, int]
+    type: Optional[MessageClass] = None
+
+    @property
+    def message(self) -> Optional[Message]:
+        """The message; None if it is none of those that share its id."""
+        return self.type.from_bytes(self.data) if self.type else None
+
+    def of(self, message: MessageClassOf[M]) -> Optional[M]:
+        """The message, if it is one of these."""
+        return message.from_bytes(self.data) if self.type is message else None
+
+
+@dataclass(frozen=True)
+class Gap:
+    """In envelopes: ``missing`` messages did not come before the next; none: one came again."""
+
+    id: Optional[int]
+    missing: int
+
+
 AnyDone = Done[Optional[Message]]
 Outcome = Union[AnyDone, Refused, Timeout]
 OutcomeOf = Union[Done[R_co], Refused, Timeout]
-Event = Union[Outcome, Malformed, Packet, Log, Stray, LineError]
+Event = Union[Outcome, Malformed, Packet, Log, Stray, LineError, Arrived, Gap]

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import socket
 from collections.abc import Callable
-from typing import Optional, Protocol
+from typing import Any, Optional, Protocol, Union
 
-_PIECE = 4096  # bytes that are read at a time
+_PIECE = 65536  # bytes that are read at a time: a datagram has no more
+
+Write = Callable[[bytes], object]
+Read = Callable[[float], bytes]
 
 
 class SerialPort(Protocol):
@@ -25,13 +28,28 @@ class SerialPort(Protocol):
     def write(self, data: bytes, /) -> object: ...
 
 
-def serial_port(
-    port: SerialPort,
-) -> tuple[Callable[[bytes], object], Callable[[float], bytes]]:
-    """The ``write`` and ``read`` of a `Session` over a serial port of pyserial.
+class CanBus(Protocol):
+    """What is asked of a CAN bus: what `can.Bus` of python-can has."""
 
-    ``Session(LINK, *serial_port(serial.Serial("/dev/ttyUSB0", 921600)))``. The time-out
-    of the port is set for each read. Errors are those of the port.
+    def send(self, msg: Any, /) -> None: ...
+
+    def recv(self, timeout: Optional[float] = ..., /) -> Any: ...
+
+
+class I2cBus(Protocol):
+    """What is asked of an I2C bus: what `smbus2.SMBus` has."""
+
+    def i2c_rdwr(self, *i2c_msgs: Any) -> None: ...
+
+
+Port = Union[SerialPort, socket.socket, CanBus, I2cBus]
+"""A port that a `Session` can be given as it is."""
+
+
+def serial_port(port: SerialPort) -> tuple[Write, Read]:
+    """The ``write`` and ``read`` of a serial port of pyserial.
+
+    The time-out of the port is set for each read. Errors are those of the port.
     """
 
     def read(seconds: float) -> bytes:
@@ -42,28 +60,26 @@ def serial_port(
     return port.write, read
 
 
-def socket_port(
-    port: socket.socket,
-) -> tuple[Callable[[bytes], object], Callable[[float], bytes]]:
-    """The ``write`` and ``read`` of a `Session` over a connected TCP socket.
+def socket_port(port: socket.socket) -> tuple[Write, Read]:
+    """The ``write`` and ``read`` of a connected socket, be it of TCP or of UDP.
 
-    ``Session(LINK, *socket_port(socket.create_connection(("127.0.0.1", 4000))))``. Errors
-    are those of the socket; `ConnectionResetError` tells that the other side closed.
+    Errors are those of the socket; `ConnectionResetError` tells that the other side of a
+    TCP connection closed.
     """
+    is_stream = port.type == socket.SOCK_STREAM
 
     def read(seconds: float) -> bytes:
         before = port.gettimeout()
-        port.settimeout(
-            max(seconds, 0.001)
-        )  # 0 would be an error where nothing is there
+        # 0 would be an error where nothing is there.
+        port.settimeout(max(seconds, 0.001))
         try:
             data = port.recv(_PIECE)
         except socket.timeout:  # which is `TimeoutError` only since 3.10
             return b""
         finally:
             port.settimeout(before)
-        if not data:
+        if not data and is_stream:
             raise ConnectionResetError("the other side closed the connection")
         return data
 
-    return port.sendall, read
+    return (port.sendall if is_stream else port.send), read

@@ -3,14 +3,27 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from typing import Optional
+from collections.abc import Callable, Iterator, Mapping
+from typing import Optional, Union, overload
 
+from .._base import Message
 from .._hints import KindOf, M, N, SpokenBy, class_of, message_of
+from .carriers import carrier_of
 from .client import Client, Request
 from .events import Event, Outcome, OutcomeOf
-from .exchanges import Exchange, Exchanges, P, Progress, T, executed, outcome_of
+from .exchanges import (
+    AnyClient,
+    Exchange,
+    Exchanges,
+    P,
+    Progress,
+    T,
+    client_of,
+    executed,
+    outcome_of,
+)
 from .link import Link, Settings
+from .ports import Port, Read, Write
 
 
 class BusSession(Exchanges[N]):
@@ -38,6 +51,40 @@ class BusSession(Exchanges[N]):
         """Sends a telecommand or a setting; raises like `get` and `Client.send`."""
         outcome = self._run(self._exchange(self.client.send, message, repeat))
         executed(outcome, message_of(message).NAME)
+
+    def answer(
+        self, message: SpokenBy[N], reply: KindOf[N, M], repeat: bool = False
+    ) -> M:
+        """Sends a telecommand in an envelope; the telemetry that it is answered with.
+
+        Raises like `get` and `EnvelopeClient.send`.
+        """
+        outcome = self._run(self._answered(message, reply, repeat))
+        name = message_of(message).NAME
+        return class_of(reply).from_bytes(executed(outcome, name).data)
+
+    @overload
+    def messages(self, *, seconds: Optional[float] = None) -> Iterator[Message]: ...
+
+    @overload
+    def messages(
+        self,
+        kind: KindOf[N, M],
+        /,
+        *others: KindOf[N, M],
+        seconds: Optional[float] = None,
+    ) -> Iterator[M]: ...
+
+    def messages(
+        self, *kinds: KindOf[N, Message], seconds: Optional[float] = None
+    ) -> Iterator[Message]:
+        """The messages that come unasked in envelopes, for ever or for so many seconds.
+
+        Without ``kinds`` all of them. What else happens is told to ``on_event``.
+        """
+        end = None if seconds is None else self._now() + 1000 * seconds
+        while end is None or self._now() < end:
+            yield from self._messages_in(self.wait(end), kinds)
 
     def start(self, request: Request) -> Outcome:
         """Any request; its outcome. Raises what `Client.start` does."""
@@ -87,35 +134,42 @@ class BusSession(Exchanges[N]):
 
 
 class Session(BusSession[N]):
-    """Asks, and waits for the outcome, over a UART or whatever carries its bytes.
+    """Asks, and waits for the outcome, over a port.
 
-    The port is yours: ``write(data)`` sends, ``read(seconds)`` returns what has come,
-    after so many seconds at the latest, if need be nothing; `serial_port` makes them of
-    a serial port, `socket_port` of a socket. What they raise ends the request. ``clock`` gives seconds.
-    ``on_event`` is told of what comes unasked, such as logs, and by `run` of refusals
-    with a code that the ICD does not have.
+    The port is yours, open as you want it: a serial port (pyserial), a connected socket of
+    TCP or UDP, a CAN bus (python-can) or an I2C bus (smbus2). Of any other carrier of bytes
+    give two functions: ``write(data)`` sends, ``read(seconds)`` returns what has come, after
+    so many seconds at the latest, if need be nothing. What they raise ends the request.
+    ``address`` is ours, on CAN. ``clock`` gives seconds. ``on_event`` is told of what comes
+    unasked, such as logs, and by `run` of refusals with a code that the ICD does not have.
+
+    Where messages travel in envelopes, ``values`` are those of its fields that the sender
+    chooses, such as ``source``, and `messages` gives what comes. Each ``write`` is one message
+    then, and each ``read`` one packet where nothing but the packet delimits messages.
     """
 
     def __init__(
         self,
         link: Link[N],
-        write: Callable[[bytes], object],
-        read: Callable[[float], bytes],
+        port: Union[Port, Write],
+        read: Optional[Read] = None,
         crc: bool = False,
         settings: Optional[Settings] = None,
         on_event: Optional[Callable[[Event], object]] = None,
         clock: Callable[[], float] = time.monotonic,
+        values: Optional[Mapping[str, int]] = None,
+        address: int = 0,
     ) -> None:
-        super().__init__(Client(link, "uart", crc, settings=settings), on_event, clock)
-        self._write, self._read = write, read
+        self._carrier = carrier_of(link, port, read)
+        client: AnyClient[N]
+        if self._carrier.bus == "uart":
+            client = client_of(link, crc, settings, values)
+        else:
+            client = Client(link, self._carrier.bus, crc, address, settings)
+        super().__init__(client, on_event, clock)
 
     def _flush(self) -> None:
-        data = self.client.output()
-        if data:
-            self._write(data)
+        self._carrier.send(self.client)
 
     def _receive(self, seconds: float) -> list[Event]:
-        data = self._read(seconds)
-        if data:
-            return self.client.received(self._now(), data)
-        return self.client.tick(self._now())
+        return self._carrier.receive(self.client, self._now, seconds)

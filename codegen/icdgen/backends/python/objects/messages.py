@@ -29,17 +29,20 @@ class ModelMessage(Message):
     def from_bytes(cls, data: Buffer) -> ModelMessage:
         """The message in a frame. Raises `LengthError`."""
         description, frame = cls.description, bytes(data)
-        if len(frame) != cls.LENGTH:
-            raise LengthError(cls.NAME, cls.LENGTH, len(frame))
-        raw, made = codec.decode(description.node, description.model, frame), cls()
+        try:
+            raw, made = codec.decode(description.node, description.model, frame), cls()
+        except codec.LengthError:
+            raise LengthError(cls.NAME, cls.LENGTH, len(frame)) from None
         for one in description.fields:
-            setattr(made, one.name, _value(one.model, raw[one.model.name]))
+            known = one.model.name in raw  # a field that is not always there may be absent
+            setattr(made, one.name, _value(one.model, raw[one.model.name]) if known else None)
         return made
 
     def to_bytes(self) -> bytes:
         """The frame, with reserved bits 0. Raises `RangeError`."""
         description = self.description
-        raw = {one.model.name: _raw(one, getattr(self, one.name)) for one in description.fields}
+        held = ((one, getattr(self, one.name)) for one in description.fields)
+        raw = {one.model.name: _raw(one, value) for one, value in held if value is not None}
         return codec.encode(description.node, description.model, raw)
 
 

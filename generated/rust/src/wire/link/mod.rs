@@ -286,6 +286,10 @@ pub struct Checksum {
     pub telecommand_buses: PerBus<bool>,
     /// Where telemetry has it.
     pub telemetry_buses: PerBus<bool>,
+    /// Where telecommands are not taken without it.
+    pub telecommand_always: PerBus<bool>,
+    /// Where telemetry never is without it.
+    pub telemetry_always: PerBus<bool>,
     /// Bytes that it adds to a message.
     pub bytes: usize,
     /// Its parameters.

@@ -331,6 +331,8 @@ pub static LINK: NodeLink<crate::cubeacp::Node> = NodeLink::new(link::Link {
         // the fill.
         telecommand_buses: link::PerBus { uart: true, i2c: true, can: false },
         telemetry_buses: link::PerBus { uart: false, i2c: true, can: false },
+        telecommand_always: link::PerBus { uart: false, i2c: false, can: false },
+        telemetry_always: link::PerBus { uart: false, i2c: false, can: false },
         bytes: 1,
         crc: link::CrcForm {
             width: 8,

@@ -7,7 +7,9 @@ mod decoder;
 mod encoder;
 mod field;
 mod judge;
+mod sender;
 
 pub use self::decoder::Decoder;
 pub use self::encoder::{encode, Values};
 pub use self::judge::Event;
+pub use self::sender::Sender;

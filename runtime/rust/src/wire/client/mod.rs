@@ -138,7 +138,8 @@ impl<T, const N: usize> Client<T, N> {
         })
     }
 
-    /// The same with checksums, where the ICD has them for the bus.
+    /// The same with checksums where the ICD leaves the choice for the bus. Where it demands them, they are
+    /// used in any case.
     #[must_use]
     pub fn with_checksums(mut self) -> Self {
         if let Some(form) = &self.machine.link.checksum {

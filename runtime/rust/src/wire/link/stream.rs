@@ -106,6 +106,8 @@ pub struct StreamRow {
     pub cuts_zeros: bool,
     /// What its checksum covers after all others.
     pub seed: u8,
+    /// Of a telecommand: the id of the telemetry that it is answered with.
+    pub reply: Option<u32>,
 }
 
 /// How messages are put into a stream of bytes, or into packets.

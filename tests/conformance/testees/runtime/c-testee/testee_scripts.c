@@ -11,7 +11,7 @@ static void on_event(void *context, const icd_event_t *event)
     const bool outcome = kind == ICD_EVENT_DONE || kind == ICD_EVENT_REFUSED || kind == ICD_EVENT_TIMEOUT;
     (void)context;
     put_row(event_name(kind));
-    if (outcome || (kind >= ICD_EVENT_DUPLICATE && kind <= ICD_EVENT_UNKNOWN_TYPE)) {
+    if (outcome || (kind >= ICD_EVENT_DUPLICATE && kind <= ICD_EVENT_UNKNOWN_TYPE) || kind >= ICD_EVENT_CHECKSUM) {
         put_number("id", event->id);
     }
     if (outcome) {

@@ -18,7 +18,7 @@ const char *event_name(icd_event_kind_t kind)
     static const char *const names[] = {
         "message",   "unexpected_start", "protocol_error", "overrun",      "empty", "duplicate", "incomplete",
         "malformed", "busy",             "unknown_type",   "done",         "refused", "timeout", "packet",
-        "log",       "stray",
+        "log",       "stray",            "checksum",       "unchecked",
     };
     return names[kind];
 }

@@ -36,11 +36,7 @@ impl<const N: usize> Machine<N> {
                 });
             }
             (uart::Kind::Reply, Some(Direction::Telemetry)) if id == self.id => {
-                return if self.is_whole(data) {
-                    self.done(now, data, on_event);
-                } else {
-                    on_event(Event::Malformed { id: id.into() });
-                };
+                return self.replied(now, data, on_event);
             }
             (uart::Kind::Acknowledge, Some(Direction::Telecommand)) => {
                 match uart::acknowledged(self.link, message) {
@@ -71,9 +67,26 @@ impl<const N: usize> Machine<N> {
         }
     }
 
-    fn is_whole(&self, data: &[u8]) -> bool {
-        let form = self.form(self.direction, self.id);
-        form.map_or(false, |form| form.length == data.len())
+    /// What came as the frame: with a checksum where there may be one, without where there need not.
+    fn replied(&mut self, now: u32, data: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
+        let id = self.id.into();
+        let length = self
+            .form(self.direction, self.id)
+            .map_or(0, |form| form.length);
+        let checksum = self.link.checksum.as_ref();
+        let may_have = checksum.filter(|form| form.telemetry_buses.of(self.bus));
+        if may_have.map_or(false, |form| data.len() == length + form.bytes) {
+            match i2c::reply(self.link, self.id, data, true) {
+                Ok(frame) => self.done(now, frame, on_event),
+                Err(_) => on_event(Event::Checksum { id }),
+            }
+        } else if data.len() != length {
+            on_event(Event::Malformed { id });
+        } else if self.checks_telemetry {
+            on_event(Event::Unchecked { id });
+        } else {
+            self.done(now, data, on_event);
+        }
     }
 
     /// A message on CAN.
@@ -95,10 +108,7 @@ impl<const N: usize> Machine<N> {
             | (Some(Direction::Telemetry), can::Kind::RequestRefusal) => {
                 self.refused(now, None, None, on_event);
             }
-            (Some(Direction::Telemetry), can::Kind::Reply) if self.is_whole(data) => {
-                self.done(now, data, on_event);
-            }
-            (Some(Direction::Telemetry), can::Kind::Reply) => on_event(Event::Malformed { id }),
+            (Some(Direction::Telemetry), can::Kind::Reply) => self.replied(now, data, on_event),
             _ => on_event(Event::Stray { id: Some(id), data }),
         }
     }

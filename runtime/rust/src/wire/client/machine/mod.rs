@@ -48,13 +48,14 @@ pub(super) struct Machine<const N: usize> {
 impl<const N: usize> Machine<N> {
     pub(super) fn new(link: &'static Link, bus: Bus, address: u32) -> Self {
         let poll = link.polled.as_ref().map_or(0, |polled| polled.frame);
+        let checksum = link.checksum.as_ref();
         Self {
             link,
             bus,
             settings: link.client,
             address,
-            checks_telecommands: false,
-            checks_telemetry: false,
+            checks_telecommands: checksum.map_or(false, |form| form.telecommand_always.of(bus)),
+            checks_telemetry: checksum.map_or(false, |form| form.telemetry_always.of(bus)),
             state: State::Idle,
             until: 0,
             give_up: 0,

@@ -145,6 +145,8 @@ fn shown(event: &Event<'_>) -> String {
         Event::Overrun => " overrun".into(),
         Event::Empty => " empty".into(),
         Event::Malformed { id } => of("malformed", id),
+        Event::Checksum { id } => of("checksum", id),
+        Event::Unchecked { id } => of("unchecked", id),
         Event::Duplicate { id } => of("duplicate", id),
         Event::Incomplete { id } => of("incomplete", id),
         Event::Busy { id } => of("busy", id),

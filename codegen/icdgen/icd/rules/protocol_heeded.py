@@ -1,0 +1,163 @@
+"""What the protocol section says and nothing would heed, and parts that a message or field cannot play."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.icd.located import Map, Seq
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Field, Message, Node
+from icdgen.icd.rules.context import Context, mappings, section_of
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.protocol import sections
+from icdgen.icd.rules.protocol_limits import roles_stand_once
+from icdgen.icd.rules.protocol_names import FIELDS
+from icdgen.icd.rules.protocol_sizes import numbers
+from icdgen.icd.rules.rule import rule
+from icdgen.icd.rules.wording import count, quote
+
+BUSES = ("uart", "i2c", "can")
+LEAST_BITS = {"id": 8, "parameter": 2, "type": 2, "counter": 8, "offset": 16, "length": 8, "size": 16, "number": 8,
+    "checksum": 16, "time": 32, "period": 8,
+}  # fmt: skip
+"""Of fields that hold numbers of a procedure."""
+
+AS_BYTES = ("bytes", "mask")  # roles of fields that are taken as they are
+INDEX_ROLES = ("type", "counter", "checksum", "size", "time", "meta")
+ROWS = (("uart", "acknowledge", "data"), ("index_file", "entry"), ("telemetry_log", "header"), ("telemetry_log", "entry"),
+    ("unsolicited_log", "message"))  # fmt: skip
+ROWS_AS_BYTES = ("mask", "meta")
+STEPS = ("reset", "advance", "load", "burst", "initiate", "begin", "packet", "finalize", "request")
+
+
+@rule("ICD115")
+def nothing_is_passed_over(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        yield from _acknowledges(node)
+        yield from _can_data(node)
+        yield from _unsolicited(node)
+
+
+def _acknowledges(node: Node) -> Iterator[Fault]:
+    for bus in ("uart", "i2c"):
+        section = section_of(node, bus, "acknowledge")
+        if section is not None and section.get("required_before_next") is False:
+            message = "a client waits for each acknowledge before it sends the next telecommand, whatever stands here"
+            help = "remove it; a telecommand without acknowledge says so itself: `acknowledge: false`"
+            yield Fault(section, section.at("required_before_next"), message, help)
+
+
+def _can_data(node: Node) -> Iterator[Fault]:
+    for direction, key, what in (
+        (TELECOMMAND, "acknowledge_bytes", "an acknowledge on CAN is taken with no data only"),
+        (TELEMETRY, "request_bytes", "a request on CAN is sent with no data"),
+    ):
+        section = section_of(node, "can", direction)
+        if section is not None and section.get(key, 0) != 0:
+            help = "correct it to 0, or leave `can` out: such a bus cannot be talked to"
+            yield Fault(section, section.at(key), what, help)
+
+
+def _unsolicited(node: Node) -> Iterator[Fault]:
+    log = section_of(node, "unsolicited_log")
+    if log is None:
+        return
+    if log.get("framed") is False:
+        message = "a log that comes unasked is taken out of its framing like any message, whatever stands here"
+        yield Fault(log, log.at("framed"), message, "remove it, or `unsolicited_log`")
+    buses = log.get("buses")
+    for bus, place in buses.placed() if isinstance(buses, Seq) else ():
+        if bus in BUSES and bus != "uart":
+            yield Fault(log, place, "logs that come unasked are looked for on the UART only", f"remove `{bus}`")
+
+
+@rule("ICD116", whole=True)
+def parts_can_be_played(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        messages = {one.name: one for one in ctx.messages_of(node)}
+        for section in sections(node):
+            message = messages.get(section.get("message", "")) if isinstance(section.get("message"), str) else None
+            if message is not None:
+                fields = section.get("fields")
+                owner, keys = (fields, tuple(fields)) if isinstance(fields, Map) else (section, FIELDS)
+                yield from _fields(owner, keys, message)
+        yield from _telecommands_once(node)
+
+
+def _fields(owner: Map, keys: tuple[str, ...], message: Message) -> Iterator[Fault]:
+    """Fields that play two parts, or one that they cannot play."""
+    known = {field.name: field for field in message.owners}
+    seen: dict[str, str] = {}
+    for key in keys:
+        name = owner.get(key)
+        field = known.get(name) if isinstance(name, str) else None
+        if field is None:
+            continue
+        other = seen.setdefault(field.name, key)
+        if other != key:
+            yield Fault(
+                owner, owner.at(key), f"{quote(field.name)} is `{other}` already", "name the field of each part"
+            )
+        elif problem := _unfit(key, field):
+            yield Fault(owner, owner.at(key), f"{quote(field.name)} cannot be `{key}`: {problem}", "name another field")
+
+
+def _unfit(role: str, field: Field) -> str:
+    if role in AS_BYTES:
+        return "" if field.is_bytes else "it is taken as bytes, and is a number"
+    if field.is_bytes or field.type == "float":
+        return f"it is read as a number, and is {field.type}"
+    least = LEAST_BITS.get(role, 1)
+    return f"it has {count(field.bits, 'bit')}, and takes {least} at least" if field.bits < least else ""
+
+
+def _telecommands_once(node: Node) -> Iterator[Fault]:
+    """A telecommand that begins two steps of the transfer of files: its receiver could not tell which."""
+    files = section_of(node, "file_transfer")
+    seen: dict[str, str] = {}
+    for procedure, section in files.items() if files is not None else ():
+        for key in STEPS if isinstance(section, Map) else ():
+            step = section.get(key)
+            name = step.get("message") if isinstance(step, Map) else None
+            if isinstance(step, Map) and isinstance(name, str):
+                other = seen.setdefault(name, f"{procedure}.{key}")
+                if other != f"{procedure}.{key}":
+                    message = f"{quote(name)} is the telecommand of `{other}` already"
+                    yield Fault(step, step.at("message"), message, "name that of each step")
+
+
+@rule("ICD117", whole=True)
+def packets_have_their_message(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        files = section_of(node, "file_transfer")
+        sizes = numbers(files, "packet_bytes", "packet_counter_bytes") if files is not None else None
+        if sizes is None:
+            continue
+        messages = {one.name: one for one in ctx.messages_of(node)}
+        for bus in BUSES:
+            section = section_of(node, "file_transfer", "download", bus)
+            if section is None:
+                continue
+            for key in ("packet", "id_of"):
+                name = section.get(key)
+                message = messages.get(name) if isinstance(name, str) else None
+                if message is None or (key == "id_of" and bus == "uart"):
+                    continue  # on the UART any id can head the packets
+                if message.telemetry_id is None or message.length != sum(sizes):
+                    text = f"a packet has {count(sizes[1], 'byte')} of counter and {sizes[0]} of the file, which "
+                    yield Fault(section, section.at(key), f"{text}{quote(message.name)} has not", "name its frame")
+
+
+@rule("ICD118")
+def rows_are_read_as_they_are(ctx: Context) -> Iterator[Fault]:
+    for path in ROWS:
+        for section in ctx.sections(*path[:-1]):
+            for row in mappings(section.get(path[-1])):
+                role, type = row.get("role"), row.get("type")
+                if isinstance(role, str) and isinstance(type, str):
+                    wanted = ("bytes",) if role in ROWS_AS_BYTES else ("uint", "enum")
+                    if type not in wanted:
+                        message = f"the {role} is read as {' or '.join(wanted)}, not as {type}"
+                        yield Fault(row, row.at("type"), message, "correct `type` or `role`")
+    for index in ctx.sections("index_file"):
+        if any("role" in row for row in mappings(index.get("entry"))):
+            yield from roles_stand_once(index, "entry", INDEX_ROLES, "an entry of the index has no part for")

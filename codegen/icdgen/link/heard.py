@@ -1,0 +1,48 @@
+"""What came over a line: messages by name, and a count of what was wrong."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from icdgen_runtime.wire.events import Event, Gap, LineError
+
+from icdgen import codec
+from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.variants import ids_of
+
+FAULTS = {
+    "checksum": "wrong checksum", "unchecked": "no checksum", "length": "wrong length", "unknown_id": "unknown id",
+    "overrun": "too long", "framing": "damaged",
+}  # fmt: skip
+"""What is wrong with something that came, by the decoder's word."""
+
+
+class Heard:
+    """Counts what was wrong."""
+
+    def __init__(self, icd: Icd, node: Node) -> None:
+        self.icd, self.known = icd, ids_of(icd, node).telemetry
+        self.faults: Counter[str] = Counter()
+        self.missing = self.repeated = 0
+
+    def event(self, event: Event) -> None:
+        """Takes what happened."""
+        if isinstance(event, LineError):
+            self.faults[FAULTS.get(event.error, event.error.replace("_", " "))] += 1
+        elif isinstance(event, Gap):
+            self.missing += event.missing
+            self.repeated += event.missing == 0
+
+    def message_of(self, id: int, data: bytes) -> Message | None:
+        """The message that came; None if it is none of those that have its id."""
+        try:
+            return codec.which(self.icd, [one.message for one in self.known.get(id, ())], data)
+        except codec.LengthError:
+            return None
+
+    def text(self) -> str:
+        """What was wrong, in a line; empty if nothing was."""
+        said = [f"{fault} ({times})" for fault, times in sorted(self.faults.items())]
+        said += [f"messages missing ({self.missing})"] if self.missing else []
+        said += [f"messages that came again ({self.repeated})"] if self.repeated else []
+        return f"on the line: {', '.join(said)}" if said else ""

@@ -1,0 +1,186 @@
+"""What carries the messages of a `Session`: bytes, CAN packets or I2C transactions.
+
+What is needed of a library of CAN or I2C is taken from where the given object is from.
+"""
+
+from __future__ import annotations
+
+import errno
+import socket
+import sys
+import time
+from collections.abc import Callable
+from typing import Any, Optional, Protocol, Union, cast
+
+from .can import CanPacket
+from .events import Event
+from .link import Bus, Link
+from .ports import (
+    CanBus,
+    I2cBus,
+    Port,
+    Read,
+    SerialPort,
+    Write,
+    serial_port,
+    socket_port,
+)
+
+_NOT_ANSWERED = tuple(
+    getattr(errno, name, 0)
+    for name in ("ENXIO", "EIO", "EREMOTEIO", "ETIMEDOUT", "EAGAIN")
+)
+"""What a driver of I2C says of a transaction that the node did not take."""
+
+
+class Carrier(Protocol):
+    """A port, for whoever may wait. What its library raises is not caught."""
+
+    @property
+    def bus(self) -> Bus: ...
+
+    def send(self, client: Any) -> None:
+        """Sends what the client wants to be sent."""
+
+    def receive(
+        self, client: Any, now: Callable[[], float], seconds: float
+    ) -> list[Event]:
+        """Gives the client what comes, or lets it know after so long that nothing does."""
+        ...
+
+
+class ByteCarrier:
+    """A stream of bytes, or packets of them."""
+
+    bus: Bus = "uart"
+
+    def __init__(self, write: Write, read: Read) -> None:
+        self._write, self._read = write, read
+
+    def send(self, client: Any) -> None:
+        while data := client.output():
+            self._write(data)
+
+    def receive(
+        self, client: Any, now: Callable[[], float], seconds: float
+    ) -> list[Event]:
+        data = self._read(seconds)
+        events: list[Event] = (
+            client.received(now(), data) if data else client.tick(now())
+        )
+        return events
+
+
+class CanCarrier:
+    """A CAN bus of python-can."""
+
+    bus: Bus = "can"
+
+    def __init__(self, port: CanBus) -> None:
+        self._port, self._message = port, _beside(port, "Message")
+
+    def send(self, client: Any) -> None:
+        for packet in client.packets():
+            message = self._message(
+                arbitration_id=packet.id, data=packet.data, is_extended_id=True
+            )
+            self._port.send(message)
+
+    def receive(
+        self, client: Any, now: Callable[[], float], seconds: float
+    ) -> list[Event]:
+        found = self._port.recv(seconds)
+        events: list[Event]
+        if found is None or _is_foreign(found):
+            events = client.tick(now())
+        else:
+            packet = CanPacket(found.arbitration_id, bytes(found.data))
+            events = client.packet(now(), packet)
+        return events
+
+
+def _is_foreign(found: Any) -> bool:
+    """Whether a packet is none of a link: those have identifiers of 29 bits."""
+    return bool(
+        not found.is_extended_id or found.is_error_frame or found.is_remote_frame
+    )
+
+
+class I2cCarrier:
+    """An I2C bus of smbus2; a read follows its write by a repeated start."""
+
+    bus: Bus = "i2c"
+
+    def __init__(self, port: I2cBus, address: int) -> None:
+        self._port, self._address = port, address
+        self._message = _beside(port, "i2c_msg")
+
+    def send(self, client: Any) -> None:
+        """Nothing: a transaction gives its answer at once, so it waits for `receive`."""
+
+    def receive(
+        self, client: Any, now: Callable[[], float], seconds: float
+    ) -> list[Event]:
+        transfers = client.transfers()
+        events: list[Event] = []
+        if not transfers:
+            time.sleep(seconds)
+            events = client.tick(now())
+        for done, transfer in enumerate(transfers):
+            try:
+                data = self._transferred(*transfer)
+            except BaseException:
+                for _ in transfers[done:]:  # else the client waits for them
+                    client.transferred(now(), None)
+                raise
+            events += client.transferred(now(), data)
+        return events
+
+    def _transferred(self, write: bytes, count: int) -> Optional[bytes]:
+        """What was read; None if the node did not take it."""
+        parts = [self._message.write(self._address, write)]
+        if count:
+            parts.append(self._message.read(self._address, count))
+        try:
+            self._port.i2c_rdwr(*parts)
+        except OSError as error:
+            if error.errno not in _NOT_ANSWERED:
+                raise
+            return None
+        return bytes(parts[1]) if count else b""
+
+
+def _beside(port: object, name: str) -> Any:
+    """A class of the library that the class of a port, or what that is made of, is from.
+
+    Raises `TypeError` if there is none.
+    """
+    for kind in type(port).__mro__:
+        for module in (kind.__module__, kind.__module__.partition(".")[0]):
+            found = getattr(sys.modules.get(module), name, None)
+            if found is not None:
+                return found
+    raise TypeError(f"nothing beside {type(port).__name__} is called {name}")
+
+
+def carrier_of(
+    link: Link[Any], port: Union[Port, Write], read: Optional[Read]
+) -> Carrier:
+    """What carries messages over a port, or over the functions ``port`` and ``read``.
+
+    Raises `TypeError` for what is no port.
+    """
+    if read is not None:
+        return ByteCarrier(cast(Write, port), read)
+    if isinstance(port, socket.socket):
+        return ByteCarrier(*socket_port(port))
+    if hasattr(port, "i2c_rdwr"):
+        return I2cCarrier(cast(I2cBus, port), link.i2c_address or 0)
+    if hasattr(port, "recv") and hasattr(port, "send"):
+        return CanCarrier(cast(CanBus, port))
+    if hasattr(port, "read") and hasattr(port, "write"):
+        return ByteCarrier(*serial_port(cast(SerialPort, port)))
+    raise TypeError(
+        f"{type(port).__name__} is no port: a session takes a serial port, a socket, a CAN bus,"
+        " an I2C bus, or a function that writes and one that reads"
+    )

@@ -1,0 +1,91 @@
+"""Decoders of envelopes in noise: a megabyte costs nothing but itself, and where a stream is cut does not matter."""
+
+from __future__ import annotations
+
+import json
+import random
+from functools import cache
+
+import pytest
+
+from icdgen.backends.python.objects.links import link_of
+from icdgen.protocol import facts, stream
+from tests.conformance.build import build
+from tests.conformance.driver import Testee
+from tests.conformance.icds import LINKS, icd_of
+from tests.conformance.languages import all_languages
+from tests.conftest import ROOT
+
+ICD = icd_of([ROOT / "examples" / "links", LINKS])
+NODES = ["receiver", "positioner", "autopilot", "payload", "logger", "probe"]
+MEGABYTE = 1 << 20
+MARKERS = bytes((0x00, 0x55, 0x62, 0x7D, 0x7E, 0xB5, 0xC0, 0xDB, 0xDC, 0xFD, 0xFF))
+
+
+@pytest.fixture(scope="module", params=["python", "c-sanitizers", "rust-debug"])
+def testee(request):
+    one = Testee(build(all_languages()[request.param], ICD))
+    yield one
+    assert one.close() == 0, one.complaint()
+
+
+@cache
+def form_of(node: str):
+    return facts.of(ICD, ICD.node(node)).stream
+
+
+def messages(node: str, source: random.Random, count: int) -> tuple[bytes, list[tuple[int, str]]]:
+    """Messages as they are sent, and their ids and data as they must come out."""
+    form, line, sent = form_of(node), b"", []
+    for number in range(count):
+        row = source.choice(form.rows("telemetry"))
+        data = source.randbytes(row.most - 1) + b"\1"
+        line += stream.encode(form, "telemetry", row.id, data, {"sequence": number} if form.of("sequence") else None)
+        sent.append((row.id, data.hex()))
+    return line, sent
+
+
+def asked(testee: Testee, node: str, *streams: list[bytes]) -> list[dict]:
+    rows = ({"op": "stream_events", "node": node, "direction": "telemetry", "chunks": [one.hex() for one in chunks]}
+            for chunks in streams)  # fmt: skip
+    return [json.loads(answer or b"{}") for answer in testee.ask([json.dumps(row).encode() for row in rows])]
+
+
+def came(answer: dict) -> list[tuple[int, str]]:
+    return [(event["id"], event["bytes"]) for event in answer["events"] if event["event"] == "message"]
+
+
+@cache
+def found(node: str, line: bytes) -> tuple[list[tuple[int, str]], int, int]:
+    """What the decoder of the Python runtime makes of it: messages, bytes discarded and pending."""
+    from icdgen_runtime.wire.stream import StreamDecoder  # which `icdgen` makes importable
+
+    decoder = StreamDecoder(link_of(ICD, facts.of(ICD, ICD.node(node))))
+    events = [event for event in decoder.feed(line) if event.event == "message"]
+    return [(event.id or 0, event.data.hex()) for event in events], decoder.discarded, decoder.pending
+
+
+@pytest.mark.parametrize("node", NODES)
+def test_a_megabyte_of_noise_before_messages(testee, node):
+    source = random.Random(node)
+    noise = bytes(source.choices(MARKERS, k=MEGABYTE // 4)) + source.randbytes(3 * MEGABYTE // 4)
+    line, sent = messages(node, source, 8)
+    padded = noise + bytes(form_of(node).longest_line) * 2 + line + bytes(form_of(node).longest_line)
+    (answer,) = asked(testee, node, [padded])
+    assert (came(answer), answer["discarded"], answer["pending"]) == found(node, padded)
+    # Where neither sync nor checksum tells noise from a message, it may take the beginning of what follows with it.
+    lost = 2 if node == "payload" else 0
+    assert came(answer)[-(len(sent) - lost) :] == sent[lost:]
+
+
+@pytest.mark.parametrize("node", NODES)
+def test_every_place_at_which_a_stream_can_be_cut(testee, node):
+    source = random.Random(f"{node} cut")
+    short = min(form_of(node).rows("telemetry"), key=lambda row: row.most)
+    data = source.randbytes(short.most - 1) + b"\1"
+    one = stream.encode(form_of(node), "telemetry", short.id, data)
+    line = bytes(source.choices(MARKERS, k=6)) + one + one[:-1] + one + one
+    whole, *cut = asked(testee, node, [line], *([line[:at], line[at:]] for at in range(len(line) + 1)))
+    assert whole["ok"] and all(answer == whole for answer in cut)
+    (single,) = asked(testee, node, [bytes([byte]) for byte in line])
+    assert single == whole

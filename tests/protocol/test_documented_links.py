@@ -1,0 +1,88 @@
+"""The links that docs/wire.md shows: each is checked, generated and run, and is that of the file beside it."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+import yaml
+
+from icdgen.loading import load
+from tests.conftest import ROOT
+from tests.python import packages
+
+_, SHOWN = (ROOT / "docs" / "wire.md").read_text(encoding="utf-8").split("## Links to begin with\n")
+EXAMPLES = {found["name"]: found["yaml"] for found in re.finditer(
+    r"\*\*(?P<name>[^*]+)\*\*[^`]*?(?:`[^`]+`[^`]*?)*```yaml\n(?P<yaml>icdgen: 1\n.*?)```\n", SHOWN.split("\n## ")[0], re.S
+)}  # fmt: skip
+FILES = {
+    "Sync bytes, a length and a CRC": "sbp",
+    "SLIP": "slip",
+    "COBS": "cobs",
+    "CCSDS space packets.": "ccsds",
+    "MAVLink 2.": "mavlink2",
+}
+CUBEADCS = "The link of a CubeADCS"
+
+
+def test_all_that_are_asked_for_are_shown():
+    assert list(EXAMPLES) == [*FILES, CUBEADCS]
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_an_example_is_that_of_its_file(name):
+    shown = yaml.safe_load(EXAMPLES[name])
+    whole = yaml.safe_load((ROOT / "examples" / "links" / f"{FILES[name]}.yaml").read_text(encoding="utf-8"))
+    for checksum in shown["protocol"].get("checksums", {}).values():
+        seeds = whole["protocol"]["checksums"]["x25"]["seeds"] if "seeds" in checksum else {}
+        assert checksum.get("seeds", {}).items() <= seeds.items()
+        checksum["seeds"] = seeds
+        whole["protocol"]["checksums"][next(iter(whole["protocol"]["checksums"]))].setdefault("seeds", {})
+    assert (shown["node"], shown["protocol"]) == (whole["node"], whole["protocol"])
+    assert all(message in whole["messages"] for message in shown["messages"])
+
+
+def test_the_link_of_the_cubeadcs_is_that_of_its_icd():
+    shown = yaml.safe_load(EXAMPLES[CUBEADCS])["protocol"]
+    common, acp = (
+        yaml.safe_load((ROOT / "icd" / f"{name}.yaml").read_text(encoding="utf-8")) for name in ("common", "cubeacp")
+    )
+    assert shown["message_id"].items() <= common["protocol"]["message_id"].items()
+    assert shown["uart"]["framing"].items() <= common["protocol"]["uart"]["framing"].items()
+    crc = {key: value for key, value in shown["crc8"].items() if key != "telecommand"}
+    assert crc.items() <= acp["protocol"]["crc8"].items()
+
+
+@pytest.mark.parametrize("name", [*FILES, CUBEADCS])
+def test_an_example_is_checked_generated_and_run(name, tmp_path):
+    (tmp_path / "device.yaml").write_text(EXAMPLES[name], encoding="utf-8")
+    loaded = load([tmp_path / "device.yaml"])
+    assert loaded.findings == []
+    node = loaded.icd.nodes[0].name
+    package = packages.write(loaded.icd, tmp_path / "made", f"documented_{node}")
+    link, wire = package.module(node).LINK, package.module("wire")
+    module = package.module(node)
+    kinds = [
+        one
+        for one in (getattr(module, name) for name in module.__all__)
+        if hasattr(one, "from_bytes") and hasattr(one, "NAME")
+    ]
+    assert {kind.NAME for kind in kinds} == {message.name for message in loaded.icd.nodes[0].messages}
+    for kind in kinds:
+        sent = kind()
+        if name == CUBEADCS:
+            line = wire.uart_encode(link, bytes([kind.ID]) + sent.to_bytes())
+            (event,) = wire.UartDecoder(link).feed(b"noise" + line)
+            assert kind.from_bytes(event.message[1:]) == sent
+            continue
+        direction = "telemetry" if kind in known(link.TELEMETRY, kind) else "telecommand"
+        decoder = wire.StreamDecoder(link, direction)
+        line = wire.stream_encode(link, sent, direction=direction)
+        found = [one for byte in line for one in decoder.feed(bytes([byte]))]
+        assert [event.of(kind) for event in found] == [sent]
+        assert (decoder.discarded, decoder.pending) == (0, 0)
+
+
+def known(table, kind):
+    """The messages that a direction has under the id of one."""
+    return table.of(kind.IDS[-1]) if kind.IDS[-1] in table else ()

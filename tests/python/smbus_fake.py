@@ -1,0 +1,51 @@
+"""What of smbus2 a session uses, with a node behind it that is as quick as the bus."""
+
+from __future__ import annotations
+
+import errno
+from typing import Any
+
+
+class i2c_msg:
+    """A part of a transaction."""
+
+    def __init__(self, address: int, is_read: bool, data: bytes) -> None:
+        self.address, self.is_read, self.data = address, is_read, data
+
+    @staticmethod
+    def write(address: int, data: bytes) -> i2c_msg:
+        return i2c_msg(address, False, bytes(data))
+
+    @staticmethod
+    def read(address: int, length: int) -> i2c_msg:
+        return i2c_msg(address, True, bytes(length))
+
+    def __bytes__(self) -> bytes:
+        return self.data
+
+
+class SMBus:
+    """A bus with one node. ``errors`` are raised first, one a transaction."""
+
+    def __init__(self, acp: Any, errors: list[int]) -> None:
+        self.acp, self.errors, self.last, self.telecommands = acp, errors, 0, []
+
+    def i2c_rdwr(self, *parts: i2c_msg) -> None:
+        if self.errors:
+            raise OSError(self.errors.pop(0), "remote I/O")
+        write, *read = parts
+        if write.address != self.acp.LINK.i2c_address:
+            raise OSError(errno.ENXIO, "no such node")
+        if read:
+            assert read[0].address == write.address and read[0].is_read and len(write.data) == 1
+            read[0].data = self.frame(write.data[0])[: len(read[0].data)]
+        else:
+            self.last = write.data[0]
+            self.telecommands.append(write.data)
+
+    def frame(self, id: int) -> bytes:
+        """What the node has under an id."""
+        kind = self.acp.LINK.TELEMETRY[id]
+        if kind is self.acp.TelecommandAcknowledge:
+            return kind(last_tc_id=self.last, processed_flag=True).to_bytes()
+        return kind(node_type=self.acp.NODE_TYPE).to_bytes() if kind is self.acp.Identification else kind().to_bytes()

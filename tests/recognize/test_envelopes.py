@@ -1,0 +1,62 @@
+"""Frames in envelopes, as people paste them: the envelope comes off, and what is wrong with it is said."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.protocol import facts, stream
+from icdgen.recognize import recognize
+from icdgen.values.errors import BadLength
+from tests.conformance.icds import icd_of
+from tests.conftest import ROOT
+
+ICD = icd_of([ROOT / "examples" / "links"])
+
+
+def sent(node: str, direction: str, id: int, data: bytes, **values: int) -> bytes:
+    form = facts.of(ICD, ICD.node(node)).stream
+    return stream.encode(form, direction, id, data, values)
+
+
+CASES = [
+    ("receiver", "telemetry", 0x0122, bytes(range(20))),
+    ("receiver", "telecommand", 0x0601, b"\1\2\3"),
+    ("positioner", "telemetry", 0xFFFF, b"\1\0\0\0"),
+    ("autopilot", "telemetry", 30, b"\1" * 28),
+    ("payload", "telecommand", 0x64, b"\0\7"),
+    ("logger", "telemetry", 0xC0, b"\xc0\1\xdb\2"),
+    ("probe", "telecommand", 0x0200, b"\5"),
+]
+
+
+@pytest.mark.parametrize(("node", "direction", "id", "data"), CASES)
+@pytest.mark.parametrize("is_named", [False, True])
+def test_a_frame_is_found_with_its_node_direction_and_message(node, direction, id, data, is_named):
+    (found,) = recognize(ICD, sent(node, direction, id, data).hex(" "), node if is_named else None)
+    assert (found.speaker.node.name, found.what, found.id, found.data) == (node, direction, id, data)
+    assert found.frame.data == data and "envelope with id" in found.remarks[0]
+
+
+def test_all_messages_of_a_recorded_stream_are_found_and_what_is_wrong_in_it_is_said():
+    clock, epoch = sent("receiver", "telemetry", 0x0122, bytes(20)), sent("receiver", "telemetry", 0x0161, bytes(4))
+    first, second = recognize(ICD, b"\x00\xb5" + clock + epoch[:-1] + b"\0" + epoch)
+    assert [one.message.name for one in (first, second)] == ["Navigation Clock", "End of Epoch"]
+    assert "the stream has an error: checksum" in first.remarks
+    assert any("14 bytes around the frame belong to none" in remark for remark in first.remarks)
+
+
+def test_what_the_sender_chose_of_the_envelope_is_said():
+    (found,) = recognize(ICD, sent("autopilot", "telemetry", 30, bytes(28), source=7, sequence=9).hex())
+    assert "source 7" in found.remarks[0] and "sequence 9" in found.remarks[0]
+
+
+def test_a_wrong_checksum_is_said_and_nothing_is_read():
+    line = bytearray(sent("receiver", "telemetry", 0x0161, bytes(4)))
+    line[-1] ^= 1
+    with pytest.raises(BadLength, match="with id 353, has a wrong checksum"):
+        recognize(ICD, bytes(line))
+
+
+def test_the_data_alone_are_still_read():
+    (found,) = recognize(ICD, "01 00 00 00", "receiver", "End of Epoch")
+    assert found.data == b"\1\0\0\0"

@@ -1,0 +1,212 @@
+"""Links with envelopes, simulated and talked over: what comes unasked, replies, gaps, and what is wrong with what comes."""
+
+from __future__ import annotations
+
+import json
+import socket
+import subprocess
+import sys
+
+import pytest
+from icdgen_runtime._errors import RangeError
+from icdgen_runtime.wire.client import Request
+from icdgen_runtime.wire.errors import UnsupportedError
+from icdgen_runtime.wire.events import Arrived, Done, Gap, LineError, Timeout
+from icdgen_runtime.wire.session import Session
+
+from icdgen.backends.python.objects.links import link_of
+from icdgen.errors import UserError
+from icdgen.protocol import facts
+from icdgen.sim import run
+from tests.conformance.icds import LINKS, icd_of
+from tests.conftest import ROOT
+from tests.sim.device import simulator
+
+FOLDER = ROOT / "examples" / "links"
+ICD = icd_of([FOLDER, LINKS])
+EXAMPLES = ["receiver", "positioner", "autopilot", "payload", "logger", "probe"]
+POLL, CLOCK, EPOCH, RATE = 0x0122, 0x0122, 0x0161, 0x0601  # of the receiver
+
+
+class Port:
+    """A simulated device in memory, in a time of its own. ``spoil`` is what becomes of what it sends."""
+
+    def __init__(self, node: str, spoil=lambda data: data, **options):
+        self.line, self.control = run.build(ICD, node, run.Options(**options))
+        self.spoil, self.now, self.queue = spoil, 0.0, []
+
+    @property
+    def ms(self) -> int:
+        return round(self.now * 1000)
+
+    def write(self, data: bytes) -> None:
+        self.line.received(self.ms, data)
+
+    def read(self, seconds: float) -> bytes:
+        end = self.now + seconds
+        while True:
+            self.line.tick(self.ms)
+            self.queue += filter(None, map(self.spoil, self.line.pieces(self.ms)))
+            if self.queue:
+                return self.queue.pop(0)
+            deadline = self.line.deadline
+            if deadline is None or deadline / 1000 >= end:
+                self.now = end
+                return b""
+            self.now = max(self.now, deadline / 1000)
+
+
+def talking(node: str, values=None, spoil=lambda data: data, **options):
+    """A session, its port, and the list of what it is told."""
+    heard, port = [], Port(node, spoil, **options)
+    link = link_of(ICD, facts.of(ICD, ICD.node(node)))
+    session = Session(link, port.write, port.read, on_event=heard.append, clock=lambda: port.now, values=values)
+    return session, port, heard
+
+
+@pytest.mark.parametrize("node", EXAMPLES)
+def test_telemetry_that_comes_unasked_is_a_stream_of_messages(node):
+    session, port, heard = talking(node, every=0.1)
+    came = list(session.messages(seconds=0.35))
+    wanted = [message.name for message in port.line.unasked]
+    assert [message.NAME for message in came] == wanted * 4 and len(wanted) >= 1
+    assert all(isinstance(event, Arrived) for event in heard)
+
+
+def test_only_the_kinds_that_are_listened_for_come():
+    session, _, heard = talking("positioner", every=0.1)
+    kind = session.client.link.TELEMETRY[0xFFFF]
+    assert {type(one) for one in session.messages(kind, seconds=0.35)} == {kind} and len(heard) == 8
+
+
+def test_a_telecommand_is_answered_with_what_the_icd_says():
+    session, port, _ = talking("receiver", every=0)
+    port.control.set("Navigation Clock", "Clock Bias", 77)
+    outcome = session.start(Request("telecommand", POLL))
+    assert isinstance(outcome, Done) and outcome.message.clock_bias == 77
+    assert session.get(session.client.link.TELEMETRY[CLOCK]).clock_bias == 77  # which the telecommand asks for
+    assert session.start(Request("telecommand", RATE, bytes(3))) == Done(RATE, 1)  # sent, and nothing answers
+    with pytest.raises(UnsupportedError, match="sent unasked"):
+        session.start(Request("telemetry", EPOCH))
+
+
+def test_telemetry_that_comes_unasked_is_no_reply_and_a_silent_device_is_a_time_out():
+    session, _, heard = talking("receiver", spoil=lambda data: data if data[3] == 0x61 else b"", every=0.1)
+    outcome = session.start(Request("telecommand", POLL, b"", True))
+    assert isinstance(outcome, Timeout) and outcome.attempts == 1 + session.client.settings.retries
+    assert {event.id for event in heard} == {EPOCH}
+
+
+def test_messages_that_get_lost_are_gaps():
+    lost = iter([False, False, True, True, True, False, False, False])
+    session, _, heard = talking("autopilot", spoil=lambda data: b"" if next(lost, False) else data, every=0.1)
+    assert len(list(session.messages(seconds=0.35))) == 12 - 3
+    assert [event for event in heard if isinstance(event, Gap)] == [Gap(30, 3)]
+
+
+def test_what_we_send_is_counted_and_has_the_addresses_that_were_chosen():
+    session, port, _ = talking("autopilot", values={"source": 9, "sequence": 254}, every=0)
+    sent = []
+    port.line.received = lambda now, data: sent.append(data)
+    for _ in range(3):
+        session.start(Request("telecommand", 11, bytes(6)))
+    assert [(line[4], line[5]) for line in sent] == [(254, 9), (255, 9), (0, 9)]
+
+
+@pytest.mark.parametrize(
+    ("values", "error"), [({"source": 256}, RangeError), ({"time": 1}, UnsupportedError), ({"id": 1}, UnsupportedError)]
+)
+def test_values_that_the_envelope_cannot_have_are_refused(values, error):
+    with pytest.raises(error):
+        talking("autopilot", values=values)
+
+
+def test_an_envelope_leaves_no_choice_of_a_checksum():
+    port = Port("receiver")
+    with pytest.raises(UnsupportedError, match="no choice"):
+        Session(link_of(ICD, facts.of(ICD, ICD.node("receiver"))), port.write, port.read, crc=True)
+
+
+def damaged(data: bytes) -> bytes:
+    return data[:-1] + bytes([data[-1] ^ 1]) if data else data
+
+
+def test_a_wrong_checksum_is_told_of_and_no_message():
+    session, _, heard = talking("receiver", spoil=damaged, every=0)
+    assert isinstance(session.start(Request("telecommand", POLL)), Timeout)
+    assert heard == [LineError("checksum", CLOCK)]
+
+
+def test_a_device_that_gets_a_wrong_checksum_does_nothing():
+    session, port, _ = talking("receiver", every=0)
+    whole = port.line.received
+    port.line.received = lambda now, data: whole(now, damaged(data))
+    assert isinstance(session.start(Request("telecommand", POLL)), Timeout)
+    assert port.line.computer.program.counts == {"checksum": 1}
+
+
+def icdgen(*words: str) -> subprocess.CompletedProcess:
+    command = [sys.executable, "-m", "icdgen", *words, "--icd", str(FOLDER)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60)
+
+
+@pytest.mark.parametrize("way", [pytest.param(("--pty",), marks=pytest.mark.pty), ("--tcp", "0"), ("--udp", "0")])
+def test_monitor_and_send_from_the_outside(way):
+    options = ("--node", "receiver", "--every", "0.1", "--set", "Navigation Clock", "Clock Bias=-3", *way)
+    with simulator(*options, "--icd", str(FOLDER)) as (place, _):
+        asked = icdgen("send", "receiver", "Poll Clock", "--port", place)
+        assert asked.returncode == 0 and "answered with Navigation Clock" in asked.stdout and "-3" in asked.stdout
+        sent = icdgen("send", "receiver", "Set Message Rate", "class=1", "number=2", "rate=3", "--port", place)
+        assert (sent.returncode, sent.stdout) == (0, "Set Message Rate: sent; the ICD names no reply to it\n")
+        shown = icdgen("monitor", "receiver", "Navigation Clock", "--port", place, "--once", "--every", "0.4")
+        assert shown.returncode == 0 and "Clock Bias" in shown.stdout and "-3" in shown.stdout
+        if "--udp" not in way:  # who never sent anything is not known there
+            all_ = icdgen("monitor", "receiver", "--port", place, "--once", "--every", "0.4", "--format", "json")
+            assert [json.loads(line)["message"] for line in all_.stdout.splitlines()] == ["End of Epoch"]
+
+
+def test_the_monitor_says_that_the_checksum_is_wrong():
+    spoiled = ("--fault", "corrupt=100%@reply", "--every", "0", "--seed", "3")
+    with simulator("--node", "receiver", "--tcp", "0", *spoiled, "--icd", str(FOLDER)) as (place, _):
+        shown = icdgen("monitor", "receiver", "Navigation Clock", "--port", place, "--once", "--every", "0.1")
+    assert shown.returncode == 1 and "wrong checksum" in shown.stdout and "no answer" not in shown.stdout
+
+
+def test_the_simulated_device_calls_a_client_that_listens():
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        place = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
+        options = ("--node", "positioner", "--every", "0.05", "--connect", place)
+        with simulator(*options, "--icd", str(FOLDER)) as (said, _):
+            assert said == f"to {place}"
+            listening.settimeout(20)
+            connection, _ = listening.accept()
+            with connection:
+                connection.settimeout(20)
+                assert connection.recv(1) == b"\x55"
+
+
+def test_packets_that_delimit_messages_need_a_way_that_keeps_them_apart():
+    node = next(one.name for one in ICD.nodes if ICD.protocol_of(one).get("stream", {}).get("delimited_by") == "none")
+    with pytest.raises(UserError, match="only packets"):
+        run.run(ICD, node, [("tcp", "127.0.0.1", 0)], run.Options(), print)
+    session, port, heard = talking(node, every=0.1)
+    assert list(session.messages(seconds=0.15))
+    assert sum(isinstance(event, Arrived) for event in heard) == 2 * len(port.line.unasked)
+
+
+def test_a_value_of_no_field_of_the_envelope_is_refused():
+    wrong = icdgen("send", "receiver", "Poll Clock", "--port", "tcp://127.0.0.1:1", "--envelope", "source=1")
+    assert wrong.returncode == 2 and "the envelope of receiver has no field `source`" in wrong.stderr
+    wrong = icdgen(
+        "send",
+        "autopilot",
+        "Set Mode",
+        "custom=1",
+        "target=1",
+        "base=1",
+        "--port",
+        "tcp://127.0.0.1:1",
+        "--envelope",
+        "source=256",
+    )
+    assert wrong.returncode == 2 and "from 0 to 255" in wrong.stderr
