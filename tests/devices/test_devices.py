@@ -67,8 +67,10 @@ def test_a_wrong_condition_is_noticed(tmp_path: Path) -> None:
     ((name, value),) = wrong["when"].items()
     wrong["when"] = {name: [value, value + 1]}
     fields[:] = [one for one in fields if "when" not in one or one is wrong]
-    kept = {one["name"] for one in fields}
+    kept = {one["name"]: one for one in fields}
     definitions.messages[0].fields = [one for one in definitions.messages[0].fields if one["name"] in kept]
+    for one in definitions.messages[0].fields:  # by which frames are drawn
+        one |= {"when": kept[one["name"]]["when"]} if "when" in one else {}
     definitions.messages[0].encoded = None  # the library's frames have the others, too
     found = agreed(definitions, tmp_path).differences
     assert {text.split(": ")[1].split(" is ")[0] for text in found} == {wrong["name"]}
