@@ -109,7 +109,7 @@ def test_what_is_included_may_not_lead_astray(files, says, tmp_path):
 def test_many_files_are_refused(tmp_path):
     for number in range(mavlink.MOST_FILES + 1):
         (tmp_path / f"{number}.xml").write_text(f"<mavlink><include>{number + 1}.xml</include></mavlink>")
-    with pytest.raises(Findings, match="") as raised:
+    with pytest.raises(Findings) as raised:
         run.read(tmp_path / "0.xml", READERS["v20"])
     assert "more than 100 files" in raised.value.findings[0].message
 

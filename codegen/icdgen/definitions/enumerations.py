@@ -61,7 +61,7 @@ class Enumerations:
 
     def give(self, to: Item, name: str, owner: str, named: list[Item]) -> None:
         """Makes a field one of an enumeration. ``name`` is what it would be called, ``owner`` tells it from others of the name."""
-        values = tuple((int(one["value"]), int(one.get("to", one["value"])), str(one["name"])) for one in named)
+        values = tuple((one["value"], one["to"] if "to" in one else one["value"], str(one["name"])) for one in named)
         self.uses.append((to, name, owner, values))
 
     def declared(self) -> list[Item]:
