@@ -130,6 +130,7 @@ NO_SIZE = '<StringDataEncoding><SizeInBits><LeadingSize sizeInBitsOfSizeTag="8"/
 LABELS = (
     '<IntegerDataEncoding/><EnumerationList><Enumeration value="0" maxValue="99999999999" label="A"/></EnumerationList>'
 )
+MANY = "<RepeatEntry><Count><FixedValue>99999</FixedValue></Count></RepeatEntry>"
 ITSELF = '<MemberList><Member name="x" typeRef="byte"/></MemberList>'
 
 
@@ -155,7 +156,7 @@ MASKED = "<RestrictionCriteria><CustomAlgorithm/></RestrictionCriteria>"
         (container("B") + container("A", base="B", of=GREATER), "it is told by `P > 1`, which is no equality"),
         (container("B") + container("A", base="B", of=MASKED), "it is told by a `CustomAlgorithm`"),
         (container("A", entry("<IncludeCondition/>")), "`P` is there only on a condition"),
-        (container("A", entry("<RepeatEntry><Count><FixedValue>99999</FixedValue></Count></RepeatEntry>")), "`P` is there 99999 times"),
+        (container("A", entry(MANY)), "`P` is there 99999 times"),
         (container("A", ENTRY * 5001), "it has more than 5000 fields"),
         (nested(40, 2) + container("C40", ""), "the file says more than 1,000,000 things"),
         (nested(99, 1), "more than 50 containers inherit or hold each other"),
