@@ -237,5 +237,14 @@ def test_a_size_that_the_packet_itself_says_is_not_looked_at_and_that_is_said(tm
     assert field(read, "A", "D") == {"at": 8, "name": "D", "type": "bytes", "size": "rest", "up_to": 65_534}
 
 
+@pytest.mark.parametrize("scale", ["x", "1e9999"])
+def test_a_time_whose_scale_is_no_number_is_held_raw(scale, tmp_path):
+    text = (FILES / "lander.xml").read_text().replace('scale="0.001"', f'scale="{scale}"')
+    (tmp_path / "lander.xml").write_text(text)
+    read = run.read(tmp_path / "lander.xml", xtce.Xtce())
+    assert "formula" not in field(read, "Power", "At") and "unit" not in field(read, "Power", "At")
+    assert f"`At`: a coefficient is `{scale}`" in [one.message for one in read.definitions.troubles]
+
+
 def test_messages_of_one_name_are_told_apart(lander):
     assert [one["name"] for one in lander.trees["lander"]["messages"]].count("Power") == 1

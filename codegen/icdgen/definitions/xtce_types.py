@@ -167,10 +167,9 @@ class Types:
 
     def _calibrated(self, item: Item, chain: list[Element], encoding: Element | None, kind: str, where: str) -> bool:
         """Adds the formula. False if there is a calibration that cannot be said, so that the raw value is all that is held."""
-        if kind in ("AbsoluteTime", "RelativeTime"):
-            return self._time(item, chain)
         try:
-            said = "" if encoding is None else calibration(encoding)
+            is_time = kind in ("AbsoluteTime", "RelativeTime")
+            said = _time(item, chain) if is_time else "" if encoding is None else calibration(encoding)
         except ValueError as error:
             self._raw_only(where, str(error))
             return False
@@ -185,16 +184,6 @@ class Types:
         is_new = what not in self.warned
         self.warned.add(what)
         return is_new
-
-    def _time(self, item: Item, chain: list[Element]) -> bool:
-        """Seconds, or what the encoding says, since an epoch."""
-        of = next((one for type_ in chain for one in type_.iterfind("Encoding")), None)
-        if of is not None:
-            terms = [(1, decimal(of.get("scale", "1"))), (0, decimal(of.get("offset", "0")))]
-            if said := formula(dict(terms)):
-                item["formula"] = said
-            item |= unit({"seconds": "s"}.get(of.get("units", "seconds"), of.get("units", "")))
-        return True
 
     def _limits(self, item: Item, chain: list[Element]) -> Item:
         """The keys of the range that is valid, if there is one and it is that of the value that is held."""
@@ -239,6 +228,16 @@ def said(element: Element) -> str:
     if len(texts) == 2 and (texts[0] in texts[1] or texts[1] in texts[0]):
         texts = [max(texts, key=len)]
     return " ".join(text if text.endswith((".", "!", "?")) or len(texts) == 1 else f"{text}." for text in texts)
+
+
+def _time(item: Item, chain: list[Element]) -> str:
+    """The formula of seconds, or what the encoding says, since an epoch; adds the unit. Raises `ValueError`."""
+    of = next((one for type_ in chain for one in type_.iterfind("Encoding")), None)
+    if of is None:
+        return ""
+    text = formula({1: decimal(of.get("scale", "1")), 0: decimal(of.get("offset", "0"))})
+    item |= unit({"seconds": "s"}.get(of.get("units", "seconds"), of.get("units", "")))
+    return text
 
 
 def described(*elements: Element) -> dict[str, str]:
