@@ -11,6 +11,7 @@ from icdgen.definitions import kinds, run, xtce, xtce_types
 from icdgen.diagnostics import Findings
 from tests.definitions.test_can import FILES, field, message
 
+END = "</xtce:ContainerSet></xtce:TelemetryMetaData></xtce:SpaceSystem>"
 SPACE = "http://www.omg.org/spec/XTCE/20180204"
 
 
@@ -37,6 +38,17 @@ def test_the_primary_header_is_the_envelope_and_the_application_process_the_id(p
         (5, 11, "id"), (18, 14, "sequence"), (32, 16, "length"),
     ]  # fmt: skip
     assert (tree["node"]["id_bits"], [one["id"] for one in tree["messages"]]) == (11, [100, 100, 101])
+
+
+def test_what_all_headers_of_a_direction_say_is_what_is_sent(tmp_path):
+    told = '<xtce:Comparison parameterRef="SECONDARY" value="1"/><xtce:Comparison parameterRef="APID" value="100"'
+    text = (FILES / "probe.xml").read_text().replace('<xtce:Comparison parameterRef="APID" value="100"', told)
+    (tmp_path / "probe.xml").write_text(
+        text.replace(text[text.index('      <xtce:SequenceContainer name="Dumped"') :], END)
+    )
+    read = run.read(tmp_path / "probe.xml", xtce.Xtce())
+    header = read.trees["probe"]["protocol"]["stream"]["header"]
+    assert read.held == 2 and header[2]["value"] == {"telecommand": 0, "telemetry": 1}
 
 
 def test_what_inherits_has_the_fields_of_its_base_and_the_value_that_tells_it(probe):
