@@ -9,6 +9,8 @@ import sys
 
 import pytest
 
+from icdgen.definitions import kinds, run
+from icdgen.icd.fmt import emit
 from tests.conftest import ROOT
 
 PAGE = (ROOT / "docs" / "definitions.md").read_text(encoding="utf-8")
@@ -37,3 +39,10 @@ def test_the_example_goes_from_a_database_to_a_program_as_printed(tmp_path):
             said += run.stdout.splitlines() if not command.startswith("icdgen --lang") else []
         assert said == expected
     assert (tmp_path / "icd" / "train.yaml").read_text() == blocks("yaml")[0]
+
+
+def test_the_space_packet_becomes_what_the_page_shows(tmp_path):
+    (tmp_path / "probe.xml").write_text(blocks("xml")[0])
+    read = run.read(tmp_path / "probe.xml", kinds.get("xtce"))
+    (tree,) = read.trees.values()
+    assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[1])

@@ -57,7 +57,7 @@ def _imported(definitions: Definitions, tree: dict, file: Path, left: list[Defin
     """A node that `icdgen import` made: all that stands in it is held, and as `icdgen fmt` has it."""
     names, tree = {one.name for one in left}, dict(tree)
     tree["messages"] = [one for one in tree["messages"] if one["name"] in names]
-    if "protocol" in tree:
+    if "checksums" in tree.get("protocol", {}):
         checksums = {
             name: {**one, "seeds": {owner: seed for owner, seed in one["seeds"].items() if owner in names}}
             for name, one in tree["protocol"]["checksums"].items()

@@ -21,6 +21,7 @@ _BUILT_IN = {
     "arxml": "icdgen.definitions.can:Arxml",
     "mavlink": "icdgen.definitions.mavlink:MavLink2",
     "mavlink1": "icdgen.definitions.mavlink:MavLink1",
+    "xtce": "icdgen.definitions.xtce:Xtce",
 }
 
 
