@@ -58,7 +58,7 @@ def scaled_fields(icd: Icd) -> Iterator[tuple[Message, Field]]:
                     yield message, field
 
 
-def chunks(field: Field, count: int, whole: int, near: int) -> list[Chunk]:
+def chunks(field: Field, count: int, whole: int, near: int = 1000) -> list[Chunk]:
     """Everything to ask of a field; fields of one kind share it."""
     return _chunks(field.scale, field.curve, field.type, field.bits, count, whole, near)
 
