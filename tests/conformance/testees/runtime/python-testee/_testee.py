@@ -92,7 +92,8 @@ def _encode(node: Any, words: Words) -> str:
             _cut(message, words)
         return _described(message)
     except RangeError as error:
-        raise Refusal(f"range field={_hex(_names(type(message))[error.field])}") from None
+        name = _names(type(message))[error.field]
+        raise Refusal(f"range field={_hex(name)}") from None
 
 
 def _set(held: Held, words: Words) -> None:
