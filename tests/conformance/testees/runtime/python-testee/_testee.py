@@ -168,9 +168,9 @@ def _decoder(kind: type[Message]) -> Any:
 
 def _rest(message: Any) -> Any:
     """The open end of a message with all elements, each 0."""
-    kind = type(message)
+    kind: type[Message] = type(message)
     zeros = _decoder(kind)(kind, bytes(kind.LENGTH))
-    return getattr(zeros, kind.TAIL.part)
+    return getattr(zeros, message.TAIL.part)
 
 
 def _cut(message: Message, words: Words) -> None:
