@@ -895,7 +895,7 @@ ICDGEN_API icd_status_t icd_stream_decoder_init(
     decoder->form = link->stream;
     decoder->direction = direction;
     decoder->buffer = buffer;
-    decoder->capacity = capacity < link->longest ? capacity : (size_t)link->longest;
+    decoder->capacity = capacity < link->longest ? capacity : ICDGEN_SIZE(link->longest);
     decoder->sequences = sequences;
     decoder->sequence_count = sequence_count;
     for (size_t i = 0; i < sequence_count; ++i) {

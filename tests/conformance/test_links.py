@@ -24,9 +24,9 @@ def links():
 
 
 @pytest.mark.parametrize("name", ["reference", "python", "c-sanitizers", "rust-debug"])
-def test_a_language_agrees_with_the_reference_on_links_of_all_kinds(links, name, tmp_path):
+def test_a_language_agrees_with_the_reference_on_links_of_all_kinds(links, name):
     icd, files = links
-    (result,) = wire.run([all_languages()[name]], icd, files, tmp_path)
+    (result,) = wire.run([all_languages()[name]], icd, files)
     assert result.differences == 0, "\n".join(result.shown)
     assert result.vectors == sum(len(node["cases"]) for node in files["nodes"]) > 2500
 

@@ -37,6 +37,16 @@ def score(answer, icd, files) -> Result:
     return result
 
 
+def is_found_out(answer, icd, files) -> bool:
+    """Whether the run finds something; it goes no further then."""
+    result = Result("any")
+    for batch in batches(icd, files, 2, 1):
+        drive(InProcess(answer), batch, result)
+        if result.differences:
+            return True
+    return False
+
+
 def test_the_reference_answers_every_request_as_it_must(icd, files):
     result = score(Reference(icd).answer, icd, files)
     assert result.differences == 0, result.shown
@@ -70,7 +80,7 @@ def test_a_testee_that_is_wrong_in_one_point_is_found_out(icd, files, change):
         change(made)
         return made
 
-    assert score(answer, icd, files).differences > 0
+    assert is_found_out(answer, icd, files)
 
 
 def test_a_setter_that_truncates_is_found_out(icd, files, monkeypatch):
@@ -80,7 +90,7 @@ def test_a_setter_that_truncates_is_found_out(icd, files, monkeypatch):
         return int(field.scale.raw(codec.Fraction(value))) if field.scale else nearest(field, value)
 
     monkeypatch.setattr(codec, "raw_from_physical", truncating)
-    assert score(Reference(icd).answer, icd, files).differences > 0
+    assert is_found_out(Reference(icd).answer, icd, files)
 
 
 def test_a_physical_value_computed_by_multiplication_is_found_out(tmp_path, demo, monkeypatch):

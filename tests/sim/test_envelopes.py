@@ -150,7 +150,7 @@ def icdgen(*words: str) -> subprocess.CompletedProcess:
     return subprocess.run(command, capture_output=True, text=True, timeout=60)
 
 
-@pytest.mark.parametrize("way", [("--pty",), ("--tcp", "0"), ("--udp", "0")])
+@pytest.mark.parametrize("way", [pytest.param(("--pty",), marks=pytest.mark.pty), ("--tcp", "0"), ("--udp", "0")])
 def test_monitor_and_send_from_the_outside(way):
     options = ("--node", "receiver", "--every", "0.1", "--set", "Navigation Clock", "Clock Bias=-3", *way)
     with simulator(*options, "--icd", str(FOLDER)) as (place, _):

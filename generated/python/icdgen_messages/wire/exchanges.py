@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Generic, Literal, Optional, TypeVar, Union, cast
+from typing import Any, Generic, Literal, Optional, TypeVar, Union, cast
 
 from .._base import Message
 from .._errors import IcdError
 from .._hints import KindOf, N, SpokenBy
 from .client import Client, Request
+from .envelope_client import EnvelopeClient
 from .errors import UnsupportedError
 from .events import (
     AnyDone,
@@ -28,10 +29,7 @@ from .failures import FailedError, RefusedError, ReplyTimeoutError
 from .link import Link, Settings
 from .procedures import Procedure
 
-if TYPE_CHECKING:
-    from .envelope_client import EnvelopeClient
-
-AnyClient = Union[Client[N], "EnvelopeClient[N]"]
+AnyClient = Union[Client[N], EnvelopeClient[N]]
 P = TypeVar("P", bound=Procedure)
 T = TypeVar("T")
 Step = Union[Literal["send"], float, None]
@@ -55,8 +53,6 @@ def client_of(
             raise UnsupportedError(
                 "the envelope has the checksum, and leaves no choice"
             )
-        from .envelope_client import EnvelopeClient
-
         return EnvelopeClient(link, settings, values)
     if values:
         raise UnsupportedError("only envelopes have values to choose")

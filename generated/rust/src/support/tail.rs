@@ -62,7 +62,7 @@ pub(crate) fn longest<const N: usize>(
     match longest.get_mut(..actual) {
         Some(_) if rest % step != 0 => Error::length(actual - rest % step, actual),
         Some(target) => {
-            target.copy_from_slice(bytes);
+            copy(target, bytes);
             Ok((longest, rest / step))
         }
         None => Error::length(N, actual),
@@ -107,9 +107,16 @@ pub(crate) fn write_frame(buffer: &mut [u8], frame: &[u8]) -> Result<usize, Erro
     let capacity = buffer.len();
     match buffer.get_mut(..frame.len()) {
         Some(target) => {
-            target.copy_from_slice(frame);
+            copy(target, frame);
             Ok(frame.len())
         }
         None => Error::length(frame.len(), capacity),
+    }
+}
+
+/// Copies bytes to as many others; `copy_from_slice` leaves a panic where a compiler does not see that they are as many.
+fn copy(target: &mut [u8], bytes: &[u8]) {
+    for (to, from) in target.iter_mut().zip(bytes) {
+        *to = *from;
     }
 }
