@@ -96,6 +96,8 @@ def test_texts_may_be_an_array(package, messages):
         messages.Rows(pairs=(b"ab", b"cd", b"e")).to_bytes()
     opened = messages.OpenRows.from_bytes(b"\1" + b"one".ljust(40, b"\0") + b"two".ljust(40, b"\0"))
     assert opened.extensions_text == ("one", "two") and len(opened.extensions) == 2
+    with pytest.raises(error, match=r"extensions\[0\] takes 40 bytes"):
+        messages.OpenRows(extensions=(b"one",)).to_bytes()
 
 
 def test_columns_hold_arrays_of_texts(messages):

@@ -232,7 +232,11 @@ def _elements(message: Message) -> list[Element]:
 
 def _physical(info: FieldInfo, word: str) -> Any:
     """A physical value as it is given: of text the characters."""
-    return bytes.fromhex(word).decode() if info.type == "text" else _floats.float64(int(word))
+    return (
+        bytes.fromhex(word).decode()
+        if info.type == "text"
+        else _floats.float64(int(word))
+    )
 
 
 def _raw(info: FieldInfo, word: str) -> Any:
