@@ -23,6 +23,7 @@ LAYERS = [  # what stands in one row does not know each other
     "diff model_cache",
     "backends.html generation",
     "importer site starter",
+    "definitions",
     "commands",
     "cli",
     "__main__",

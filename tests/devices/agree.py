@@ -12,10 +12,10 @@ from fractions import Fraction
 
 from icdgen import codec
 from icdgen.icd.build import special
-from icdgen.icd.formula import parse
+from icdgen.icd.formula import coefficients, parse
 from icdgen.icd.model import Field
 from tests.conformance.driver import Answering
-from tests.devices.definition import Definition, NotHeld
+from tests.devices.definition import Definition, NotHeld, Values
 
 ROUNDS_OFF = 1e-9  # as far as a library's double may be from the exact value, relative to it or as so many units
 
@@ -30,6 +30,7 @@ class Agreement:
     rounded: int = 0  # ours is the double nearest to the exact value, the library's is not
     impossible: int = 0  # the library's value has more bits than the field
     special: int = 0  # values that have a meaning, where the library has a value or says that there is none
+    encoded: int = 0  # frames of the library, from its raw values and from its physical ones
     refused: int = 0  # frames that the library takes for another message
     unread: set[str] = field(default_factory=set)  # messages of which the library reads no frame at all
     differences: list[str] = field(default_factory=list)
@@ -38,7 +39,8 @@ class Agreement:
         return (
             f"{self.messages} messages, {self.frames} frames, {self.values} values, {len(self.differences)} differences, "
             f"{self.special} special values, "
-            f"{self.rounded} rounded wrongly by the library, {self.impossible} of it wider than the field, "
+            + (f"{self.encoded} frames encoded, " if self.encoded else "")
+            + f"{self.rounded} rounded wrongly by the library, {self.impossible} of it wider than the field, "
             f"{self.refused} frames of other layouts"
             + (f"; the library reads no frame of {', '.join(sorted(self.unread))}" if self.unread else "")
         )
@@ -58,7 +60,7 @@ def compare(node: str, messages: list[Definition], testee: Answering, frames: in
     of_shared = iter(
         testee.ask([json.dumps(one).encode() for one, is_shared in zip(named, shared, strict=True) if is_shared])
     )
-    read = set()
+    read, again = set(), []
     for (one, data), answer, is_shared in zip(asked, plain, shared, strict=True):
         told = json.loads(answer or b"{}").get("message") if is_shared else one.name
         answer = next(of_shared) if is_shared else answer
@@ -97,11 +99,34 @@ def compare(node: str, messages: list[Definition], testee: Answering, frames: in
             if name in physical and bits is not None:
                 into.values += 1
                 _physical(about, name, _double(bits), physical[name], _exact(formulas[name], said["raw"][name]), into)
+        if one.encoded is not None:
+            expected = one.encoded(data).hex()
+            if said["bytes"] != expected:
+                into.differences.append(f"{about}: is encoded as {said['bytes']}, by the library as {expected}")
+            request = {"op": "encode", "node": node, "kind": one.kind, "id": one.id}
+            again.append(({**request, **_to_encode(one, said["raw"], physical)}, expected))
         elements = _there(one.end, said["raw"]) if one.end else 0
         extra = [name for name in raw if one.end and name.startswith(f"{one.end['name']}[{elements}]")]
         into.differences += [f"{about}: {elements} elements, the library says more" for _ in extra[:1]]
+    made = testee.ask([json.dumps(request).encode() for request, _ in again])
+    for (request, expected), answer in zip(again, made, strict=True):
+        into.encoded += 1
+        if json.loads(answer or b"{}").get("bytes") != expected:
+            into.differences.append(f"{request}: is encoded as {answer!r}, by the library as {expected}")
     into.messages += len(messages)
     into.unread |= {one.name for one in messages} - read
+
+
+def _to_encode(one: Definition, raw: dict[str, object], physical: Values) -> dict[str, dict[str, object]]:
+    """The values of a frame to be encoded: physical ones as the library has them, where they can be set."""
+    own = [part for part in one.fields if "view" not in part]
+    scaled = {part["name"] for part in own if "formula" in part and part["type"] != "float"}
+    given = {
+        name: struct.pack(">d", value).hex()
+        for name, value in physical.items()
+        if name in scaled and isinstance(value, (int, float))
+    }
+    return {"raw": {one["name"]: raw[one["name"]] for one in own if one["name"] not in given}, "physical": given}
 
 
 def _values(one: Definition, raw: dict[str, object]) -> Iterator[tuple[str, dict, object]]:
@@ -166,7 +191,10 @@ def random_frames(one: Definition, chance: random.Random, count: int) -> list[by
                 data = _put(data, part, part["const"])
             if end is not None and part["name"] in (end.get("count"), end.get("size")):
                 data = _put(data, part, elements)
-        found.append(_chosen(one, data, chance) if number % 4 else data)
+        data = _chosen(one, data, chance) if number % 4 else data
+        if one.may_end_early and number % 2:  # with zeros at the end, which are not sent
+            data = data[: chance.randint(1, len(data))].rstrip(b"\0") or data[:1]
+        found.append(data)
     return found
 
 
@@ -199,6 +227,12 @@ def _put(data: bytes, part: dict, value: int) -> bytes:
 
 
 def _exact(formula: str, raw: int) -> float:
+    terms = coefficients(formula)
+    if len(terms) > 2:  # docs/icd-format.md says how a polynomial is computed
+        computed = float(terms[-1])
+        for term in terms[-2::-1]:
+            computed = float(term) + raw * computed
+        return computed
     value = parse(formula).physical(Fraction(raw))
     return value.numerator / value.denominator  # true division of integers is correctly rounded
 

@@ -33,6 +33,8 @@ class Definition:
     more: dict = field(default_factory=dict)
     structs: list[dict] = field(default_factory=list)
     raw_only: str = ""  # why some physical values of it cannot be said
+    may_end_early: bool = False  # whether zeros at the end may be cut off
+    encoded: Callable[[bytes], bytes] | None = None  # the library's own frame of the values of a frame
 
     def tree(self) -> dict:
         """As it stands in an ICD; bytes at the end that nothing describes are reserved."""
@@ -82,6 +84,7 @@ class Definitions:
 
     node: dict
     messages: list[Definition]
+    tree: dict | None = None  # the ICD, where `icdgen import` made it
 
     @property
     def name(self) -> str:

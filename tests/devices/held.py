@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from icdgen.diagnostics import Finding
+from icdgen.icd.fmt import emit
 from icdgen.icd.model import Icd
 from icdgen.loading import load
 from tests.devices.definition import Definition, Definitions
@@ -31,6 +32,8 @@ def held(definitions: Definitions, folder: Path) -> Held:
     causes = {one.name: one.cause for one in definitions.messages if one.cause}
     left = [one for one in definitions.messages if not one.cause]
     file = folder / f"{definitions.name}.yaml"
+    if definitions.tree is not None:
+        return _imported(definitions, definitions.tree, file, left, causes)
     for _ in range(ROUNDS):
         if not left:
             break
@@ -48,6 +51,23 @@ def held(definitions: Definitions, folder: Path) -> Held:
         left = [one for one in left if one.name not in causes]
     file.unlink(missing_ok=True)
     return Held(definitions, None, [], causes)
+
+
+def _imported(definitions: Definitions, tree: dict, file: Path, left: list[Definition], causes: dict[str, str]) -> Held:
+    """A node that `icdgen import` made: all that stands in it is held, and as `icdgen fmt` has it."""
+    names, tree = {one.name for one in left}, dict(tree)
+    tree["messages"] = [one for one in tree["messages"] if one["name"] in names]
+    if "checksums" in tree.get("protocol", {}):
+        checksums = {
+            name: {**one, "seeds": {owner: seed for owner, seed in one["seeds"].items() if owner in names}}
+            for name, one in tree["protocol"]["checksums"].items()
+        }
+        tree["protocol"] = {**tree["protocol"], "checksums": checksums}
+    file.write_text(emit.text(tree), encoding="utf-8")
+    loaded = load([file])
+    if not loaded.ok:
+        raise ValueError(f"{file}: {loaded.findings}")
+    return Held(definitions, loaded.icd, left, causes)
 
 
 def _quoted(file: Path, finding: Finding) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.devices import can, cygnss, mavlink, sbp, sunspec, ubx
+from tests.devices import can, cygnss, mavlink, sbp, sunspec, ubx, xtce
 from tests.devices.definition import Protocol
 
 PROTOCOLS = {
@@ -14,5 +14,6 @@ PROTOCOLS = {
         Protocol("mavlink", "pymavlink", mavlink.dialects),
         Protocol("cygnss", "ccsdspy", cygnss.packets),
         Protocol("sunspec", "pysunspec2", sunspec.models),
+        Protocol("xtce", "space-packet-parser", xtce.packets),
     )
 }

@@ -14,7 +14,11 @@ from tests.conftest import ROOT
 from tests.importer.test_command import TEXT, icdgen
 from tests.importer.test_text import ENUM, MESSAGE, found, read
 
-SOURCES = [*(ROOT / "codegen" / "icdgen" / "importer").rglob("*.py"), ROOT / "codegen/icdgen/commands/import_.py"]
+SOURCES = [
+    *(ROOT / "codegen" / "icdgen" / "importer").rglob("*.py"),
+    *(ROOT / "codegen" / "icdgen" / "definitions").rglob("*.py"),
+    ROOT / "codegen/icdgen/commands/import_.py",
+]
 
 
 def test_every_code_that_an_import_gives_has_a_page_with_an_example():

@@ -15,8 +15,10 @@ from icdgen.commands.common import PATH, in_colour, print_findings, say, write_f
 from icdgen.diagnostics import Findings
 
 if TYPE_CHECKING:
+    from icdgen.definitions.model import Reader
     from icdgen.importer.profile import Profile
     from icdgen.importer.run import Result
+    from icdgen.importer.targets import Target
 
 
 class _Pages(click.ParamType):  # type: ignore[type-arg]  # older versions of click know no argument
@@ -33,19 +35,20 @@ class _Pages(click.ParamType):  # type: ignore[type-arg]  # older versions of cl
 
 
 PAGES = _Pages()
-ABOUT_FILES = frozenset({"IMP002", "IMP003"})
+ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP005"})
 
 
 @click.command("import")
-@click.argument("manual", type=PATH)
+@click.argument("manual", metavar="FILE", type=PATH)
 @click.option("--out", type=PATH, default=Path("icd"), show_default=True, help="Folder for the ICDs, one file a node.")
+@click.option("--kind", help="Kind of a definition that is not known by how it begins: dbc, kcd, sym, arxml ...")
 @click.option(
     "--profile", "words", metavar="PROFILE", help="Vocabulary of the manual: a YAML file, or the name of a shipped one."
 )
 @click.option(
     "--update",
     is_flag=True,
-    help="Lay the manual over ICDs that exist; errata, identifiers, summaries and comments stay.",
+    help="Lay what was read over ICDs that exist; errata, identifiers, summaries and comments stay.",
 )
 @click.option("--dry-run", is_flag=True, help="Write no ICD; say what would be written or changed.")
 @click.option(
@@ -64,6 +67,7 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003"})
 def import_(
     manual: Path,
     out: Path,
+    kind: str | None,
     words: str | None,
     update: bool,
     dry_run: bool,
@@ -74,18 +78,26 @@ def import_(
     form: str,
     jobs: int | None,
 ) -> None:
-    """Read a vendor's MANUAL (PDF, or text with tab-separated tables) into reviewable ICDs.
+    """Read a vendor's manual (PDF, or text with tab-separated tables) or a definition into reviewable ICDs.
+
+    Definitions are CAN databases (DBC, KCD, SYM, ARXML). --profile, --report, --descriptions, --explore, --pages and
+    --jobs are of manuals.
 
     Exit status: 0 if the ICDs hold all that was found, 1 if something is missing from them or must be looked at first.
     """
-    from icdgen.importer import console, profile, run
+    from icdgen.definitions import kinds
+    from icdgen.importer import console, profile, run, targets
 
+    reader = kinds.get(kind) if kind is not None else kinds.of(manual)
+    if reader is not None:
+        _define(manual, reader, out, update, dry_run, form)
+        return
     try:
         vocabulary = profile.load(profile.find(words))
         with _progress() as progress:
             result, trees = run.run(manual, vocabulary, progress, jobs, descriptions, pages)
         if not explore:
-            run.aim(result, trees, out, update, dry_run)
+            result.targets = targets.aim(trees, out, update, dry_run)
     except Findings as error:
         _refuse(error, manual, form)
         sys.exit(1)
@@ -95,7 +107,7 @@ def import_(
             _write_page(page, result)
         return
     if not dry_run:
-        run.write(result)
+        targets.write(result.targets)
     if form == "json":
         click.echo(console.as_json(result))
     else:
@@ -103,6 +115,28 @@ def import_(
     if page is not None:
         _write_page(page, result)
     sys.exit(1 if result.failed else 0)
+
+
+def _define(file: Path, reader: Reader, out: Path, update: bool, dry_run: bool, form: str) -> None:
+    """What a definition becomes."""
+    from icdgen.definitions import console, run
+    from icdgen.importer import targets
+
+    try:
+        read = run.read(file, reader)
+        read.targets = targets.aim(read.trees, out, update, dry_run, run.TOLD)
+    except Findings as error:
+        _refuse(error, file, form)
+        sys.exit(1)
+    if not dry_run:
+        targets.write(read.targets)
+    if form == "json":
+        click.echo(console.as_json(read))
+    else:
+        colour = in_colour(sys.stdout)
+        click.echo(console.report(read, colour), color=colour or None)
+        _say_files(read.targets, dry_run)
+    sys.exit(1 if read.failed else 0)
 
 
 def _explore(result: Result, vocabulary: Profile, form: str) -> None:
@@ -121,11 +155,16 @@ def _say(result: Result, dry_run: bool) -> None:
         click.echo(console.report(result, True), color=True)
     else:
         say(console.report(result))
-    if not result.targets:
-        return
-    say("\n".join(console.files(result, dry_run)))
-    if not dry_run:
-        _next_step(result)
+    _say_files(result.targets, dry_run)
+
+
+def _say_files(targets: list[Target], dry_run: bool) -> None:
+    from icdgen.importer import console
+
+    if targets:
+        say("\n".join(console.files(targets, dry_run)))
+    if targets and not dry_run:
+        _next_step(targets)
 
 
 def _refuse(error: Findings, manual: Path, form: str) -> None:
@@ -156,11 +195,11 @@ def _write_page(page: Path, result: Result) -> None:
     write_file(page, html.report(result), "choose another place with --report")
 
 
-def _next_step(result: Result) -> None:
+def _next_step(targets: list[Target]) -> None:
     """What `icdgen check` would say of the files, as a number: the import ends where the check begins."""
     from icdgen.loading import load
 
-    paths = [target.path for target in result.targets]
+    paths = [target.path for target in targets]
     loaded = load(paths)
     names = " ".join(str(path) for path in paths)
     if loaded.findings:

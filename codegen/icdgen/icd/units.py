@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
 from typing import NamedTuple
 
 
@@ -103,3 +105,23 @@ SPELLINGS = SIGNS | {
     "Nm": "N.m", "kg.m2": "kg.m^2", "kg.m²": "kg.m^2", "A.m2": "A.m^2", "A.m²": "A.m^2",
     "Am2": "A.m^2", "bytes": "byte", "bits": "bit",
 }  # fmt: skip
+
+NOT_STATED = "not stated"
+_SAID = str.maketrans(
+    {"\u03a9": "ohm", "\u2126": "ohm", "\u00b5": "u", "\u03bc": "u", "°": "deg"}
+)  # signs in identifiers
+
+
+def declared(symbols: Iterable[str]) -> list[dict[str, str]]:
+    """What `units:` says of units that are not built in: each symbol once, with an identifier of its own."""
+    made: dict[str, dict[str, str]] = {}
+    taken = {unit.identifier for unit in STANDARD.values()}
+    for symbol in symbols:
+        if symbol in STANDARD or symbol in made:
+            continue
+        name = "_".join(re.findall("[a-z0-9]+", symbol.translate(_SAID).casefold())) or "unit"
+        while name in taken:
+            name += "_"
+        taken.add(name)
+        made[symbol] = {"symbol": symbol, "identifier": name, "quantity": NOT_STATED}
+    return list(made.values())

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from collections.abc import Sequence
 from typing import Any
 
 from icdgen.diagnostics import Finding
 from icdgen.icd.rules.wording import count
 from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Spot, Trouble
 from icdgen.importer.run import Result
+from icdgen.importer.targets import Target
 from icdgen.importer.understand.survey import BACKGROUND, UNKNOWN
 from icdgen.importer.words import table_name
 from icdgen.reports.excerpt import printable
@@ -25,22 +27,27 @@ def where(file: str, spot: Spot) -> str:
 
 def report(result: Result, colour: bool = False) -> str:
     """What was found, then everything to look at, then the figures."""
+    return "\n".join(findings(result.troubles, result.document.file, colour) + summary(result))
+
+
+def findings(troubles: Sequence[Trouble], file: str, colour: bool = False) -> list[str]:
+    """Everything to look at: a block each, and a line for each note."""
     lines: list[str] = []
     notes: list[Trouble] = []
-    for trouble in result.troubles:
+    for trouble in troubles:
         if trouble.severity == "note":
             notes.append(trouble)
             continue
         lines += [
             _paint(f"{trouble.severity}[{trouble.code}]", trouble.severity, colour) + f": {printable(trouble.message)}",
-            f"  --> {printable(where(result.document.file, trouble.spot))}",
+            f"  --> {printable(where(file, trouble.spot))}",
         ]
         lines += [f"  = help: {printable(trouble.help)}"] if trouble.help else []
         lines.append("")
     if notes:
         lines += [f"{_paint('note', 'note', colour)}[{t.code}] {_short(t)}: {printable(t.message)}" for t in notes]
         lines.append("")
-    return "\n".join(lines + summary(result))
+    return lines
 
 
 def _short(trouble: Trouble) -> str:
@@ -56,15 +63,18 @@ def summary(result: Result) -> list[str]:
     parts = [f"{kinds[kind]} {_many(kind, kinds[kind])}" for kind in order if kinds[kind]]
     pages = f"{result.document.pages:,} pages, " if result.document.pages else ""
     sure = result.sureness()
-    severities = Counter(t.severity for t in result.troubles)
-    found = ", ".join(
-        f"{severities[s]} {s}{'s' if severities[s] != 1 else ''}" for s in ("error", "warning", "note") if severities[s]
-    )
     return [
         f"{pages}{len(result.survey.found):,} tables" + (": " if parts else "") + ", ".join(parts),
         "read: " + (", ".join(f"{sure[one]} {one}" for one in (CERTAIN, LIKELY, DOUBTFUL) if sure[one]) or "none"),
-        f"findings: {found or 'none'}",
+        severities(result.troubles),
     ]
+
+
+def severities(troubles: Sequence[Trouble]) -> str:
+    """``findings: 2 errors, 1 note``"""
+    times = Counter(t.severity for t in troubles)
+    found = ", ".join(f"{times[s]} {s}{'s' if times[s] != 1 else ''}" for s in ("error", "warning", "note") if times[s])
+    return f"findings: {found or 'none'}"
 
 
 def _many(kind: str, count: int) -> str:
@@ -73,10 +83,10 @@ def _many(kind: str, count: int) -> str:
     return kind + "s"
 
 
-def files(result: Result, dry: bool = False) -> list[str]:
+def files(targets: Sequence[Target], dry: bool = False) -> list[str]:
     """What each file holds, and what changed in it; what would, if none was written (``dry``)."""
     lines = []
-    for target in result.targets:
+    for target in targets:
         tree = target.tree
         messages, enums = tree.get("messages", []), tree.get("enums", [])
         fields = sum(len(m.get("fields", ())) for m in messages)
@@ -107,22 +117,24 @@ def as_json(result: Result) -> str:
         for one in result.survey.found
     ]
     troubles = [
-        {
-            "code": t.code,
-            "severity": t.severity,
-            "message": t.message,
-            "help": t.help,
-            "table": _table(t.spot.table),
-            "page": t.spot.page,
-            "line": t.spot.line,
-        }
+        {**finding_as_json(t), "table": _table(t.spot.table), "page": t.spot.page, "line": t.spot.line}
         for t in result.troubles
     ]
-    written: list[dict[str, Any]] = [{"file": str(t.path), "changes": t.changes} for t in result.targets]
+    written = files_as_json(result.targets)
     return json.dumps(
         {"manual": result.document.file, "pages": result.document.pages, "tables": found, "findings": troubles,
          "files": written}, indent=2, ensure_ascii=False,
     )  # fmt: skip
+
+
+def finding_as_json(one: Trouble) -> dict[str, Any]:
+    """A finding without its place."""
+    return {"code": one.code, "severity": one.severity, "message": one.message, "help": one.help}
+
+
+def files_as_json(targets: Sequence[Target]) -> list[dict[str, Any]]:
+    """What was written, with the changes of what was updated."""
+    return [{"file": str(one.path), "changes": one.changes} for one in targets]
 
 
 def _table(number: int | None) -> int | str | None:

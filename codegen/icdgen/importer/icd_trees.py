@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from icdgen.icd import units
 from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.units import SIGNS, SPELLINGS, STANDARD
 from icdgen.importer.document import Document, Table, Trouble
@@ -13,19 +14,14 @@ from icdgen.importer.profile import Profile
 from icdgen.importer.understand.model import Listed, ReadEnum, ReadField, ReadMessage
 from icdgen.importer.words import squeezed, table_name
 
-NOT_STATED = "not stated"
-_SAID = str.maketrans(
-    {"\u03a9": "ohm", "\u2126": "ohm", "\u00b5": "u", "\u03bc": "u", "°": "deg"}
-)  # signs in identifiers
-
 
 def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, troubles: list[Trouble]) -> dict[str, Any]:
     """The ICD of a node as plain mappings and lists, in the order of the manual."""
     made: dict[str, Any] = {"icdgen": 1, "node": head(node, document, profile)}
     if node.include:
         made["include"] = node.include
-    if units := _units(node, troubles):
-        made["units"] = units
+    if declared := _units(node, troubles):
+        made["units"] = declared
     if node.enums:
         made["enums"] = [_enum(one, prose) for one in node.enums]
     if node.messages:
@@ -128,23 +124,18 @@ def _field(one: ReadField, prose: bool) -> dict[str, Any]:
 
 def _units(node: NodeParts, troubles: list[Trouble]) -> list[dict[str, Any]]:
     """Units that are not built in, and no other spelling of one that is."""
-    made: dict[str, dict[str, Any]] = {}
-    taken = {unit.identifier for unit in STANDARD.values()}
+    first: dict[str, tuple[ReadMessage, ReadField]] = {}
     for message in node.messages:
         for field in message.fields:
             symbol = field.described.unit
-            if not symbol or symbol in STANDARD or symbol in SPELLINGS or symbol in made:
-                continue
-            name = "_".join(re.findall("[a-z0-9]+", symbol.translate(_SAID).casefold())) or "unit"
-            while name in taken:
-                name += "_"
-            taken.add(name)
-            made[symbol] = {"symbol": symbol, "identifier": name, "quantity": NOT_STATED}
-            troubles.append(
-                Trouble("IMP042", f"{message.table.title}, field `{field.name}`: the unit `{symbol}` is not built in",
-                        field.spot, "declared under `units:`; say there what it measures", "note")
-            )  # fmt: skip
-    return list(made.values())
+            if symbol and symbol not in STANDARD and symbol not in SPELLINGS:
+                first.setdefault(symbol, (message, field))
+    for symbol, (message, field) in first.items():
+        troubles.append(
+            Trouble("IMP042", f"{message.table.title}, field `{field.name}`: the unit `{symbol}` is not built in",
+                    field.spot, "declared under `units:`; say there what it measures", "note")
+        )  # fmt: skip
+    return units.declared(first)
 
 
 def _missing(row: Listed) -> dict[str, Any] | None:

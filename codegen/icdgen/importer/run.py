@@ -1,33 +1,19 @@
-"""The import as a whole: manual in, files and findings out. Nothing is written before everything is ready."""
+"""A manual as a whole: trees and findings out. Nothing is written here."""
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from icdgen.errors import UserError
-from icdgen.icd.fmt import emit
-from icdgen.importer import assemble, profile, reading, repairs, update
+from icdgen.importer import assemble, profile, reading, repairs
 from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Document, Table, Trouble
+from icdgen.importer.targets import Target
 from icdgen.importer.understand import byte_lines, survey
 from icdgen.importer.understand.survey import Survey
 
 NOTHING = "IMP004"
-
-
-@dataclass
-class Target:
-    """A file to be written. ``changes`` is None where there was none before."""
-
-    path: Path
-    text: str
-    tree: dict[str, Any]
-    changes: list[str] | None = None
-    same: bool = False
-    refused: bool = False  # one is there, and was not to be updated
 
 
 @dataclass
@@ -101,42 +87,3 @@ def _nothing(document: Document, found: Survey) -> Trouble:
 def _first_cells(table: Table) -> list[str]:
     rows = [table.header.titles] if table.header else [row.cells for row in (*table.head, *table.rows)]
     return next(([c for c in cells if c] for cells in rows if any(cells)), [])
-
-
-def aim(result: Result, trees: dict[str, dict[str, Any]], out: Path, over: bool, dry: bool = False) -> None:
-    """Prepares the files. Raises `UserError` where one exists and ``over`` does not allow to update it, unless none will
-    be written anyway (``dry``)."""
-    taken = [out / f"{name}.yaml" for name in trees if os.path.lexists(out / f"{name}.yaml")]
-    if taken and not over and not dry:
-        raise UserError(
-            f"{', '.join(str(p) for p in taken)} already there",
-            "--update lays the manual over them and keeps errata, identifiers and summaries; or choose another --out",
-        )
-    for name, tree in trees.items():
-        path = out / f"{name}.yaml"
-        if path not in taken:
-            result.targets.append(Target(path, emit.text(tree), tree))
-            continue
-        try:
-            old = path.read_text(encoding="utf-8")
-        except OSError as error:
-            raise UserError(f"cannot read {path}: {error.strerror}", "check the path") from None
-        except UnicodeDecodeError:
-            raise UserError(f"{path} is not UTF-8", "save it as UTF-8, or move it away") from None
-        made = update.update(old, str(path), tree)
-        result.targets.append(Target(path, made.text, tree, made.changes, made.text == old, not over))
-
-
-def write(result: Result) -> None:
-    """Writes the files, each as a whole. Raises `UserError` if one can't be written."""
-    from icdgen.generation.write import replace
-
-    for target in result.targets:
-        if target.same:
-            continue
-        try:
-            replace(Path(os.path.realpath(target.path)), target.text.encode("utf-8"))
-        except OSError as error:
-            raise UserError(
-                f"cannot write {target.path}: {error.strerror}", "choose another folder with --out"
-            ) from None

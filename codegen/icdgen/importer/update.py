@@ -15,11 +15,13 @@ from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
 _OURS = {
     "message": ("identifier", "summary", "acknowledge", "hazard", "contains", "assumptions"),
     "field": ("identifier", "summary", "special", "min", "max", "above", "below", "bitfields"),
+    "struct": ("identifier", "summary"),
     "enumeration": ("identifier", "summary"),
     "member": ("identifier", "summary"),
     "loggable": (),
 }
-_INNER = {"message": ("fields", "field"), "enumeration": ("members", "member")}
+_SECTIONS = (("enums", "enumeration"), ("structs", "struct"), ("messages", "message"), ("loggable", "loggable"))
+_INNER = {"message": ("fields", "field"), "struct": ("fields", "field"), "enumeration": ("members", "member")}
 
 
 @dataclass
@@ -30,12 +32,14 @@ class Updated:
     changes: list[str] = field(default_factory=list)
 
 
-def update(text: str, name: str, tree: dict[str, Any]) -> Updated:
-    """Raises `Findings` if the old text is no YAML."""
+def update(text: str, name: str, tree: dict[str, Any], told: frozenset[str] = frozenset()) -> Updated:
+    """Raises `Findings` if the old text is no YAML. ``told``: keys of ours that the source gives, so that its go first."""
     root = read.read(text, source.parse(text.encode("utf-8", "surrogatepass"), name))
     made = Updated("")
-    for key, kind in (("enums", "enumeration"), ("messages", "message"), ("loggable", "loggable")):
-        _section(root, key, kind, tree.get(key, []), made.changes)
+    for key, kind in _SECTIONS:
+        _section(root, key, kind, tree.get(key, []), made.changes, told)
+    if "protocol" in tree:
+        _replaced(root, "protocol", tree["protocol"], made.changes)
     _announced(root, tree.get("formula_for"), made.changes)
     _added(root, "units", "symbol", tree.get("units", []), made.changes)
     _added(root, "missing", "name", tree.get("missing", []), made.changes)
@@ -58,7 +62,21 @@ def _announced(root: Branch, words: dict[str, Any] | None, changes: list[str]) -
         root.children.append(Child(Text("formula_for", "formula_for"), emit.branch(words)))
 
 
-def _section(root: Branch, key: str, kind: str, items: list[dict[str, Any]], changes: list[str]) -> None:
+def _replaced(root: Branch, key: str, value: dict[str, Any], changes: list[str]) -> None:
+    """A section that the source gives as a whole."""
+    old = _child(root, key)
+    if old is not None and _plain(old.value) == value:
+        return
+    changes.append(f"~ {key} is another" if old is not None else f"+ {key}")
+    if old is None:
+        root.children.append(Child(Text(key, key), emit.branch(value)))
+    else:
+        old.value = emit.branch(value)
+
+
+def _section(
+    root: Branch, key: str, kind: str, items: list[dict[str, Any]], changes: list[str], told: frozenset[str]
+) -> None:
     old = _child(root, key)
     if not items and old is None:
         return
@@ -68,12 +86,14 @@ def _section(root: Branch, key: str, kind: str, items: list[dict[str, Any]], cha
         return
     if not isinstance(old.value, Branch):
         old.value = Branch(False, False, 0)
-    old.value.children = _merged(old.value.children, items, kind, "", changes)
+    old.value.children = _merged(old.value.children, items, kind, "", changes, told)
     if not old.value.children:
         root.children.remove(old)
 
 
-def _merged(old: list[Child], items: list[dict[str, Any]], kind: str, where: str, changes: list[str]) -> list[Child]:
+def _merged(
+    old: list[Child], items: list[dict[str, Any]], kind: str, where: str, changes: list[str], told: frozenset[str]
+) -> list[Child]:
     """The items with what the old ones have of our own. Old ones stay in their order, new ones come after their
     predecessor."""
     pairs = _matched(old, items, kind)
@@ -88,7 +108,7 @@ def _merged(old: list[Child], items: list[dict[str, Any]], kind: str, where: str
             continue
         place = old.index(before)
         placed[index] = place
-        made.append((place, _merge(before, item, kind, where, changes)))
+        made.append((place, _merge(before, item, kind, where, changes, told)))
     kept = {id(child) for child in pairs.values()}
     for child in old:
         if id(child) not in kept:
@@ -97,7 +117,7 @@ def _merged(old: list[Child], items: list[dict[str, Any]], kind: str, where: str
     return [child for _, child in (made if ascending else sorted(made, key=lambda m: m[0]))]
 
 
-def _merge(old: Child, item: dict[str, Any], kind: str, where: str, changes: list[str]) -> Child:
+def _merge(old: Child, item: dict[str, Any], kind: str, where: str, changes: list[str], told: frozenset[str]) -> Child:
     """One entry: the vendor's keys from ``item``, ours and the comments from the old one."""
     assert isinstance(old.value, Branch)
     title = _title(kind, item)
@@ -113,7 +133,7 @@ def _merge(old: Child, item: dict[str, Any], kind: str, where: str, changes: lis
         child: Child | None = before.get(key)  # type: ignore[no-redef]
         if inner and key == inner[0]:
             children = child.value.children if child is not None and isinstance(child.value, Branch) else []
-            lines = _merged(children, value, inner[1], f"{where}{kind} {title}: ", changes)
+            lines = _merged(children, value, inner[1], f"{where}{kind} {title}: ", changes, told)
             if child is None:
                 child = Child(Text(key, key))
                 result.children.append(child)
@@ -122,7 +142,7 @@ def _merge(old: Child, item: dict[str, Any], kind: str, where: str, changes: lis
             result.children.append(Child(Text(key, key), emit.node(value)))
             if key not in ("source", "summary"):
                 changes.append(f"~ {where}{kind} {title}: {key} (absent) -> {_shown(value)}")
-        elif key in _OURS[kind]:
+        elif key in _OURS[kind] and key not in told:
             continue  # ours goes first
         elif key == "source":
             child.value = emit.branch({**_plain(child.value), **value})
@@ -161,6 +181,7 @@ def _ids(item: dict[str, Any]) -> object:
 _MATCHES: dict[str, list[Callable[[dict[str, Any]], object]]] = {
     "message": [lambda i: (i.get("name"), _ids(i)), lambda i: i.get("name"), _ids],
     "field": [lambda i: (i.get("name"), i.get("at")), lambda i: i.get("name"), lambda i: i.get("at")],
+    "struct": [lambda i: i.get("name")],
     "enumeration": [lambda i: i.get("name"), lambda i: (i.get("source") or {}).get("table")],
     "member": [lambda i: (i.get("value"), i.get("name")), lambda i: i.get("value")],
     "loggable": [lambda i: i.get("bit")],

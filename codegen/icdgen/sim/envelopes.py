@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import heapq
 from collections.abc import Mapping
 
 from icdgen_runtime.wire.sender import Sender
@@ -14,8 +13,8 @@ from icdgen.icd.variants import ids_of
 from icdgen.protocol.envelope import PACKET
 from icdgen.protocol.facts import need
 from icdgen.sim.computer import Computer
+from icdgen.sim.due import Due
 from icdgen.sim.faults import Faults
-from icdgen.values.frame import violations
 
 
 class EnvelopeLine:
@@ -35,8 +34,7 @@ class EnvelopeLine:
         self.unasked = [message for message in self.unasked if message.name not in answers]
         self._every = computer.settings.every_ms
         self._next = 0
-        self._queue: list[tuple[int, int, bytes]] = []
-        self._sent = 0
+        self._due = Due()
 
     @property
     def keeps_packets(self) -> bool:
@@ -68,17 +66,12 @@ class EnvelopeLine:
 
     def pieces(self, now: int) -> list[bytes]:
         """The messages that are due."""
-        due = []
-        while self._queue and self._queue[0][0] <= now:
-            due.append(heapq.heappop(self._queue)[2])
-        return due
+        return self._due.pop(now)
 
     @property
     def deadline(self) -> int | None:
         """When `tick` and `pieces` want to be called at the latest."""
-        times = [self._queue[0][0]] if self._queue else []
-        times += [self._next] if self._every else []
-        return min(times, default=None)
+        return min(self._due.times + ([self._next] if self._every else []), default=None)
 
     def _telecommand(self, now: int, id: int, data: bytes) -> None:
         program = self.computer.program
@@ -101,15 +94,10 @@ class EnvelopeLine:
 
     def _is_taken(self, message: Message, data: bytes) -> bool:
         program = self.computer.program
-        raw = codec.decode(program.icd.node(message.node), message, data)
-        if self.computer.settings.strict:
-            allowed = ((one, raw[one.name]) for one in message.owners if one.name in raw)
-            return not any(isinstance(value, int) and violations(one, value) for one, value in allowed)
-        return all(one.const is None or raw.get(one.name, one.const) == one.const for one in message.owners)
+        return program.misfit(message, codec.decode(program.icd.node(message.node), message, data)) is None
 
     def _send(self, now: int, on: str, message: Message) -> None:
         assert message.telemetry_id is not None
         line = self.sender.encode(message.telemetry_id, self.computer.program.current(now, message))
         for delay, data in self.faults.spoil(on, line):
-            self._sent += 1
-            heapq.heappush(self._queue, (now + delay, self._sent, data))
+            self._due.push(now + delay, data)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import heapq
-
 from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
 from icdgen.protocol.sections import UART
 from icdgen.sim.computer import Computer
+from icdgen.sim.due import Due
 from icdgen.sim.faults import Faults
 from icdgen.sim.program import Outcome
 
@@ -27,8 +26,7 @@ class Line:
         # Programs of a device share its line, and its framing.
         self.link = computer.program.link
         self.decoder = UartDecoder(self.link, computer.program.known.longest_telecommand)
-        self._queue: list[tuple[int, int, bytes]] = []
-        self._sent = 0
+        self._due = Due()
 
     def received(self, now: int, data: bytes) -> None:
         """The next bytes from the client."""
@@ -60,15 +58,12 @@ class Line:
 
     def take(self, now: int) -> bytes:
         """The bytes that are due."""
-        out = bytearray()
-        while self._queue and self._queue[0][0] <= now:
-            out += heapq.heappop(self._queue)[2]
-        return bytes(out)
+        return b"".join(self._due.pop(now))
 
     @property
     def deadline(self) -> int | None:
         """When `tick` and `take` want to be called at the latest."""
-        times = [self._queue[0][0]] if self._queue else []
+        times = self._due.times
         if self.computer.deadline is not None:
             times.append(self.computer.deadline)
         return min(times, default=None)
@@ -126,5 +121,4 @@ class Line:
 
     def _send(self, now: int, on: str, message: bytes) -> None:
         for delay, data in self.faults.spoil(on, uart_encode(self.link, message)):
-            self._sent += 1
-            heapq.heappush(self._queue, (now + delay, self._sent, data))
+            self._due.push(now + delay, data)

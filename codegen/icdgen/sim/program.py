@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -114,6 +115,19 @@ class Program:
             frames.append(data[: slot.length].ljust(slot.length, bytes([layout.fill])))
         return LogMessage.encode(self.link, asked[0], frames)
 
+    def misfit(self, message: Message, raw: Mapping[str, int | bytes]) -> int | None:
+        """Index of the first field whose value is not taken."""
+        for index, field in enumerate(message.fields):
+            value = raw.get(field.name)  # not every field is there in every message
+            wrong = isinstance(value, int) and (
+                bool(violations(field, value)) and codec.special_of(field, value) is None
+                if self.settings.strict
+                else field.const is not None and value != field.const
+            )
+            if wrong:
+                return index
+        return None
+
     def _take(self, now: int, message: bytes, bus: str) -> Outcome:
         known = self.known.telecommands.get(message[0])
         if known is None or known.name in self.unsupported:
@@ -128,15 +142,8 @@ class Program:
         if len(data) != known.length:
             return self._refusal("length")
         raw = codec.decode(self.icd.node(known.node), known, data)
-        for index, field in enumerate(known.fields):
-            value = raw[field.name]
-            wrong = isinstance(value, int) and (
-                bool(violations(field, value)) and codec.special_of(field, value) is None
-                if self.settings.strict
-                else field.const is not None and value != field.const
-            )
-            if wrong:
-                return self._refusal("parameter", index)
+        if (index := self.misfit(known, raw)) is not None:
+            return self._refusal("parameter", index)
         if known.kind == CONFIGURATION:
             self.values.put(known, data)
         try:

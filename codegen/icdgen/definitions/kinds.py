@@ -1,0 +1,87 @@
+"""The kinds of definitions that are read, and how a file tells of which it is."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import cast
+
+from icdgen.definitions.model import Definitions, Reader, unreadable
+from icdgen.errors import UserError
+
+GROUP = "icdgen.definitions"
+MAX_BYTES = 8_000_000  # of which no reader takes more than about a gigabyte of memory
+_START = 65_536  # bytes by which a file is known
+
+_BUILT_IN = {
+    "dbc": "icdgen.definitions.can:Dbc",
+    "kcd": "icdgen.definitions.can:Kcd",
+    "sym": "icdgen.definitions.can:Sym",
+    "arxml": "icdgen.definitions.can:Arxml",
+    "mavlink": "icdgen.definitions.mavlink:MavLink2",
+    "mavlink1": "icdgen.definitions.mavlink:MavLink1",
+    "xtce": "icdgen.definitions.xtce:Xtce",
+}
+
+
+def names() -> list[str]:
+    """All kinds: ours, and those of plug-ins."""
+    return [*_BUILT_IN, *sorted(_plug_ins())]
+
+
+def get(name: str) -> Reader:
+    """The reader of a kind. Raises `UserError` for one that there is not."""
+    target = (_plug_ins() | _BUILT_IN).get(name)
+    if target is None:
+        raise UserError(f"there is no kind of definition `{name}`", f"there are {', '.join(names())}")
+    module, _, attribute = target.partition(":")
+    try:
+        return cast(Reader, getattr(import_module(module), attribute)())
+    except (ImportError, AttributeError) as error:
+        raise UserError(f"the reader of `{name}`, {target}, cannot be loaded: {error}") from None
+
+
+def of(path: Path) -> Reader | None:
+    """The reader that knows the file by how it begins, or by how its name ends; None for a manual, or what cannot be read."""
+    try:
+        with open(path, "rb") as file:
+            start = file.read(_START)
+    except OSError:
+        return None
+    if start.startswith(b"%PDF"):
+        return None
+    text = start.decode("utf-8-sig", "replace")
+    readers = [get(name) for name in names()]
+    by_suffix = (reader for reader in readers if path.suffix.lower() == f".{reader.name}")
+    return next((reader for reader in readers if reader.knows(text)), next(by_suffix, None))
+
+
+def read(path: Path, reader: Reader) -> Definitions:
+    """What a file defines. Raises `Findings` where it cannot be read, and `UserError` where a library is missing."""
+    missing = [module for module in reader.needs if find_spec(module) is None]
+    if missing:
+        raise UserError(
+            f"reading {reader.title} takes {' and '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not installed",
+            "pip install 'icdgen[definitions]'",
+        )
+    return reader.read(str(path), contents(path, getattr(reader, "most_bytes", MAX_BYTES)))
+
+
+def contents(path: Path, most: int = MAX_BYTES) -> bytes:
+    """The bytes of a file, as many as are allowed. Raises `Findings`."""
+    try:
+        with open(path, "rb") as file:
+            data = file.read(most + 1)
+    except OSError as error:
+        raise unreadable(str(path), f"cannot read the file: {error.strerror}", "check the path") from None
+    if len(data) > most:
+        raise unreadable(str(path), f"the file has more than the {most:,} bytes allowed", "import it in parts")
+    return data
+
+
+def _plug_ins() -> dict[str, str]:
+    """Kinds of other packages; one that is named like ours is never asked."""
+    from importlib.metadata import entry_points
+
+    return {point.name: point.value for point in entry_points(group=GROUP) if point.name not in _BUILT_IN}

@@ -1,0 +1,375 @@
+"""Dialects of MAVLink: messages and enumerations of an XML and of what it includes, in the envelope of version 2, or 1."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from icdgen.definitions import kinds, safe_xml
+from icdgen.definitions.enumerations import BEYOND, members
+from icdgen.definitions.model import Definitions, Item, Network, NotHeld, unreadable
+from icdgen.definitions.wording import line, node_name, summary, unit
+from icdgen.icd.fmt.emit import Spelled
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+TWICE = "IMP077"
+MOST_FILES = 100
+_BITS = {"int8_t": 8, "uint8_t": 8, "char": 8, "int16_t": 16, "uint16_t": 16, "int32_t": 32, "uint32_t": 32,
+         "int64_t": 64, "uint64_t": 64, "float": 32, "double": 64}  # fmt: skip
+_VERSION_FIELD = "uint8_t_mavlink_version"
+# Units that say a factor: of integers the unit itself is held, and the factor as a formula.
+_SCALED = {
+    "degE7": ("deg", "1e-7"), "degE5": ("deg", "1e-5"), "cdeg": ("deg", "0.01"), "ddeg/s": ("deg/s", "0.1"),
+    "cm/s": ("m/s", "0.01"), "dm/s": ("m/s", "0.1"), "mm/s": ("m/s", "0.001"), "dm": ("m", "0.1"), "dam": ("m", "10"),
+    "cdegC": ("C", "0.01"), "cA": ("A", "0.01"), "cV": ("V", "0.01"), "c%": ("%", "0.01"), "d%": ("%", "0.1"),
+    "mrad/s": ("rad/s", "0.001"), "hPa": ("Pa", "100"), "hJ": ("J", "100"), "ds": ("s", "0.1"), "cs": ("s", "0.01"),
+}  # fmt: skip
+_SPELLED = {"m/s/s": "m/s^2", "bits/s": "bit/s", "bytes": "byte"}
+_NUMBER = re.compile(r"\s*(-?(?:0[xX][0-9A-Fa-f]+|[0-9]+))\s*(?:(<<|\*\*)\s*([0-9]{1,2})\s*)?\Z")
+_SPECIAL = 16  # names that a field may have as special values
+_X25 = {"kind": "crc", "width": 16, "polynomial": Spelled("0x1021"), "init": Spelled("0xFFFF"),
+        "reflect_in": True, "reflect_out": True, "xor_out": 0}  # fmt: skip
+
+
+class _Field(NamedTuple):
+    """A field as the XML has it. ``elements`` is 0 where it is no array."""
+
+    name: str
+    type: str
+    elements: int
+    element: Element
+
+    @property
+    def bits(self) -> int:
+        """All of it."""
+        return _BITS[self.type] * max(self.elements, 1)
+
+
+class MavLink2:
+    """What a link has today: ids of 24 bits, extensions, and zeros that are cut off."""
+
+    name = "mavlink"
+    title = "a MAVLink dialect"
+    needs: tuple[str, ...] = ("defusedxml",)
+    id_bits = 24
+    has_extensions = True
+
+    def knows(self, start: str) -> bool:
+        return safe_xml.root_of(start) == "mavlink"
+
+    def read(self, file: str, data: bytes) -> Definitions:
+        """Raises `Findings` for an XML, or one that it includes, that cannot be read."""
+        to = Definitions(file)
+        roots = dict(_with_included(file, data))
+        enums = _enumerations(roots, to)
+        stem = Path(file).stem
+        network = Network(
+            node_name(file), f"MAVLink {stem}", {"byte_order": "little", "bit_order": "lsb0", "id_bits": self.id_bits},
+            protocol=self.envelope(),
+        )  # fmt: skip
+        seeds = network.seeds = network.protocol["checksums"]["x25"]["seeds"]  # type: ignore[index]
+        for path, root in roots.items():
+            version = next(
+                (int(one.text or 0) for one in root.iter("version") if (one.text or "").strip().isdigit()), 2
+            )
+            for element in root.iterfind("messages/message"):
+                name, id = element.get("name", ""), _number(element.get("id", ""))
+                if id is None or id >> self.id_bits:
+                    if id is None or self.has_extensions:
+                        to.total += 1
+                        to.left_out(name, f"its id is `{element.get('id', '')}`")
+                    continue
+                to.total += 1
+                try:
+                    seeds[name], made = self._message(element, name, id, enums, version, to)
+                except NotHeld as why:
+                    to.left_out(name, why)
+                    continue
+                network.messages.append(made if len(roots) == 1 else {**made, "group": Path(path).stem})
+        network.messages.sort(key=lambda one: int(one["id"]))
+        in_order = {one["name"]: seeds[one["name"]] for one in network.messages}
+        seeds.clear()
+        seeds |= in_order
+        used = {one.get("enum") for message in network.messages for one in message.get("fields", ())}
+        network.enums = [one for name, one in sorted(enums.items()) if name in used]
+        to.networks.append(network)
+        return to
+
+    def _message(
+        self, element: Element, name: str, id: int, enums: dict[str, Item], version: int, to: Definitions
+    ) -> tuple[int, Item]:
+        """The CRC_EXTRA of a message, and how it stands in an ICD."""
+        base: list[_Field] = []
+        more: list[_Field] = []
+        is_more = False
+        for one in element:
+            tag = safe_xml.local(one.tag)
+            is_more |= tag == "extensions"
+            if tag == "field":
+                (more if is_more else base).append(_field(one))
+        base.sort(key=lambda one: -_BITS[one.type])  # as they are sent; those of one width stay in their order
+        made: Item = {"name": name, "id": id, "kind": "telemetry", "length": 0}
+        if self.has_extensions:
+            made["may_end_early"] = "zeros"
+        made |= summary(_said(element))
+        fields, at = [], 0
+        for field in (*base, *(more if self.has_extensions else ())):
+            fields.append({"at": at, **_held(name, field, enums, version, to)})
+            at += field.bits
+        made["length"] = at // 8
+        if at <= 8:
+            made.pop("may_end_early", None)  # one byte is always sent
+        if not fields:
+            return _extra(name, base), made
+        return _extra(name, base), {**made, "fields": fields}
+
+    def envelope(self) -> Item:
+        """The section `protocol`; the system and the component are those that are usual."""
+        header = [
+            {"at": 0, "bits": 8, "role": "sync", "value": Spelled("0xFD")},
+            {"at": 8, "bits": 8, "role": "length"},
+            {"at": 16, "bits": 8, "role": "constant", "value": 0},  # incompatibility flags: no signature
+            {"at": 24, "bits": 8, "role": "flags"},
+            {"at": 32, "bits": 8, "role": "sequence"},
+            *_senders(40),
+            {"at": 56, "bits": 24, "role": "id"},
+        ]
+        return _stream(header)
+
+
+class MavLink1(MavLink2):
+    """Links of old: ids of 8 bits, no extensions."""
+
+    name = "mavlink1"
+    title = "a MAVLink dialect, of version 1"
+    id_bits = 8
+    has_extensions = False
+
+    def knows(self, start: str) -> bool:
+        return False  # the XML is the same: `--kind mavlink1` asks for it
+
+    def envelope(self) -> Item:
+        header = [
+            {"at": 0, "bits": 8, "role": "sync", "value": Spelled("0xFE")},
+            {"at": 8, "bits": 8, "role": "length"},
+            {"at": 16, "bits": 8, "role": "sequence"},
+            *_senders(24),
+            {"at": 40, "bits": 8, "role": "id"},
+        ]
+        return _stream(header)
+
+
+def _senders(at: int) -> list[Item]:
+    """System and component: those of a ground station, and of an autopilot."""
+    return [
+        {"at": at, "bits": 8, "role": "source", "value": {"telecommand": 255, "telemetry": 1}},
+        {"at": at + 8, "bits": 8, "role": "type", "value": {"telecommand": 190, "telemetry": 1}},
+    ]
+
+
+def _stream(header: list[Item]) -> Item:
+    trailer = [{"at": 0, "bits": 16, "role": "checksum", "checksum": "x25"}]
+    checksum = {**_X25, "covers": {"from": "length", "to": "data"}, "seeds": {}}
+    return {
+        "stream": {"delimited_by": "length", "header": header, "trailer": trailer},
+        "checksums": {"x25": checksum},
+    }
+
+
+def _with_included(file: str, data: bytes) -> Iterator[tuple[str, Element]]:
+    """The XML and what it includes, each once. Raises `Findings` for circles, for what is not there and for what lies elsewhere."""
+    found: dict[str, Element] = {}
+
+    def read(path: str, content: bytes, stack: tuple[str, ...]) -> None:
+        root = found[path] = safe_xml.parse(path, content)
+        for one in root.iterfind("include"):
+            name = (one.text or "").strip()
+            target = os.path.join(os.path.dirname(path), name)
+            if not name or os.path.basename(name) != name:
+                raise unreadable(
+                    path, f"`{line(name, 100)}`, which it includes, does not lie beside it", "put it there"
+                )
+            if target in (*stack, path):
+                circle = " -> ".join(map(os.path.basename, (*(*stack, path)[(*stack, path).index(target) :], target)))
+                raise unreadable(path, f"files include each other in a circle: {circle}", "take one `include` out")
+            if target in found:
+                continue
+            if len(found) >= MOST_FILES:
+                raise unreadable(file, f"it includes more than {MOST_FILES} files", "import it in parts")
+            if not os.path.isfile(target):
+                raise unreadable(path, f"`{name}`, which it includes, is not beside it", "put it there")
+            read(target, kinds.contents(Path(target)), (*stack, path))
+
+    read(file, data, ())
+    yield from found.items()
+
+
+def _field(element: Element) -> _Field:
+    """Raises `NotHeld` for a type that there is not."""
+    found = re.fullmatch(r"(\w+?)(?:\[([0-9]{1,3})\])?", element.get("type", ""))
+    type_ = "uint8_t" if found and found[1] == _VERSION_FIELD else found[1] if found else ""
+    type_ = "int8_t" if type_ == "array" else type_ if type_ in _BITS else f"{type_}_t"
+    if found is None or type_ not in _BITS:
+        raise NotHeld(f"`{element.get('name', '')}` is of the type `{line(element.get('type'), 100)}`")
+    return _Field(element.get("name", ""), type_, int(found[2] or 0), element)
+
+
+def _extra(name: str, fields: list[_Field]) -> int:
+    """CRC_EXTRA: what both sides must agree upon, in a byte; extensions are no part of it."""
+    data = f"{name} ".encode()
+    for one in fields:
+        data += f"{one.type} {one.name} ".encode() + (bytes([one.elements]) if one.elements else b"")
+    checksum = 0xFFFF
+    for byte in data:
+        checksum ^= byte
+        for _ in range(8):
+            checksum = checksum >> 1 ^ (0x8408 if checksum & 1 else 0)
+    return checksum & 0xFF ^ checksum >> 8
+
+
+def _held(owner: str, field: _Field, enums: dict[str, Item], version: int, to: Definitions) -> Item:
+    """A field as it stands in an ICD, without its place."""
+    of = field.element
+    if field.type == "char":
+        return {"bits": field.bits, "name": field.name, "type": "text", **summary(_text(of))}
+    kind = "float" if field.type in ("float", "double") else "uint" if field.type[0] == "u" else "int"
+    bits = _BITS[field.type]
+    one: Item = {"bits": bits, "name": field.name, "type": kind}
+    one |= {"count": field.elements} if field.elements else {}
+    special = _invalid(of.get("invalid", ""), kind, bits)
+    enum = enums.get(of.get("enum", ""))
+    if enum and kind != "float":
+        one |= _named(f"message `{owner}`, `{field.name}`", enum, kind, bits, to)
+    if of.get("type") == _VERSION_FIELD:
+        one["const"] = version
+    if one["type"] != "enum":
+        symbol = of.get("units", "")
+        held, factor = (
+            _SCALED.get(symbol, (_SPELLED.get(symbol, symbol), "1"))
+            if kind != "float"
+            else (_SPELLED.get(symbol, symbol), "1")
+        )
+        one |= unit(held)
+        if kind != "float" and "special" not in one and (formula := _formula(factor, of.get("multiplier", ""))):
+            one["formula"] = formula
+    if special and "const" not in one:
+        known = {member["value"] for member in enum["members"]} if enum and one["type"] == "enum" else set()
+        if special["value"] not in known:
+            one["special"] = [*one.get("special", ()), special]
+    return {**one, **summary(_text(of))}
+
+
+def _formula(factor: str, multiplier: str) -> str:
+    """``raw*0.01``; the multiplier may be a quotient."""
+    found = re.fullmatch(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)(?:\s*/\s*([0-9]+))?\s*", multiplier)
+    try:
+        scale = Fraction(found[1]) if found else Fraction(1)
+    except ValueError:
+        return ""
+    parts = [
+        part for part in (factor if factor != "1" else "", found[1].lower() if found and scale != 1 else "") if part
+    ]
+    return (
+        "raw" + "".join(f"*{part}" for part in parts) + (f"/{found[2]}" if found and found[2] else "") if parts else ""
+    )
+
+
+def _named(where: str, enum: Item, kind: str, bits: int, to: Definitions) -> Item:
+    """What makes values of a field those of an enumeration. Its type has a sign if a value has, whatever the field's."""
+    values = [member["value"] for member in enum["members"]] + [member.get("to", 0) for member in enum["members"]]
+    is_signed = min(values) < 0
+    room = bits - is_signed
+    if max(values) >> room or min(values) < -(1 << room):
+        beyond = next(value for value in values if value >> room not in (0, -1 if is_signed else 0))
+        to.warn(BEYOND, f"{where}: it never has the value {beyond} of `{enum['name']}`", "it is held without the names")
+        return {}
+    if is_signed == (kind == "int"):
+        return {"type": "enum", "enum": enum["name"]}
+    named = [member for member in enum["members"] if not member["value"] >> (bits - (kind == "int"))]
+    if len(named) > _SPECIAL:
+        return {}
+    return {"special": [{"value": member["value"], "meaning": member["name"]} for member in named]}
+
+
+def _invalid(text: str, kind: str, bits: int) -> Item:
+    """What stands for 'not known', where the field can have it: `NaN`, of each element `[NaN]`, `UINT16_MAX`, `-1000`."""
+    text = text.strip("[]:, ")
+    if kind == "float" and text.lower() == "nan":
+        return {"value": "nan", "meaning": "not known"}
+    most = re.fullmatch(r"(U?)INT(8|16|32|64)_MAX", text)
+    value = (1 << int(most[2]) - (not most[1])) - 1 if most else _number(text)
+    if value is None:
+        return {}
+    low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if kind == "int" else (0, (1 << bits) - 1)
+    return {"value": value, "meaning": "not known"} if kind == "float" or low <= value <= high else {}
+
+
+def _enumerations(roots: dict[str, Element], to: Definitions) -> dict[str, Item]:
+    """The enumerations by name: those that several files have are one."""
+    found: dict[str, dict[int, tuple[str, str]]] = {}
+    said: dict[str, str] = {}
+    for root in roots.values():
+        for enum in root.iterfind("enums/enum"):
+            name = enum.get("name", "")
+            said[name] = said.get(name) or _said(enum)
+            entries = found.setdefault(name, {})
+            for entry in enum.iterfind("entry"):
+                value = _number(entry.get("value", str(max(entries, default=0) + 1)))
+                label = entry.get("name", "")
+                if value is None:
+                    to.warn(
+                        BEYOND,
+                        f"enumeration `{name}`: `{label}` has the value `{entry.get('value')}`",
+                        "the name is left out",
+                    )
+                elif entries.setdefault(value, (label, _said(entry)))[0] != label:
+                    text = f"enumeration `{name}`: {value} is `{entries[value][0]}` and `{label}`"
+                    to.warn(TWICE, text, "the first name is held")
+    return {name: _enumeration(name, entries, said[name], to) for name, entries in found.items() if entries}
+
+
+def _enumeration(name: str, entries: dict[int, tuple[str, str]], said: str, to: Definitions) -> Item:
+    """Its members, without the words that all begin with."""
+    labels = [label for label, _ in entries.values()]
+    prefix = f"{name}_" if len(labels) < 2 else _begins_alike(min(labels), max(labels))
+    short = {value: label.removeprefix(prefix) or label for value, (label, _) in entries.items()}
+    named = members(short, -(2**63), 2**64 - 1, f"enumeration `{name}`", to)
+    for one in named:
+        if "to" not in one:
+            one |= summary(entries[one["value"]][1])
+    return {"name": name, **summary(said), "members": named}
+
+
+def _begins_alike(one: str, other: str) -> str:
+    """The words with which both begin, and all between them."""
+    alike = next((at for at, pair in enumerate(zip(one, other, strict=False)) if pair[0] != pair[1]), len(one))
+    return one[: one.rfind("_", 0, alike) + 1]
+
+
+def _said(element: Element) -> str:
+    """The description of a message, enumeration or entry, and what became of it."""
+    text = line(next((_text(one) for one in element.iterfind("description")), ""))
+    for gone in element.iterfind("deprecated"):
+        by = f", replaced by {gone.get('replaced_by')}" if gone.get("replaced_by") else ""
+        text = f"{text} Deprecated since {gone.get('since', '?')}{by}.".strip()
+    return text
+
+
+def _text(element: Element) -> str:
+    return "".join(element.itertext())
+
+
+def _number(text: str) -> Any:
+    """A number as enumerations have them, ``1<<3`` among them; None for what is none."""
+    found = _NUMBER.match(text)
+    if found is None:
+        return None
+    value = int(found[1], 0) if "x" in found[1].lower() else int(found[1])
+    power = int(found[3] or 0)
+    return value << power if found[2] == "<<" else value ** power if found[2] else value

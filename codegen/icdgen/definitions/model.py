@@ -1,0 +1,92 @@
+"""What a reader makes of a file: ICDs to be, in one form for all kinds. What stands in them is written as in an ICD."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.icd import units
+from icdgen.importer.document import Spot, Trouble
+
+UNREADABLE = "IMP005"
+NOT_HELD = "IMP070"
+
+Item = dict[str, Any]  # a message, field, enumeration, member or struct as it stands in an ICD
+
+
+class NotHeld(Exception):
+    """A message that an ICD cannot hold; the text says why."""
+
+
+@dataclass
+class Network:
+    """One ICD: the messages of a network, a dialect, a device. ``head`` is the section `node` but for name and title."""
+
+    name: str
+    title: str
+    head: Item
+    messages: list[Item] = field(default_factory=list)
+    enums: list[Item] = field(default_factory=list)
+    structs: list[Item] = field(default_factory=list)
+    protocol: Item | None = None
+    seeds: dict[str, int] = field(default_factory=dict)  # those of ``protocol``: of each message one
+
+    def tree(self) -> Item:
+        """The ICD as plain mappings and lists."""
+        tree: Item = {"icdgen": 1, "node": {"name": self.name, "title": self.title, **self.head}}
+        used = (
+            one["unit"] for owner in (*self.messages, *self.structs) for one in owner.get("fields", ()) if "unit" in one
+        )
+        if declared := units.declared(used):
+            tree["units"] = declared
+        for key in ("protocol", "enums", "structs", "messages"):
+            if value := getattr(self, key):
+                tree[key] = value
+        return tree
+
+
+@dataclass
+class Definitions:
+    """Everything that a file defines. ``total`` counts its messages, those that are not held among them."""
+
+    file: str
+    networks: list[Network] = field(default_factory=list)
+    total: int = 0
+    troubles: list[Trouble] = field(default_factory=list)
+
+    def left_out(self, name: str, why: object, line: int | None = None) -> None:
+        """Notes that a message is not held."""
+        spot = Spot(line=line)
+        self.troubles.append(Trouble(NOT_HELD, f"message `{name}` is not held: {why}", spot, severity="error"))
+
+    def warn(self, code: str, message: str, help: str = "", severity: str = "warning", line: int | None = None) -> None:
+        """Notes a fault of the file."""
+        self.troubles.append(Trouble(code, message, Spot(line=line), help, severity))
+
+
+class Reader(Protocol):
+    """A kind of definition. A package of its own brings one by the entry point group ``icdgen.definitions``."""
+
+    name: str  # as in `--kind`
+    title: str  # for people
+    needs: tuple[str, ...]  # modules that reading takes, of the extra `definitions`
+    # `most_bytes`, if it is there, is how large a file may be.
+
+    def knows(self, start: str) -> bool:
+        """Whether a file that begins so is of this kind."""
+
+    def read(self, file: str, data: bytes) -> Definitions:
+        """What the file defines. Raises `Findings` for one that cannot be read at all."""
+
+
+def unreadable(file: str, message: str, help: str = "", line: int = 1) -> Findings:
+    """That a file cannot be read at all, to be raised."""
+    return Findings([Finding(UNREADABLE, message, Place(file, line), help)])
+
+
+def unique(names: Iterable[str]) -> bool:
+    """Whether no name is there twice."""
+    listed = list(names)
+    return len(set(listed)) == len(listed)

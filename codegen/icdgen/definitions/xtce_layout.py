@@ -1,0 +1,267 @@
+"""Containers of XTCE as fields one after the other, with what they inherit and include, and what restricts them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+from icdgen.definitions.frames import LITTLE, Place, laid_out
+from icdgen.definitions.model import Definitions, Item, NotHeld
+from icdgen.definitions.wording import line
+from icdgen.definitions.xtce_calibration import fixed, number
+from icdgen.definitions.xtce_names import Names
+from icdgen.definitions.xtce_types import Piece, Types, described, repeated
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+OPEN = "IMP080"
+MOST_FIELDS = 5000  # of a message
+MOST_PLACED = 500  # of one whose fields say where they stand
+_MOST_BYTES = 65_535  # of a message
+_DEEPEST = 50  # containers that inherit or include each other
+_REFERENCES = {"ParameterRefEntry": "parameterRef", "ArgumentRefEntry": "argumentRef",
+               "ArrayParameterRefEntry": "parameterRef", "ArrayArgumentRefEntry": "argumentRef"}  # fmt: skip
+
+
+@dataclass
+class Part:
+    """A field in its place. ``of`` is the parameter or argument that it is, ``at`` counts bits from the first of the frame."""
+
+    of: Element | None
+    item: Item
+    piece: Piece
+    at: int
+
+    @property
+    def end(self) -> int:
+        return self.at + self.piece.bits
+
+
+class Told(NamedTuple):
+    """A parameter or argument, and its only value in a message."""
+
+    of: Element
+    value: str
+    is_raw: bool
+
+
+@dataclass
+class Layout:
+    """Everything that a container has, itself and by inheritance."""
+
+    names: Names
+    types: Types
+    arguments: dict[str, Element] = field(default_factory=dict)  # of a command
+    parts: list[Part] = field(default_factory=list)
+    told: list[Told] = field(default_factory=list)
+    jumps: bool = False  # whether a part says where it stands
+    at: int = 0
+
+    def add(self, container: Element, within: tuple[Element, ...] = (), is_included: bool = False) -> None:
+        """Adds the entries of a container behind those that it inherits. Raises `NotHeld`."""
+        if any(container is one for one in within):
+            circle = " -> ".join(one.get("name", "") for one in (*within, container))
+            raise NotHeld(f"containers hold or inherit each other in a circle: {line(circle, 200)}")
+        if len(within) >= _DEEPEST:
+            raise NotHeld(f"more than {_DEEPEST} containers inherit or hold each other")
+        self.types.step()
+        start = self.at if is_included else 0
+        within = (*within, container)
+        if (base := container.find("BaseContainer")) is not None:
+            self.add(self.names.find("container", base.get("containerRef", ""), container), within, is_included)
+            if (criteria := base.find("RestrictionCriteria")) is not None:
+                self.told += self._told(criteria, container)
+        entries = container.find("EntryList")
+        for entry in () if entries is None else entries:
+            if entry.find("IncludeCondition") is not None:
+                raise NotHeld(f"`{_named(entry)}` is there only on a condition")
+            self._move(entry, start)
+            self._entry(entry, container, within)
+            if len(self.parts) > MOST_FIELDS:
+                raise NotHeld(f"it has more than {MOST_FIELDS} fields")
+
+    def _move(self, entry: Element, start: int) -> None:
+        location = entry.find("LocationInContainerInBits")
+        if location is None:
+            return
+        said, bits = location.get("referenceLocation", "previousEntry"), fixed(location)
+        if bits is None or said not in ("previousEntry", "containerStart"):
+            raise NotHeld(f"where `{_named(entry)}` stands is not said by a number of bits from what is before it")
+        self.at = (self.at if said == "previousEntry" else start) + bits
+        self.jumps = True
+        if self.at < 0:
+            raise NotHeld(f"`{_named(entry)}` stands in front of its container")
+
+    def _entry(self, entry: Element, container: Element, within: tuple[Element, ...]) -> None:
+        count = _count(entry)
+        if entry.tag == "ContainerRefEntry":
+            inner = self.names.find("container", entry.get("containerRef", ""), container)
+            for _ in range(count):
+                self.add(inner, within, is_included=True)
+            return
+        if entry.tag == "FixedValueEntry":
+            self._fixed(entry)
+            return
+        if entry.tag not in _REFERENCES:
+            raise NotHeld(f"it has a `{line(entry.tag, 60)}`")
+        of = self._parameter(entry.get(_REFERENCES[entry.tag], ""), container, "argument" in entry.tag.lower())
+        where = f"`{of.get('name', '')}`"
+        type_ = self.names.type_of(of.get("parameterTypeRef", "") or of.get("argumentTypeRef", ""), of)
+        dimensions = entry.find("DimensionList")
+        if type_.tag.startswith("Array") and dimensions is not None:
+            piece = self.types.array(type_, dimensions, where)
+        else:
+            piece = self.types.piece(type_, where)
+        self._place(of, of.get("name", ""), repeated(piece, count, where), {**described(of, type_)}, 0)
+
+    def _place(self, of: Element, name: str, piece: Piece, said: Item, depth: int) -> None:
+        """Puts a piece where the last one ended; members of aggregates one after the other."""
+        if depth > _DEEPEST:
+            raise NotHeld(f"`{name}` has members of members without end")
+        for member, type_ in piece.members:
+            of_member = self.types.piece(type_, f"`{name} {member}`")
+            self._place(of, f"{name} {member}", of_member, described(type_), depth + 1)
+            if len(self.parts) > MOST_FIELDS:
+                raise NotHeld(f"it has more than {MOST_FIELDS} fields")
+        if piece.members:
+            return
+        if self.parts and not self.parts[-1].piece.bits:
+            raise NotHeld(f"`{name}` stands behind `{self.parts[-1].item['name']}`, whose size is not fixed")
+        if piece.order == LITTLE and self.at % 8:
+            raise NotHeld(f"the least significant byte of `{name}` is sent first, and it begins within a byte")
+        self.parts.append(Part(of, _again(piece.item, {"name": name, **piece.item, **said}), piece, self.at))
+        self.at += piece.bits
+
+    def _fixed(self, entry: Element) -> None:
+        """Bits that are always the same: in hexadecimal, the last ones of it."""
+        bits, text = number(entry.get("sizeInBits", ""), "a size"), entry.get("binaryValue", "")
+        if not 1 <= bits <= 64:
+            raise NotHeld(f"a fixed value has {bits} bits")
+        try:
+            value = int(text, 16) & (1 << bits) - 1
+        except ValueError:
+            raise NotHeld(f"a fixed value is `{line(text, 60)}`") from None
+        item = {"name": entry.get("name") or f"Fixed {self.at}", "type": "uint", "const": value}
+        self.parts.append(Part(None, item, Piece(item, bits), self.at))
+        self.at += bits
+
+    def _parameter(self, name: str, seen_from: Element, is_argument: bool) -> Element:
+        if not is_argument:
+            return self.names.find("parameter", name, seen_from)
+        if name not in self.arguments:
+            raise NotHeld(f"there is no argument `{line(name, 100)}`")
+        return self.arguments[name]
+
+    def _told(self, criteria: Element, seen_from: Element) -> Iterator[Told]:
+        """Equalities that must all hold. Raises `NotHeld` for anything else."""
+        for one in criteria:
+            if one.tag == "Comparison":
+                yield self._compared(one, one.get("comparisonOperator", "=="), one.get("value", ""), seen_from)
+            elif one.tag == "ComparisonList":
+                yield from self._told(one, seen_from)
+            elif one.tag == "BooleanExpression":
+                for inner in (found for kind in one for found in (kind if kind.tag == "ANDedConditions" else [kind])):
+                    references = inner.findall("ParameterInstanceRef")
+                    if inner.tag != "Condition" or len(references) != 1:
+                        raise NotHeld("it is told by more than equalities that must all hold")
+                    yield self._compared(
+                        references[0], inner.findtext("ComparisonOperator", ""), inner.findtext("Value", ""), seen_from
+                    )
+            else:
+                raise NotHeld(f"it is told by a `{line(one.tag, 60)}`")
+
+    def _compared(self, of: Element, operator: str, value: str, seen_from: Element) -> Told:
+        name = of.get("parameterRef", "")
+        if operator.strip() != "==":
+            raise NotHeld(
+                f"it is told by `{line(name, 60)} {line(operator, 5)} {line(value, 60)}`, which is no equality"
+            )
+        return Told(self.names.find("parameter", name, seen_from), value, of.get("useCalibratedValue") == "false")
+
+    def tell(self, told: Told) -> int:
+        """Makes the value of a parameter or argument the only one, and says which. Raises `NotHeld`."""
+        of, value, is_raw = told
+        name = of.get("name", "")
+        part = next((one for one in reversed(self.parts) if one.of is of), None)
+        if part is None:
+            raise NotHeld(f"it is told by `{name}`, which it does not have")
+        item, text = part.item, value.strip()
+        if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
+            raise NotHeld(f"it is told by `{name}`, which is of the type {item['type']}")
+        if "formula" in item and not is_raw:
+            raise NotHeld(f"it is told by the calibrated value of `{name}`")
+        if text in part.piece.values:
+            raw = part.piece.values[text]
+        else:
+            try:
+                raw = int(text, 0) if text.lower().startswith(("0x", "-0x")) else int(text)
+            except ValueError:
+                raise NotHeld(f"it is told by `{name}`, which is never `{line(text, 60)}`") from None
+        if raw.bit_length() > part.piece.bits or (raw < 0 and item["type"] in ("uint", "bool")):
+            raise NotHeld(f"it is told by `{name}`, which is never {raw}")
+        if item.get("const", raw) != raw:
+            raise NotHeld(f"it is told by `{name}`, which is both {item['const']} and {raw}")
+        item["const"] = raw
+        return raw
+
+    def laid_out(self, message: Item, start: int, order: str, to: Definitions) -> Item:
+        """The message with the fields from a bit on. Raises `NotHeld`."""
+        parts = [one for one in self.parts if one.at >= start]
+        names: dict[str, int] = {}
+        for one in parts:
+            name = one.item["name"]
+            names[name] = names.get(name, 0) + 1
+            if names[name] > 1:
+                one.item["name"] = f"{name} {names[name]}"
+        closed = [one for one in parts if one.piece.bits]
+        end = max((one.end for one in closed), default=start) - start
+        message["length"] = -(-end // 8)
+        fields: list[Item] = []
+        if self.jumps:
+            if len(parts) > MOST_PLACED:
+                raise NotHeld(f"more than {MOST_PLACED} fields say where they stand")
+            placed = [(one.item, Place(one.at - start, one.piece.bits, one.piece.order)) for one in closed]
+            message = laid_out(message, placed, order, to)
+            fields = message.pop("fields", [])
+        else:
+            for one in closed:
+                little = {"byte_order": LITTLE} if one.piece.order == LITTLE and one.piece.bits > 8 else {}
+                place = {"at": one.at - start, "bits": one.piece.bits}
+                fields.append(_again(one.item, {**place, **one.item, **little}))
+        for one in parts:
+            if not one.piece.bits:
+                if end % 8:
+                    raise NotHeld(f"`{one.item['name']}`, whose size is not fixed, begins within a byte")
+                if any(other.item["name"] == one.piece.size.rsplit("/", 1)[-1] for other in parts):
+                    text = f"message `{message['name']}`: `{one.item['name']}` is as long as `{one.piece.size}` says"
+                    to.warn(OPEN, text, "it is held up to the end of the frame")
+                room = _MOST_BYTES - message["length"]
+                fields.append({"at": end, **one.item, "up_to": min(room, one.item["up_to"])})
+        return {**message, "fields": fields} if fields else message
+
+
+def _again(item: Item, said: Item) -> Item:
+    """The same mapping with other keys: an enumeration is named in it later."""
+    item.clear()
+    item |= said
+    return item
+
+
+def _named(entry: Element) -> str:
+    keys = (*_REFERENCES.values(), "containerRef", "name")
+    return line(next((entry.attrib[key] for key in keys if key in entry.attrib), entry.tag), 100)
+
+
+def _count(entry: Element) -> int:
+    """How often an entry is there."""
+    repeat = entry.find("RepeatEntry")
+    if repeat is None:
+        return 1
+    count = fixed(repeat.find("Count"))
+    if count is None or repeat.find("Offset") is not None:
+        raise NotHeld(f"how often `{_named(entry)}` is there, or with what between, is not a number")
+    if not 0 <= count <= 1024:
+        raise NotHeld(f"`{_named(entry)}` is there {count} times")
+    return count

@@ -1,0 +1,74 @@
+"""What has a name in a file of XTCE: systems within systems, and references between them."""
+
+from __future__ import annotations
+
+import posixpath
+from typing import TYPE_CHECKING
+
+from icdgen.definitions import safe_xml
+from icdgen.definitions.model import NotHeld, unreadable
+from icdgen.definitions.wording import line
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+_DEEPEST = 100  # systems within each other
+_SETS = {
+    "ParameterTypeSet": "parameter type", "ArgumentTypeSet": "argument type", "ParameterSet": "parameter",
+    "ContainerSet": "container", "CommandContainerSet": "container", "MetaCommandSet": "command",
+}  # fmt: skip
+
+
+class Names:
+    """Everything that references reach, by its kind and path."""
+
+    def __init__(self, file: str, root: Element) -> None:
+        """Names lose their namespaces. Raises `Findings` for systems too deep within each other."""
+        for element in root.iter():
+            element.tag = safe_xml.local(element.tag)
+        self._found: dict[tuple[str, str], Element] = {}
+        self._systems: dict[int, str] = {}
+        left = [(root, "", 0)]
+        while left:
+            system, above, depth = left.pop()
+            if depth > _DEEPEST:
+                raise unreadable(file, f"more than {_DEEPEST} systems stand within each other", "make them flat")
+            path = f"{above}/{system.get('name', '')}"
+            for meta in (one for one in system if one.tag in ("TelemetryMetaData", "CommandMetaData")):
+                for group in meta:
+                    for one in group if group.tag in _SETS else ():
+                        self._note(_SETS[group.tag], one, path)
+            left += [(one, path, depth + 1) for one in reversed(system.findall("SpaceSystem"))]
+
+    def _note(self, kind: str, element: Element, path: str) -> None:
+        self._found.setdefault((kind, f"{path}/{element.get('name', '')}"), element)
+        self._systems[id(element)] = path
+        container = element.find("CommandContainer") if kind == "command" else None
+        if container is not None:
+            self._found.setdefault(("container", f"{path}/{container.get('name', '')}"), container)
+            self._systems[id(container)] = path
+        for argument in element.iterfind("ArgumentList/Argument"):
+            self._systems[id(argument)] = path
+
+    def all(self, kind: str) -> list[Element]:
+        """Those of a kind, as they stand in the file."""
+        return [one for (of, _), one in self._found.items() if of == kind]
+
+    def system(self, element: Element) -> str:
+        """The path of the system in which something stands."""
+        return self._systems[id(element)]
+
+    def type_of(self, reference: str, seen_from: Element) -> Element:
+        """The type that a parameter, an argument or another type names. Raises `NotHeld`."""
+        return self.find("argument type" if "Argument" in seen_from.tag else "parameter type", reference, seen_from)
+
+    def find(self, kind: str, reference: str, seen_from: Element) -> Element:
+        """What a reference names: in the system, or one around it. Raises `NotHeld` if there is nothing."""
+        path = self.system(seen_from)
+        while True:
+            found = self._found.get((kind, posixpath.normpath(posixpath.join(path, reference))))
+            if found is not None:
+                return found
+            if not path or reference.startswith("/"):
+                raise NotHeld(f"there is no {kind} `{line(reference, 100)}`")
+            path = path.rpartition("/")[0]

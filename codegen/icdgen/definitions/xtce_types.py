@@ -1,0 +1,330 @@
+"""Types of XTCE's parameters and arguments as fields: how they are encoded, calibrated and named."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from icdgen.definitions.enumerations import Enumerations, members, special
+from icdgen.definitions.frames import BIG, LITTLE
+from icdgen.definitions.model import Definitions, Item, NotHeld
+from icdgen.definitions.wording import line, summary, unit
+from icdgen.definitions.xtce_calibration import NUMBER, calibration, decimal, fixed, formula, number
+from icdgen.definitions.xtce_names import Names
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+RAW_ONLY = "IMP078"
+MOST_STEPS = 1_000_000  # entries, members and labels of all messages
+_MOST_NAMED = 1024  # values of a range of labels
+_SPECIAL = 16  # names that a field may have as special values
+_DEEPEST = 20  # types that say what another says
+_ENCODINGS = ("IntegerDataEncoding", "FloatDataEncoding", "StringDataEncoding", "BinaryDataEncoding")
+_LIMITS = {"minInclusive": "min", "maxInclusive": "max", "minExclusive": "above", "maxExclusive": "below"}
+
+
+@dataclass
+class Piece:
+    """What a type makes of a field, without place and name. ``bits`` are all of it; 0 where it goes on to the end of the frame."""
+
+    item: Item
+    bits: int
+    order: str = BIG
+    size: str = ""  # the parameter that says how many bits, if one does
+    values: dict[str, int] = field(default_factory=dict)  # by label
+    members: list[tuple[str, Element]] = field(default_factory=list)  # of an aggregate instead: names and types
+
+
+@dataclass
+class Types:
+    """Makes pieces of types, and enumerations of those with labels."""
+
+    names: Names
+    to: Definitions
+    enums: Enumerations = field(default_factory=Enumerations)
+    steps: int = 0
+    warned: set[str] = field(default_factory=set)
+
+    def step(self, count: int = 1) -> None:
+        """Counts what is done, so that a small file cannot ask for much. Raises `NotHeld`."""
+        self.steps += count
+        if self.steps > MOST_STEPS:
+            raise NotHeld(f"with it the file says more than {MOST_STEPS:,} things")
+
+    def piece(self, element: Element, where: str) -> Piece:
+        """Raises `NotHeld` with the reason."""
+        self.step()
+        chain = self._chain(element)
+        kind = re.sub("(Parameter|Argument)Type$", "", element.tag)
+        if kind == "Aggregate":
+            listed = [one for type_ in chain for one in type_.iterfind("MemberList/Member")]
+            found = [(one.get("name", ""), self.names.type_of(one.get("typeRef", ""), element)) for one in listed]
+            return Piece({}, 0, members=found)
+        if kind == "Array":
+            return self.array(element, element.find("DimensionList"), where)
+        encoding = next((one for one in _below(chain) if one.tag in _ENCODINGS), None)
+        made = self._encoded(chain, kind, encoding)
+        if kind == "Enumerated":
+            self._labels(made, chain, element, where)
+        elif kind == "Boolean":
+            self._flag(made, chain, element)
+        elif made.item["type"] in ("uint", "int", "float"):
+            is_held = self._calibrated(made.item, chain, encoding, kind, where)
+            made.item |= _unit(chain) if is_held else {}
+            made.item |= self._limits(made.item, chain) if is_held else {}
+        return made
+
+    def array(self, element: Element, dimensions: Element | None, where: str) -> Piece:
+        """So many elements of a type one after the other."""
+        of = self.names.type_of(element.get("arrayTypeRef", ""), element)
+        listed = [] if dimensions is None else dimensions.findall("Dimension")
+        if len(listed) != 1:
+            raise NotHeld(f"{where} is an array of {len(listed) or 'no'} dimensions")
+        first, last = fixed(listed[0].find("StartingIndex"), 0), fixed(listed[0].find("EndingIndex"))
+        if first is None or last is None:
+            raise NotHeld(f"{where} is an array of as many elements as another parameter says")
+        return repeated(self._element(of, where), last - first + 1, where)
+
+    def _element(self, of: Element, where: str) -> Piece:
+        if of.tag.startswith("Array"):
+            raise NotHeld(f"{where} is an array of arrays")
+        return self.piece(of, where)
+
+    def _chain(self, element: Element) -> list[Element]:
+        """The type, and those that it is based on."""
+        chain = [element]
+        while (base := chain[-1].get("baseType")) is not None:
+            found = self.names.type_of(base, chain[-1])
+            if any(found is one for one in chain):
+                raise NotHeld(f"the type `{element.get('name', '')}` is based on itself")
+            if len(chain) >= _DEEPEST:
+                raise NotHeld(f"the type `{element.get('name', '')}` is based on more than {_DEEPEST} others")
+            chain.append(found)
+        return chain
+
+    def _encoded(self, chain: list[Element], kind: str, encoding: Element | None) -> Piece:
+        """Numbers, text and bytes as they are sent."""
+        if encoding is None:
+            if kind not in ("Integer", "Float"):
+                raise NotHeld(f"the type `{chain[0].get('name', '')}` has no encoding")
+            bits = number(_attribute(chain, "sizeInBits", "32"), "a size")
+            is_signed = _attribute(chain, "signed", "true") == "true"
+            return _numbers("float" if kind == "Float" else "int" if is_signed else "uint", bits, BIG)
+        if encoding.get("bitOrder", "mostSignificantBitFirst") != "mostSignificantBitFirst":
+            raise NotHeld("its least significant bit is sent first")
+        if encoding.tag == "IntegerDataEncoding":
+            said = encoding.get("encoding", "unsigned")
+            type_ = {"unsigned": "uint", "twosComplement": "int", "twosCompliment": "int"}.get(said)
+            if type_ is None:
+                raise NotHeld(f"an integer is encoded as `{line(said, 60)}`")
+            return _numbers(type_, number(encoding.get("sizeInBits", "8"), "a size"), _order(encoding))
+        if encoding.tag == "FloatDataEncoding":
+            said = encoding.get("encoding", "IEEE754_1985")
+            if not said.startswith("IEEE754"):
+                raise NotHeld(f"a float is encoded as `{line(said, 60)}`")
+            return _numbers("float", number(encoding.get("sizeInBits", "32"), "a size"), _order(encoding))
+        return _bytes(encoding, "text" if encoding.tag == "StringDataEncoding" else "bytes")
+
+    def _labels(self, made: Piece, chain: list[Element], element: Element, where: str) -> None:
+        if made.item["type"] not in ("uint", "int"):
+            raise NotHeld(f"{where} has labels, and is encoded as {made.item['type']}")
+        choices: dict[int, str] = {}
+        for one in (one for type_ in chain for one in type_.iterfind("EnumerationList/Enumeration")):
+            first = number(one.get("value", ""), "the value of a label")
+            last = number(one.get("maxValue") or str(first), "the value of a label")
+            if not 0 <= last - first < _MOST_NAMED:
+                raise NotHeld(f"{where} has a label for the values {first} to {last}")
+            self.step(last - first + 1)
+            for value in range(first, last + 1):
+                choices.setdefault(value, one.get("label", ""))
+        bits, is_signed = made.bits, made.item["type"] == "int"
+        low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
+        to = self.to if self._is_new(f"labels of {id(element)}") else Definitions("")  # it is said once of a type
+        named = members(choices, low, high, f"`{_called(element)}`", to)
+        made.values = {label: value for value, label in reversed(choices.items())}
+        if not named:
+            return
+        if is_signed == (min(choices) < 0):
+            made.item["type"] = "enum"
+            self.enums.give(made.item, _called(element), self.names.system(element).rsplit("/", 1)[-1], named)
+        elif len(named) <= _SPECIAL:
+            made.item |= special(named)
+
+    def _flag(self, made: Piece, chain: list[Element], element: Element) -> None:
+        if made.item["type"] not in ("uint", "int"):
+            raise NotHeld(f"a flag is encoded as {made.item['type']}")
+        zero, one = _attribute(chain, "zeroStringValue", "False"), _attribute(chain, "oneStringValue", "True")
+        made.values = {zero: 0, one: 1, "false": 0, "true": 1}
+        made.item["type"] = "bool" if made.bits == 1 else "uint"
+        if made.bits > 1:
+            named = [{"value": 0, "name": line(zero, 60)}, {"value": 1, "name": line(one, 60)}]
+            made.item["type"] = "enum"
+            self.enums.give(made.item, _called(element), self.names.system(element).rsplit("/", 1)[-1], named)
+
+    def _calibrated(self, item: Item, chain: list[Element], encoding: Element | None, kind: str, where: str) -> bool:
+        """Adds the formula. False if there is a calibration that cannot be said, so that the raw value is all that is held."""
+        try:
+            is_time = kind in ("AbsoluteTime", "RelativeTime")
+            said = _time(item, chain) if is_time else "" if encoding is None else calibration(encoding)
+        except ValueError as error:
+            self._raw_only(where, str(error))
+            return False
+        item |= {"formula": said} if said else {}
+        return True
+
+    def _raw_only(self, where: str, why: str) -> None:
+        if self._is_new(where):
+            self.to.warn(RAW_ONLY, f"{where}: {why}", "its raw values are held, without the unit")
+
+    def _is_new(self, what: str) -> bool:
+        is_new = what not in self.warned
+        self.warned.add(what)
+        return is_new
+
+    def _limits(self, item: Item, chain: list[Element]) -> Item:
+        """The keys of the range that is valid, if there is one and it is that of the value that is held."""
+        ranges = [
+            one
+            for type_ in chain
+            for path in ("ValidRange", "ValidRangeSet/ValidRange")
+            for one in type_.iterfind(path)
+        ]
+        owners = [type_.find("ValidRangeSet") for type_ in chain]
+        of_raw = any(
+            one is not None and one.get("validRangeAppliesToCalibrated") == "false" for one in (*ranges, *owners)
+        )
+        if len(ranges) != 1 or (of_raw and "formula" in item):
+            return {}
+        found: Item = {}
+        for said, key in _LIMITS.items():
+            if match := NUMBER.match(ranges[0].get(said, "")):
+                value = Fraction(match[1])
+                exact = value.numerator if value.denominator == 1 else float(value)
+                if "e" not in str(exact):
+                    found[key] = exact
+        return found
+
+
+def repeated(piece: Piece, count: int, where: str) -> Piece:
+    """An array of what a piece is."""
+    if count == 1:
+        return piece
+    if piece.members or piece.item["type"] in ("bytes", "text") or "count" in piece.item or not piece.bits:
+        raise NotHeld(f"{where} is an array of what is no number")
+    if not 1 <= count <= 1024:
+        raise NotHeld(f"{where} is an array of {count} elements")
+    piece.item |= {"bits": piece.bits, "count": count}
+    return Piece(piece.item, piece.bits * count, piece.order, values=piece.values)
+
+
+def said(element: Element) -> str:
+    """What an element is for: both descriptions if there are two."""
+    parts = (element.get("shortDescription"), next((one.text for one in element.iterfind("LongDescription")), None))
+    texts = [text for text in map(line, parts) if text]
+    if len(texts) == 2 and (texts[0] in texts[1] or texts[1] in texts[0]):
+        texts = [max(texts, key=len)]
+    return " ".join(text if text.endswith((".", "!", "?")) or len(texts) == 1 else f"{text}." for text in texts)
+
+
+def _time(item: Item, chain: list[Element]) -> str:
+    """The formula of seconds, or what the encoding says, since an epoch; adds the unit. Raises `ValueError`."""
+    of = next((one for type_ in chain for one in type_.iterfind("Encoding")), None)
+    if of is None:
+        return ""
+    text = formula({1: decimal(of.get("scale", "1")), 0: decimal(of.get("offset", "0"))})
+    item |= unit({"seconds": "s"}.get(of.get("units", "seconds"), of.get("units", "")))
+    return text
+
+
+def described(*elements: Element) -> dict[str, str]:
+    """The key of the first that is described."""
+    return summary(next((text for text in map(said, elements) if text), ""))
+
+
+def _below(chain: list[Element]) -> Iterator[Element]:
+    """Encodings: of times they stand deeper."""
+    for type_ in chain:
+        yield from type_
+        yield from type_.iterfind("Encoding/*")
+
+
+def _numbers(type_: str, bits: int, order: str) -> Piece:
+    if type_ == "float" and bits not in (32, 64):
+        raise NotHeld(f"a float has {bits} bits")
+    if not 1 <= bits <= 64:
+        raise NotHeld(f"an integer has {bits} bits")
+    if order == LITTLE and bits % 8:
+        raise NotHeld(f"the least significant byte of {bits} bits is sent first")
+    return Piece({"type": type_}, bits, order)
+
+
+def _order(encoding: Element) -> str:
+    """Which byte is sent first: an attribute of XTCE 1.2, a list in 1.1."""
+    said = encoding.get("byteOrder", "mostSignificantByteFirst")
+    bytes_ = [number(one.get("byteSignificance", ""), "a byte") for one in encoding.iterfind("ByteOrderList/Byte")]
+    if said == "leastSignificantByteFirst" or (len(bytes_) > 1 and bytes_ == sorted(bytes_)):
+        return LITTLE
+    if said != "mostSignificantByteFirst" or bytes_ != sorted(bytes_, reverse=True):
+        raise NotHeld(f"its bytes are sent in the order {bytes_ or line(said, 60)}")
+    return BIG
+
+
+def _bytes(encoding: Element, type_: str) -> Piece:
+    """Text or bytes, of a size that is written down, or up to the end."""
+    size = encoding.find("SizeInBits")
+    if size is None:
+        variable = encoding.find("Variable")
+        return _open(type_, encoding if variable is None else variable)
+    if size.find("LeadingSize") is not None:
+        raise NotHeld("its size stands in front of it")
+    if (end := size.find("TerminationChar")) is not None and (end.text or "00").strip("0"):
+        raise NotHeld(f"it ends at the byte `{line(end.text, 20)}`")
+    bits = fixed(size.find("Fixed")) if size.find("Fixed") is not None else fixed(size)
+    if bits is None:
+        return _open(type_, size)
+    if type_ == "text" and encoding.get("encoding", "UTF-8") not in ("UTF-8", "US-ASCII", "ISO-8859-1"):
+        type_ = "bytes"
+    if bits % 8 and type_ == "bytes":
+        return _numbers("uint", bits, BIG)
+    if bits < 8 or bits % 8:
+        raise NotHeld(f"text or bytes have {bits} bits")
+    return Piece({"type": type_}, bits)
+
+
+def _open(type_: str, of: Element) -> Piece:
+    """What has as many bytes as another parameter says."""
+    reference = of.find("DynamicValue/ParameterInstanceRef")
+    if reference is None:
+        raise NotHeld("its size is neither a number nor that of a parameter")
+    return Piece({"type": type_, "size": "rest", "up_to": 65535}, 0, size=reference.get("parameterRef", ""))
+
+
+def _unit(chain: list[Element]) -> dict[str, str]:
+    """The first type that has units: `m` and `s` to the power of -2 are `m/s^2`."""
+    units = next((found for type_ in chain if (found := type_.findall("UnitSet/Unit"))), [])
+    parts = ""
+    for one in units:
+        power, text = one.get("power", "1"), line("".join(one.itertext()), 60)
+        try:
+            exponent = float(power)
+        except ValueError:
+            exponent = 1.0
+        if text:
+            parts += "/" if exponent < 0 and parts else "." if parts else ""
+            exponent = abs(exponent) if parts else exponent
+            parts += text if exponent == 1 else f"{text}^{exponent:g}"
+    return unit(parts)
+
+
+def _attribute(chain: list[Element], name: str, default: str) -> str:
+    return next((type_.attrib[name] for type_ in chain if name in type_.attrib), default)
+
+
+def _called(element: Element) -> str:
+    """What an enumeration is called: the type, without the word."""
+    name = element.get("name", "")
+    return re.sub("[ _]?([Tt]ype|_t)$", "", name) or name

@@ -1,0 +1,155 @@
+"""CAN databases become ICDs that say what cantools reads in them, and only what is wrong in a database is a finding."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.definitions import can, kinds, run
+from icdgen.diagnostics import Findings
+from tests.conftest import ROOT
+
+FILES = ROOT / "tests" / "definitions" / "files"
+
+
+@pytest.fixture(scope="module")
+def train():
+    return run.read(FILES / "train.dbc", can.Dbc())
+
+
+@pytest.fixture(scope="module")
+def faulty():
+    return run.read(FILES / "faulty.dbc", can.Dbc())
+
+
+def message(read: run.Read, name: str) -> dict:
+    (tree,) = read.trees.values()
+    return next(one for one in tree["messages"] if one["name"] == name)
+
+
+def field(read: run.Read, owner: str, name: str) -> dict:
+    return next(one for one in message(read, owner)["fields"] if one["name"] == name)
+
+
+def test_names_ids_lengths_senders_and_comments_arrive(train):
+    assert {key: value for key, value in message(train, "DriveStatus").items() if key != "fields"} == {
+        "name": "DriveStatus", "id": 256, "kind": "telemetry", "length": 8, "reserved": 1, "group": "Drive",
+        "summary": "What the drive says, every 10 ms.",
+    }  # fmt: skip
+    assert message(train, "Heartbeat") == {
+        "name": "Heartbeat", "id": 257, "kind": "telemetry", "length": 1, "reserved": 1,
+    }  # fmt: skip
+
+
+def test_an_id_of_29_bits_is_without_the_bit_that_marks_it(train):
+    (tree,) = train.trees.values()
+    assert tree["node"]["id_bits"] == 29
+    assert message(train, "BrakeDetails")["id"] == 2566844926 - (1 << 31)
+
+
+def test_units_formulas_and_limits_arrive_where_they_say_more_than_the_width(train):
+    speed = field(train, "DriveStatus", "Speed")
+    assert (speed["unit"], speed["formula"], speed.get("min"), speed["max"]) == ("km/h", "raw*0.01", None, 300)
+    torque = field(train, "DriveStatus", "Torque")
+    assert (torque["unit"], torque["formula"], "min" in torque, "max" in torque) == (
+        "N.m",
+        "raw*0.5 - 20",
+        False,
+        False,
+    )
+
+
+def test_fields_in_another_order_than_most_say_so(train):
+    pressure = field(train, "DriveStatus", "Pressure")
+    assert (pressure["at"], pressure["byte_order"], pressure["bit_order"]) == (32, "big", "msb0")
+
+
+def test_values_with_names_are_enumerations_and_of_scaled_fields_special_values(train):
+    (tree,) = train.trees.values()
+    (mode,) = tree["enums"]
+    assert [(one["value"], one.get("to"), one["name"], one.get("identifier")) for one in mode["members"]] == [
+        (0, None, "Off 0", None), (1, None, "2nd gear", "value 2nd gear"), (2, 3, "Spare", None), (5, None, "Off 5", None),
+    ]  # fmt: skip
+    assert field(train, "DriveStatus", "Torque")["special"] == [{"value": 2047, "meaning": "not known"}]
+    assert [one.code for one in train.definitions.troubles] == ["IMP074", "IMP073", "IMP071"]
+
+
+def test_the_smaller_of_overlapping_fields_is_a_view(train):
+    assert field(train, "DriveStatus", "LevelLow")["view"] and "view" not in field(train, "DriveStatus", "Level")
+
+
+def test_multiplexed_fields_have_conditions(train):
+    whens = {one["name"]: one.get("when") for one in message(train, "BrakeDetails")["fields"]}
+    assert whens == {
+        "Page": None,
+        "Temperature": {"Page": 0},
+        "Wear": {"Page": 1},
+        "Hours": {"Page": 1},
+        "Common": None,
+    }
+
+
+def test_names_that_no_language_takes_get_identifiers_and_are_listed(train):
+    assert train.identifiers == ["value `2nd gear`: `value 2nd gear`", "field `class`: `class field`"]
+    assert field(train, "DriveStatus", "class")["identifier"] == "class field"
+
+
+def test_a_fault_takes_with_it_only_what_it_spoils(faulty):
+    (tree,) = faulty.trees.values()
+    assert [one["name"] for one in tree["messages"]] == ["Wide", "Short", "Fine"]
+    assert message(faulty, "Wide")["id"] == 13274
+    assert [one["name"] for one in message(faulty, "Short")["fields"]] == ["Inside"]
+    found = [(one.code, one.spot.line, one.message) for one in faulty.definitions.troubles]
+    assert found == [
+        ("IMP076", 5, "the id 0x33da has more than the 11 bits of a standard frame"),
+        ("IMP075", 7, '`SG_ 0_COUNTER : 8|8@1+ (1,0) [0|0] "" Drive` is not understood'),
+        ("IMP075", 13, "`BO_ 513 2nd: 1 Drive` is not understood, nor are the 1 signals below it"),
+        ("IMP075", 21, '`CM_ "no end"` is not understood'),
+        ("IMP076", 27, "`VAL_` names `Missing` of message 515, which has no such signal"),
+        ("IMP072", None, "message `Short`: `Outside` ends behind its 2 bytes"),
+        ("IMP070", None, "message `Nested` is not held: `Value` depends on `Inner`, which is not always there itself"),
+    ]
+    assert faulty.failed and (faulty.held, faulty.definitions.total) == (3, 4)
+
+
+@pytest.mark.parametrize("form", ["kcd", "sym"])
+def test_the_same_database_in_another_form_gives_the_same_fields(form, train, tmp_path):
+    import cantools
+
+    path = tmp_path / f"train.{form}"
+    cantools.database.dump_file(cantools.database.load_file(FILES / "train.dbc", strict=False), path)
+    reader = kinds.of(path)
+    assert reader is not None and reader.name == form
+    read = run.read(path, reader)
+    keys = ("at", "bits", "type", "formula", "when", "enum", "byte_order", "view")
+    for name in ("DriveStatus", "BrakeDetails"):
+        ours, theirs = (
+            [(one["name"], *(one.get(key) for key in keys)) for one in message(each, name)["fields"]]
+            for each in (train, read)
+        )
+        several = [0, 1] if form == "sym" else None  # there a signal stands under each value of the multiplexer
+        assert [
+            one if one[0] != "Common" else (*one[:5], several and {"Page": several}, *one[6:]) for one in ours
+        ] == theirs
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "says"),
+    [
+        ("a.dbc", "BU_: A\nBO_ 1 nothing but this", "`BO_ 1 nothing but this` is not understood"),
+        ("a.kcd", '<!DOCTYPE a [<!ENTITY b "c">]><NetworkDefinition>&b;</NetworkDefinition>', "document type"),
+        ("a.arxml", '<!DOCTYPE a SYSTEM "file:///etc/passwd"><AUTOSAR/>', "document type"),
+        ("a.kcd", "<NetworkDefinition><Bus></NetworkDefinition>", "not XML: mismatched tag"),
+        ("a.sym", "FormatVersion=6.0\nTitle=", "not a symbol file"),
+        ("a.dbc", "BU_: A\n" + "x" * 8_000_000, "more than the 8,000,000 bytes allowed"),
+        ("a.dbc", "BU_: A\n", "none is defined"),
+    ],
+)  # fmt: skip
+def test_a_file_that_cannot_be_read_says_so(name, text, says, tmp_path):
+    path = tmp_path / name
+    path.write_text(text)
+    reader = kinds.of(path)
+    assert reader is not None
+    with pytest.raises(Findings) as raised:
+        run.read(path, reader)
+    (finding,) = raised.value.findings
+    assert finding.code == "IMP005" and says in finding.message

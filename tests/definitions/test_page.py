@@ -1,0 +1,48 @@
+"""docs/definitions.md is true: its files give its output, from the definition to the program that runs."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from icdgen.definitions import kinds, run
+from icdgen.icd.fmt import emit
+from tests.conftest import ROOT
+
+PAGE = (ROOT / "docs" / "definitions.md").read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+def test_the_example_goes_from_a_database_to_a_program_as_printed(tmp_path):
+    (tmp_path / "train.dbc").write_text(blocks("dbc")[0])
+    (tmp_path / "main.c").write_text(blocks("c")[0])
+    sessions = blocks("console")
+    for session in sessions[:2]:
+        expected = [line for line in session.splitlines() if not line.startswith("$ ")]
+        said = []
+        for command in re.findall(r"^\$ (.*)$", session, re.MULTILINE):
+            line = (
+                command.replace("icdgen ", f"{sys.executable} -m icdgen ", 1)
+                if command.startswith("icdgen")
+                else command
+            )
+            run = subprocess.run(line, shell=True, cwd=tmp_path, capture_output=True, text=True)
+            assert run.returncode == 0, run.stdout + run.stderr
+            said += run.stdout.splitlines() if not command.startswith("icdgen --lang") else []
+        assert said == expected
+    assert (tmp_path / "icd" / "train.yaml").read_text() == blocks("yaml")[0]
+
+
+def test_the_space_packet_becomes_what_the_page_shows(tmp_path):
+    (tmp_path / "probe.xml").write_text(blocks("xml")[0])
+    read = run.read(tmp_path / "probe.xml", kinds.get("xtce"))
+    (tree,) = read.trees.values()
+    assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[1])

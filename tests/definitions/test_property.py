@@ -1,0 +1,48 @@
+"""What holds for every signal and every table of values."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from icdgen.definitions import frames, wording
+from icdgen.definitions.enumerations import members
+from icdgen.definitions.model import Definitions
+from icdgen.icd.formula import parse
+
+PLACES = st.builds(frames.Place, st.integers(0, 480), st.integers(1, 32), st.sampled_from([frames.LITTLE, frames.BIG]))
+
+
+@given(PLACES)
+def test_bits_are_the_same_however_they_are_counted(place):
+    other = place.counted(frames.BIG if place.order == frames.LITTLE else frames.LITTLE)
+    assert other.mask == place.mask and place.mask.bit_count() == place.bits
+    assert (other.order != place.order) == place.is_within_byte
+
+
+@given(st.dictionaries(st.integers(-4, 40), st.sampled_from(["Off", "On", "Spare", "", "Off 3", "Déjà\n vu"])))
+def test_each_value_with_a_name_has_one_member_and_each_member_a_name_of_its_own(choices):
+    found = members(choices, 0, 31, "here", Definitions(""))
+    values = [value for one in found for value in range(one["value"], one.get("to", one["value"]) + 1)]
+    assert values == sorted(value for value in choices if 0 <= value <= 31)
+    names = [one["name"] for one in found]
+    assert len(set(names)) == len(names) and all(names)
+
+
+NUMBERS = st.floats(-1e9, 1e9).filter(lambda number: abs(number) > 1e-12)
+
+
+@given(NUMBERS, st.just(0.0) | NUMBERS, st.integers(-(2**31), 2**31))
+def test_a_formula_says_what_factor_and_offset_say(factor, offset, raw):
+    said = wording.formula(wording.printed(factor), wording.printed(offset)).get("formula", "raw")
+    assert parse(said).physical(Fraction(raw)) == Fraction(str(factor)) * raw + Fraction(str(offset))
+
+
+@given(st.text(max_size=30), st.text(max_size=30))
+def test_names_of_nodes_are_names_and_texts_are_one_line(name, text):
+    import re
+
+    assert re.fullmatch("[a-z][a-z0-9_]{0,39}", wording.node_name(name))
+    assert "\n" not in wording.line(text) and wording.line(text) == wording.line(wording.line(text))

@@ -1,0 +1,262 @@
+"""XTCE becomes ICDs: space packets with their header as envelope, what inherits, what is told by values, and commands.
+
+What is read of random packets is compared with space-packet-parser's reading in tests/devices.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.definitions import kinds, run, xtce, xtce_types
+from icdgen.diagnostics import Findings
+from tests.definitions.test_can import FILES, field, message
+
+END = "</xtce:ContainerSet></xtce:TelemetryMetaData></xtce:SpaceSystem>"
+SPACE = "http://www.omg.org/spec/XTCE/20180204"
+
+
+@pytest.fixture(scope="module")
+def probe():
+    return imported("probe.xml")
+
+
+@pytest.fixture(scope="module")
+def lander():
+    return imported("lander.xml")
+
+
+def imported(name):
+    reader = kinds.of(FILES / name)
+    assert isinstance(reader, xtce.Xtce)
+    return run.read(FILES / name, reader)
+
+
+def test_the_primary_header_is_the_envelope_and_the_application_process_the_id(probe):
+    (tree,) = probe.trees.values()
+    header = tree["protocol"]["stream"]["header"]
+    assert [(one["at"], one["bits"], one["role"]) for one in header if one["role"] in ("id", "length", "sequence")] == [
+        (5, 11, "id"), (18, 14, "sequence"), (32, 16, "length"),
+    ]  # fmt: skip
+    assert (tree["node"]["id_bits"], [one["id"] for one in tree["messages"]]) == (11, [100, 100, 101])
+
+
+def test_what_all_headers_of_a_direction_say_is_what_is_sent(tmp_path):
+    told = '<xtce:Comparison parameterRef="SECONDARY" value="1"/><xtce:Comparison parameterRef="APID" value="100"'
+    text = (FILES / "probe.xml").read_text().replace('<xtce:Comparison parameterRef="APID" value="100"', told)
+    (tmp_path / "probe.xml").write_text(
+        text.replace(text[text.index('      <xtce:SequenceContainer name="Dumped"') :], END)
+    )
+    read = run.read(tmp_path / "probe.xml", xtce.Xtce())
+    header = read.trees["probe"]["protocol"]["stream"]["header"]
+    assert read.held == 2 and header[2]["value"] == {"telecommand": 0, "telemetry": 1}
+
+
+def test_what_inherits_has_the_fields_of_its_base_and_the_value_that_tells_it(probe):
+    assert [one["name"] for one in message(probe, "Housekeeping")["fields"]] == ["Time", "Mode", "Valid", "Spare"]
+    assert "const" not in field(probe, "Housekeeping", "Mode") and field(probe, "Safe", "Mode")["const"] == 5
+    assert field(probe, "Safe", "Mode")["enum"] == "Mode" and field(probe, "Safe", "Key")["at"] == 176
+
+
+def test_calibrations_are_formulas_and_what_is_none_is_held_raw_and_said(probe):
+    said = {name: field(probe, "Safe", name) for name in ("Temperature", "Pressure", "Level", "Curve", "Rate")}
+    assert said["Temperature"]["formula"] == "raw*0.0125 - 40.5" and said["Temperature"]["below"] == 85.5
+    assert said["Pressure"]["formula"] == "raw^2*0.0002 - raw*0.5 + 3"
+    assert said["Level"]["formula"] == "raw*5/12 - 5/2" and said["Rate"]["unit"] == "deg/s"
+    assert "formula" not in said["Curve"] and "unit" not in said["Curve"]
+    assert [(one.code, one.message) for one in probe.definitions.troubles] == [
+        ("IMP078", "`Curve`: it is calibrated by a table of 3 points")
+    ]
+
+
+def test_bytes_of_a_size_that_is_sent_go_to_the_end_of_the_packet(probe):
+    dump = field(probe, "Dumped", "Dump")
+    assert (dump["at"], dump["size"], dump["up_to"], "bits" in dump) == (40, "rest", 65_530, False)
+
+
+def test_without_such_a_header_the_id_is_what_tells_all_messages(lander):
+    (tree,) = lander.trees.values()
+    assert "protocol" not in tree
+    assert [(one["name"], one["id"], one["kind"]) for one in tree["messages"]] == [
+        ("Power", 7, "telemetry"), ("Places", 9, "telemetry"), ("Arm Power", 10, "telemetry"),
+        ("Stretch", 3, "telecommand"), ("Stop", 4, "telecommand"),
+    ]  # fmt: skip
+
+
+def test_arrays_aggregates_flags_and_times_of_1_1_arrive(lander):
+    assert field(lander, "Power", "Cells") | {"summary": ""} == {
+        "at": 8, "bits": 16, "name": "Cells", "type": "int", "count": 3, "unit": "mV", "byte_order": "little",
+        "summary": "",
+    }  # fmt: skip
+    assert [field(lander, "Arm Power", name)["at"] for name in ("Wind x", "Wind y")] == [8, 24]
+    assert (
+        field(lander, "Power", "At")["formula"] == "raw*0.001 + 10" and field(lander, "Power", "Door")["enum"] == "Door"
+    )
+    assert field(lander, "Places", "Low")["at"] == 40 and field(lander, "Places", "Door")["view"] is True
+
+
+def test_commands_have_the_arguments_of_their_base_with_the_values_that_they_give_them(lander):
+    stretch = message(lander, "Stretch")
+    assert (stretch["length"], stretch["hazard"], stretch["group"]) == (11, "It may hit the mast.", "Arm")
+    assert [(one["name"], one.get("const")) for one in stretch["fields"]] == [
+        ("sync", 0xEB90), ("opcode", 3), ("angle", None),
+    ]  # fmt: skip
+    assert {key: field(lander, "Stretch", "angle")[key] for key in ("type", "bits", "min", "max")} == {
+        "type": "float", "bits": 64, "min": -90, "max": 90,
+    }  # fmt: skip
+
+
+def test_what_is_not_held_is_said_with_the_reason(lander):
+    assert [one.message for one in lander.definitions.troubles if one.severity == "error"] == [
+        "message `Clock` is not held: an integer is encoded as `BCD`"
+    ]
+
+
+BYTE = '<IntegerParameterType name="byte"><IntegerDataEncoding/></IntegerParameterType>'
+FLOAT16 = '<FloatParameterType name="byte"><FloatDataEncoding sizeInBits="16"/></FloatParameterType>'
+ENTRY = '<ParameterRefEntry parameterRef="P"/>'
+
+
+def container(name: str, entries: str = ENTRY, base: str = "", of: str = "") -> str:
+    inherits = f'<BaseContainer containerRef="{base}">{of}</BaseContainer>' if base else ""
+    return f'<SequenceContainer name="{name}"><EntryList>{entries}</EntryList>{inherits}</SequenceContainer>'
+
+
+def system(containers: str, types: str = BYTE, more: str = "") -> str:
+    return (
+        f'<SpaceSystem name="S" xmlns="{SPACE}"><TelemetryMetaData><ParameterTypeSet>{types}</ParameterTypeSet><ParameterSet>'
+        f'<Parameter name="P" parameterTypeRef="byte"/></ParameterSet><ContainerSet>{containers}</ContainerSet>'
+        f"</TelemetryMetaData>{more}</SpaceSystem>"
+    )
+
+
+def entry(inner: str) -> str:
+    return f'<ParameterRefEntry parameterRef="P">{inner}</ParameterRefEntry>'
+
+
+def type_(kind: str, inner: str) -> str:
+    return f'<{kind}ParameterType name="byte">{inner}</{kind}ParameterType>'
+
+
+INCLUDED = '<ContainerRefEntry containerRef="{}"/>'
+NO_SIZE = '<StringDataEncoding><SizeInBits><LeadingSize sizeInBitsOfSizeTag="8"/></SizeInBits></StringDataEncoding>'
+LABELS = (
+    '<IntegerDataEncoding/><EnumerationList><Enumeration value="0" maxValue="99999999999" label="A"/></EnumerationList>'
+)
+MANY = "<RepeatEntry><Count><FixedValue>99999</FixedValue></Count></RepeatEntry>"
+ITSELF = '<MemberList><Member name="x" typeRef="byte"/></MemberList>'
+
+
+def nested(depth: int, times: int) -> str:
+    return "".join(container(f"C{n}", INCLUDED.format(f"C{n + 1}") * times) for n in range(depth))
+
+
+GREATER = (
+    '<RestrictionCriteria><Comparison parameterRef="P" value="1" comparisonOperator="&gt;"/></RestrictionCriteria>'
+)
+MASKED = "<RestrictionCriteria><CustomAlgorithm/></RestrictionCriteria>"
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (container("A", base="A"), "in a circle: A -> A"),
+        (container("A", base="B") + container("B", base="A"), "in a circle: A -> B -> A"),
+        (container("A", INCLUDED.format("B"), "B") + container("B", INCLUDED.format("A")), "in a circle: A -> B -> A"),
+        (container("A", base="nothing"), "there is no container `nothing`"),
+        (container("A", '<ParameterRefEntry parameterRef="../../../etc"/>'), "there is no parameter `../../../etc`"),
+        (container("A", '<ContainerSegmentRefEntry containerRef="A"/>'), "it has a `ContainerSegmentRefEntry`"),
+        (container("B") + container("A", base="B", of=GREATER), "it is told by `P > 1`, which is no equality"),
+        (container("B") + container("A", base="B", of=MASKED), "it is told by a `CustomAlgorithm`"),
+        (container("A", entry("<IncludeCondition/>")), "`P` is there only on a condition"),
+        (container("A", entry(MANY)), "`P` is there 99999 times"),
+        (container("A", ENTRY * 5001), "it has more than 5000 fields"),
+        (nested(40, 2) + container("C40", ""), "the file says more than 1,000,000 things"),
+        (nested(99, 1), "more than 50 containers inherit or hold each other"),
+    ],
+)  # fmt: skip
+def test_containers_that_cannot_be_held_are_left_out_and_end(text, says, tmp_path, monkeypatch):
+    monkeypatch.setattr(xtce_types, "MOST_STEPS", xtce_types.MOST_STEPS if "things" not in says else 20_000)
+    assert says.replace("1,000,000", "20,000") in refused(system(text), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("types", "says"),
+    [
+        (FLOAT16, "a float has 16 bits"),
+        (BYTE.replace('name="byte"', 'name="byte" baseType="byte"'), "the type `byte` is based on itself"),
+        (BYTE.replace("Encoding", 'Encoding sizeInBits="1e9"'), "a size is `1e9`"),
+        (BYTE.replace("Encoding", 'Encoding sizeInBits="999"'), "an integer has 999 bits"),
+        (BYTE.replace("Encoding", 'Encoding bitOrder="leastSignificantBitFirst"'), "its least significant bit is sent first"),
+        ('<ArrayParameterType name="byte" arrayTypeRef="byte"/>', "an array of no dimensions"),
+        (type_("Aggregate", ITSELF), "has members of members without end"),
+        (type_("Enumerated", LABELS), "has a label for the values 0 to 99999999999"),
+        (type_("String", NO_SIZE), "its size stands in front of it"),
+        ("<BinaryParameterType name='byte'/>", "the type `byte` has no encoding"),
+    ],
+)  # fmt: skip
+def test_types_that_cannot_be_held_are_said_and_end(types, says, tmp_path):
+    assert says in refused(system(container("A"), types), tmp_path)
+
+
+BOMB = "<!DOCTYPE x [" + "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10}">' for n in range(1, 10)) + '<!ENTITY e0 "ha">]>'
+OUTSIDE = '<!DOCTYPE x [<!ENTITY e SYSTEM "file:///etc/passwd">]>'
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (BOMB + system(container("A")).replace('name="A"', 'name="&e9;"'), "the XML has a document type"),
+        (OUTSIDE + system(container("A", "&e;")), "the XML has a document type"),
+        ("<SpaceSystem>", "not XML: no element found"),
+        (system("") , "no message can be held, for none is defined"),
+        ('<SpaceSystem name="a">' * 102 + "</SpaceSystem>" * 102, "more than 100 systems stand within each other"),
+    ],
+)  # fmt: skip
+def test_hostile_files_are_refused(text, says, tmp_path):
+    assert says in refused(text, tmp_path)
+
+
+def refused(text, folder):
+    (folder / "bad.xml").write_text(text)
+    with pytest.raises(Findings) as raised:
+        run.read(folder / "bad.xml", xtce.Xtce())
+    (finding,) = raised.value.findings
+    assert finding.code == "IMP005"
+    return finding.message
+
+
+def test_messages_that_nothing_tells_apart_are_counted_and_that_is_said(tmp_path):
+    (tmp_path / "two.xml").write_text(system(container("A") + container("B")))
+    read = run.read(tmp_path / "two.xml", xtce.Xtce())
+    assert [(one["name"], one["id"]) for one in read.trees["two"]["messages"]] == [("A", 1), ("B", 2)]
+    assert [(one.code, one.message) for one in read.definitions.troubles] == [
+        ("IMP079", "no parameter tells all 2 messages of telemetry: `A`, `B`")
+    ]
+
+
+def test_a_size_that_the_packet_itself_says_is_not_looked_at_and_that_is_said(tmp_path):
+    size = "<SizeInBits><DynamicValue><ParameterInstanceRef parameterRef='P'/></DynamicValue></SizeInBits>"
+    types = (
+        f"{BYTE}<BinaryParameterType name='data'><BinaryDataEncoding>{size}</BinaryDataEncoding></BinaryParameterType>"
+    )
+    text = system(container("A", f'{ENTRY}<ParameterRefEntry parameterRef="D"/>'), types)
+    text = text.replace("</ParameterSet>", '<Parameter name="D" parameterTypeRef="data"/></ParameterSet>')
+    (tmp_path / "one.xml").write_text(text)
+    read = run.read(tmp_path / "one.xml", xtce.Xtce())
+    assert [(one.code, one.message) for one in read.definitions.troubles] == [
+        ("IMP080", "message `A`: `D` is as long as `P` says")
+    ]
+    assert field(read, "A", "D") == {"at": 8, "name": "D", "type": "bytes", "size": "rest", "up_to": 65_534}
+
+
+@pytest.mark.parametrize("scale", ["x", "1e9999"])
+def test_a_time_whose_scale_is_no_number_is_held_raw(scale, tmp_path):
+    text = (FILES / "lander.xml").read_text().replace('scale="0.001"', f'scale="{scale}"')
+    (tmp_path / "lander.xml").write_text(text)
+    read = run.read(tmp_path / "lander.xml", xtce.Xtce())
+    assert "formula" not in field(read, "Power", "At") and "unit" not in field(read, "Power", "At")
+    assert f"`At`: a coefficient is `{scale}`" in [one.message for one in read.definitions.troubles]
+
+
+def test_messages_of_one_name_are_told_apart(lander):
+    assert [one["name"] for one in lander.trees["lander"]["messages"]].count("Power") == 1
