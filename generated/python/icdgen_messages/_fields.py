@@ -151,7 +151,7 @@ class FieldInfo:
             told[key] += f"[{index}]"
         told["at"] += index * self.bits
         if self.is_open or self.default is None:
-            told.update(default=None, fewest=0)
+            told.update(default=None, is_open=False, fewest=0)
         else:
             told["default"] = self.default[index]
         return FieldInfo(**{**told, "elements": 0})
