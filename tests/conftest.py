@@ -11,6 +11,9 @@ from hypothesis import HealthCheck, settings
 
 ROOT = Path(__file__).parent.parent
 
+# What cargo builds here is run once: neither its debugger nor its next build would be quicker for these.
+os.environ |= {"CARGO_INCREMENTAL": "0", "CARGO_PROFILE_DEV_DEBUG": "0"}
+
 # A busy machine makes no test fail, and what was green stays green; `--hypothesis-profile=explore` tries new inputs each time.
 _PATIENT = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow, HealthCheck.data_too_large]}
 settings.register_profile("same", derandomize=True, **_PATIENT)

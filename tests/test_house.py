@@ -39,7 +39,7 @@ def test_the_generator_knows_no_device():
     assert [f"{p.relative_to(ROOT)}: {m.group()}" for p in files if (m := word.search(p.read_text("utf-8")))] == []
 
 
-@pytest.mark.parametrize("command", [["ruff", "check"], ["black", "--check", "--quiet"]])
+@pytest.mark.parametrize("command", [["ruff", "check"], ["black", "--check"]])
 def test_our_python_is_linted_and_formatted(command):
     result = subprocess.run([sys.executable, "-m", *command, *PYTHON], cwd=ROOT, capture_output=True, text=True)
     assert result.returncode == 0, result.stdout + result.stderr

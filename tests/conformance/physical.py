@@ -58,20 +58,20 @@ def scaled_fields(icd: Icd) -> Iterator[tuple[Message, Field]]:
                     yield message, field
 
 
-def chunks(field: Field, count: int, whole: int) -> list[Chunk]:
+def chunks(field: Field, count: int, whole: int, near: int = 1000) -> list[Chunk]:
     """Everything to ask of a field; fields of one kind share it."""
-    return _chunks(field.scale, field.curve, field.type, field.bits, count, whole)
+    return _chunks(field.scale, field.curve, field.type, field.bits, count, whole, near)
 
 
 @cache
-def _chunks(scale, curve, type_: str, bits: int, count: int, whole: int) -> list[Chunk]:
+def _chunks(scale, curve, type_: str, bits: int, count: int, whole: int, near: int) -> list[Chunk]:
     field = Field("any", 0, bits, type_, scale=scale, curve=curve)
     low, high = field.raw_min, field.raw_max
     if bits <= whole:
         return [_chunk(field, {"from": low, "to": high}, tuple(range(low, high + 1)))]
     source = random.Random(f"{scale or curve}/{type_}/{bits}")
-    near = [raw for middle in (low, 0, high) for raw in range(middle - 1000, middle + 1001) if low <= raw <= high]
-    values = near + [source.randint(low, high) for _ in range(count)]
+    edges = [raw for middle in (low, 0, high) for raw in range(middle - near, middle + near + 1) if low <= raw <= high]
+    values = edges + [source.randint(low, high) for _ in range(count)]
     values += [raw for shift in range(bits) for raw in (1 << shift, -(1 << shift)) if low <= raw <= high]
     parts = (tuple(values[at : at + CHUNK]) for at in range(0, len(values), CHUNK))
     return [_chunk(field, {"values": part}, part) for part in parts]
@@ -115,10 +115,11 @@ def sweep(testee: Testee, total: Total, message: Message, field: Field, chunk: C
         notes.append(f"{where}: {answer['failures']} values do not come back, expected {chunk.failures}")
 
 
-def run(names: list[str], icd: Icd, count: int, whole: int = 16) -> tuple[list[Total], list[str]]:
+def run(names: list[str], icd: Icd, count: int, whole: int = 16, near: int = 1000) -> tuple[list[Total], list[str]]:
     """The totals, and the first differences in words. Raises `BuildError`.
 
-    Fields of up to ``whole`` bits are asked for all their values, wider ones for ``count`` random ones.
+    Fields of up to ``whole`` bits are asked for all their values, wider ones for ``count`` random ones
+    and those ``near`` 0 and the ends of the range.
     """
     languages = all_languages()
     totals, notes = [Total(name) for name in names], []
@@ -126,7 +127,7 @@ def run(names: list[str], icd: Icd, count: int, whole: int = 16) -> tuple[list[T
     for message, field in scaled_fields(icd):
         for total, testee in zip(totals, testees, strict=True):
             total.fields += 1
-            for chunk in chunks(field, count, whole):
+            for chunk in chunks(field, count, whole, near):
                 found: list[str] = []
                 sweep(testee, total, message, field, chunk, found)
                 notes += [f"{total.name}: {note}" for note in found[:5]]

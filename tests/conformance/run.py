@@ -11,7 +11,7 @@ import random
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -146,6 +146,13 @@ def run(
     folder: Path | None = None,
 ) -> list[Result]:
     """Builds every language and drives it. Raises `BuildError`."""
+    return run_batches(languages, icd, batches(icd, files, frames, seed), folder)
+
+
+def run_batches(
+    languages: list[Language], icd: Icd, asked: Iterable[Batch], folder: Path | None = None
+) -> list[Result]:
+    """The same, of what is asked already made."""
     results: list[Result] = []
     testees: list[tuple[Result, Answering]] = []
     for language in languages:
@@ -156,7 +163,7 @@ def run(
         testee = InProcess(Reference(icd).answer) if reference else Testee(build(language, icd, folder))
         results.append(Result(language.name))
         testees.append((results[-1], testee))
-    for batch in batches(icd, files, frames, seed) if testees else ():
+    for batch in asked if testees else ():
         for result, testee in testees:
             drive(testee, batch, result)
     for result, testee in testees:

@@ -175,8 +175,9 @@ def test_languages_are_found_by_their_modules():
     assert all_languages()["reference"].kind == REFERENCE
 
 
-def test_the_table_has_a_line_for_each_language(icd, files):
-    results = run([all_languages()["reference"]], icd, files)
+def test_the_table_has_a_line_for_each_language(demo):
+    icd = icd_of([demo])
+    results = run([all_languages()["reference"]], icd, vectors_of(icd))
     assert table(results).splitlines()[1].split()[:3] == [
         "reference",
         f"{results[0].messages:,}",

@@ -129,5 +129,5 @@ def test_c_counts_what_it_sends(expected, tmp_path):
 def test_rust_counts_what_it_sends(expected, tmp_path):
     tools, crate = Toolchain("default"), rust.generate(ICD, tmp_path)
     (tmp_path / "send.rs").write_text(RUST)
-    program = tools.program(tmp_path / "send.rs", tools.library(crate, tmp_path, "0"), tmp_path / "send")
+    program = tools.program(tmp_path / "send.rs", tools.library(crate, "0"), tmp_path / "send")
     assert run(program).split() == expected

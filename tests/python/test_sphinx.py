@@ -20,10 +20,10 @@ autodoc_default_options = {{"members": True, "undoc-members": True, "show-inheri
 suppress_warnings = ["ref.python"]  # attributes may be called like built-in types: `type`, `bytes`
 """
 SHIPPED = (
-    "_enumeration", "_errors", "_fields", "_base", "_codec", "_columns", "cubeacp", "cubewheel", "wire.async_session",
+    "_enumeration", "_errors", "_fields", "_base", "_codec", "_columns", "cubewheel", "wire.async_session",
     "wire.can", "wire.client", "wire.events", "wire.files", "wire.link", "wire.logs", "wire.procedures", "wire.programs",
     "wire.session", "wire.times", "wire.transfer", "wire.uart", "cubeacp._types.estimated_attitude_angles",
-    "cubeacp._types.current_adcs_state", "cubeacp._types.con_mode_select", "cubeacp._types.adcs_configuration",
+    "cubeacp._types.current_adcs_state", "cubeacp._types.con_mode_select",
     "cubewheel._types.wheel_speed",
 )  # fmt: skip
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,7 +9,6 @@ import pytest
 
 from icdgen.icd.model import Icd
 from tests.rust import harness, odd
-from tests.rust.tools import Toolchain
 
 
 class Subject(NamedTuple):
@@ -42,14 +40,3 @@ def subject(request) -> Subject:
 def testee(subject) -> list[str]:
     """The command that answers requests about the crate."""
     return harness.build_testee(subject.icd)
-
-
-@pytest.fixture(scope="session")
-def libraries(tmp_path_factory):
-    """Crates as libraries, each compiled once."""
-
-    @cache
-    def library(crate: Path, toolchain: str, level: str, *options: str) -> Path:
-        return Toolchain(toolchain).library(crate, tmp_path_factory.mktemp("library"), level, *options)
-
-    return library

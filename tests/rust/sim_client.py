@@ -80,7 +80,7 @@ def build(folder: Path) -> list[str]:
     """The command that starts the client, built in that folder."""
     icd, tools = harness.shipped(), Toolchain("default")
     shutil.rmtree(folder / "rust", ignore_errors=True)  # of an earlier build
-    library = tools.library(harness.generate(icd, folder), folder, "0", *STD)  # with checks of arithmetic
+    library = tools.library(harness.generate(icd, folder), "0", *STD)  # with checks of arithmetic
     main = folder / "sim_client.rs"
     main.write_text(source(icd), encoding="utf-8")
     shutil.copy(HERE / "sim_device.rs", folder)

@@ -75,12 +75,12 @@ def arrays(tmp_path_factory) -> Subject:
 def test_elements_are_values_and_an_index_is_held_to_the_count(arrays, toolchain, tmp_path):
     tools = Toolchain(toolchain)
     (tmp_path / "user.rs").write_text(USER)
-    run(tools.program(tmp_path / "user.rs", tools.library(arrays.crate, tmp_path, "0"), tmp_path / "user"))
+    run(tools.program(tmp_path / "user.rs", tools.library(arrays.crate, "0"), tmp_path / "user"))
 
 
 @pytest.mark.parametrize("level", ["3", "z"])
-def test_no_way_to_a_panic_is_left_in_arrays(libraries, arrays, level, tmp_path):
-    assert suspicious(symbols(libraries, arrays, "default", level, tmp_path)) == []
+def test_no_way_to_a_panic_is_left_in_arrays(arrays, level, tmp_path):
+    assert suspicious(symbols(arrays, "default", level, tmp_path)) == []
 
 
 def test_sources_of_arrays_are_formatted_and_clippy_has_nothing_to_say(arrays, tmp_path):

@@ -24,9 +24,9 @@ def examples(crate: Path, only: str = "") -> int:
 UNWINDS = ("-C", "panic=unwind")  # as examples do
 
 
-def test_each_of_them_runs(subject, libraries):
+def test_each_of_them_runs(subject):
     """All; where each is a program of its own, those of the node with the fewest messages."""
-    library, tools = libraries(subject.crate, "default", "0", *UNWINDS, *STD), Toolchain("default")
+    library, tools = Toolchain("default").library(subject.crate, "0", *UNWINDS, *STD), Toolchain("default")
     least = min(subject.icd.nodes, key=lambda node: len(node.messages))
     only = "" if tools.merges else f"/{least.name}/"
     said = tools.tested(subject.crate, library, only)
@@ -48,8 +48,8 @@ def test_every_node_that_can_be_asked_on_uart_shows_how(shipped):
         assert ("//! ```" in text) == ("pub use crate::wire::links" in text and "pub enum Telemetry" in text), node.name
 
 
-def test_one_that_says_otherwise_fails(shipped, libraries, tmp_path):
-    library = libraries(shipped.crate, "default", "0", *UNWINDS, *STD)
+def test_one_that_says_otherwise_fails(shipped, tmp_path):
+    library = Toolchain("default").library(shipped.crate, "0", *UNWINDS, *STD)
     text = harness.texts(shipped.icd)["src/cubeacp/estimated_attitude_angles.rs"]
     start = text.index("/// ```")
     example = text[start : text.index("#[derive", start)]

@@ -15,6 +15,7 @@ from tests.rust import harness
 from tests.rust.conftest import Subject
 from tests.rust.tools import Toolchain, run, toolchains
 
+FAST, SMALL = "3", "z"  # what users build for
 HEAD = """\
 #![no_std]
 #![allow(non_snake_case)]
@@ -69,10 +70,10 @@ def everything(icd: Icd) -> Iterator[str]:
             yield ENUM.format(name=name, type=type_, raw=f"{'i' if enum.storage.signed else 'u'}{enum.storage.bits}")
 
 
-def symbols(libraries, subject, toolchain: str, level: str, folder: Path, more: str = "") -> set[str]:
+def symbols(subject, toolchain: str, level: str, folder: Path, more: str = "") -> set[str]:
     """What the linker sees of the program."""
     tools = Toolchain(toolchain)
-    library = libraries(subject.crate, toolchain, level)
+    library = Toolchain(toolchain).library(subject.crate, level)
     source = folder / "everything.rs"
     source.write_text(HEAD + "".join(everything(subject.icd)) + more)
     archive = tools.freestanding(source, library, folder / "libeverything.a", level)
@@ -96,23 +97,22 @@ def suspicious(found: set[str]) -> list[str]:
     return sorted(one for one in found if "panic" in one or "_fail" in one or "unwrap" in one)
 
 
-@pytest.mark.parametrize("level", ["3", "z"])
 @pytest.mark.parametrize("toolchain", list(toolchains()))
-def test_no_way_to_a_panic_is_left(libraries, shipped, toolchain, level, tmp_path):
-    found = symbols(libraries, shipped, toolchain, level, tmp_path, WIRE.read_text())
+def test_no_way_to_a_panic_is_left(shipped, toolchain, tmp_path):
+    found = symbols(shipped, toolchain, FAST, tmp_path, WIRE.read_text())
     assert {"wire_uart_feed", "wire_client_received", "wire_download_next"} <= found
     assert sum(one.startswith("decode_") for one in found) == sum(len(node.messages) for node in shipped.icd.nodes)
     assert suspicious(found) == []
 
 
-def test_no_way_to_a_panic_is_left_in_odd_messages(libraries, strange, tmp_path):
-    assert suspicious(symbols(libraries, strange, "default", "3", tmp_path)) == []
+def test_no_way_to_a_panic_is_left_in_odd_messages(strange, tmp_path):
+    assert suspicious(symbols(strange, "default", SMALL, tmp_path)) == []
 
 
-def test_messages_of_variable_length_neither_panic_nor_allocate(libraries, tmp_path_factory, tmp_path):
+def test_messages_of_variable_length_neither_panic_nor_allocate(tmp_path_factory, tmp_path):
     icd = harness.read(*odd.variable(tmp_path))
     variable = Subject(icd, harness.generate(icd, tmp_path_factory.mktemp("variable")))
-    found = symbols(libraries, variable, "default", "3", tmp_path)
+    found = symbols(variable, "default", FAST, tmp_path)
     assert {"decode_ublox_nav_sat", "dispatch_open_telemetry", "dispatch_mux_telemetry"} <= found
     assert suspicious(found) == []
     assert {one.split("::")[-1] for one in found} & ALLOCATORS == set()
@@ -125,6 +125,6 @@ def test_a_program_without_an_allocator_cannot_allocate(tmp_path):
         Toolchain("default").alone(tmp_path / "badly.rs", tmp_path / "libbadly.a")
 
 
-def test_a_panic_would_be_seen(libraries, strange, tmp_path):
+def test_a_panic_would_be_seen(strange, tmp_path):
     more = "#[no_mangle] pub fn decode_badly(bytes: &[u8]) -> u8 { bytes[0] }\n"
-    assert "this_can_panic" in symbols(libraries, strange, "default", "3", tmp_path, more)
+    assert "this_can_panic" in symbols(strange, "default", SMALL, tmp_path, more)

@@ -40,15 +40,15 @@ def program(icd: Icd) -> str:
 
 @pytest.mark.parametrize("toolchain", list(toolchains()))
 @pytest.mark.parametrize("which", ["odd", "shipped"])
-def test_parts_are_what_the_reference_reads_there(request, libraries, which, toolchain, tmp_path):
+def test_parts_are_what_the_reference_reads_there(request, which, toolchain, tmp_path):
     subject, tools = request.getfixturevalue(which), Toolchain(toolchain)
     (tmp_path / "user.rs").write_text(program(subject.icd))
-    run(tools.program(tmp_path / "user.rs", libraries(subject.crate, toolchain, "0"), tmp_path / "user"))
+    run(tools.program(tmp_path / "user.rs", Toolchain(toolchain).library(subject.crate, "0"), tmp_path / "user"))
 
 
 @pytest.mark.parametrize("level", ["3", "z"])
-def test_no_way_to_a_panic_is_left_in_parts(libraries, odd, level, tmp_path):
-    assert suspicious(symbols(libraries, odd, "default", level, tmp_path)) == []
+def test_no_way_to_a_panic_is_left_in_parts(odd, level, tmp_path):
+    assert suspicious(symbols(odd, "default", level, tmp_path)) == []
 
 
 def test_sources_with_parts_are_tidy(odd, tmp_path):

@@ -52,12 +52,12 @@ def structs(tmp_path_factory) -> Subject:
 def test_a_struct_is_a_value_of_its_own_wherever_it_stands(structs, toolchain, tmp_path):
     tools = Toolchain(toolchain)
     (tmp_path / "user.rs").write_text(USER)
-    run(tools.program(tmp_path / "user.rs", tools.library(structs.crate, tmp_path, "0"), tmp_path / "user"))
+    run(tools.program(tmp_path / "user.rs", tools.library(structs.crate, "0"), tmp_path / "user"))
 
 
 @pytest.mark.parametrize("level", ["3", "z"])
-def test_no_way_to_a_panic_is_left_in_structs(libraries, structs, level, tmp_path):
-    assert suspicious(symbols(libraries, structs, "default", level, tmp_path)) == []
+def test_no_way_to_a_panic_is_left_in_structs(structs, level, tmp_path):
+    assert suspicious(symbols(structs, "default", level, tmp_path)) == []
 
 
 def test_sources_of_structs_are_formatted_and_clippy_has_nothing_to_say(structs, tmp_path):

@@ -45,7 +45,7 @@ def test_it_compiles_without_a_warning_and_with_names_of_any_length(toolchain, t
     folder = tmp_path / "icd"
     folder.mkdir()
     crate = harness.generate(harness.read(*odd.write_long(folder)), tmp_path)
-    toolchain.library(crate, tmp_path, level="0")
+    toolchain.library(crate, level="0")
 
 
 def test_a_crate_that_needs_next_to_nothing_is_tidy_too(toolchain, tmp_path):

@@ -42,7 +42,7 @@ def cases(icd: Icd) -> Iterator[str]:
                 )
 
 
-def test_what_does_not_fit_is_refused_by_name(subject, libraries, tmp_path):
+def test_what_does_not_fit_is_refused_by_name(subject, tmp_path):
     tools = Toolchain("default")
     found = list(cases(subject.icd))
     assert found
@@ -50,5 +50,5 @@ def test_what_does_not_fit_is_refused_by_name(subject, libraries, tmp_path):
     calls = "".join(f"    case_{index}();\n" for index in range(len(found)))
     source = tmp_path / "main.rs"
     source.write_text(f"#![allow(unused_imports)]\nuse icd::Coded;\n{functions}fn main() {{\n{calls}}}\n")
-    library = libraries(subject.crate, "default", "0")
+    library = Toolchain("default").library(subject.crate, "0")
     run(tools.program(source, library, tmp_path / "main"))

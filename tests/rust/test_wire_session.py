@@ -27,17 +27,17 @@ OWN = {"request": "cubeacp", "send": "cubeacp::ClearErrors", "message": "cubeacp
 OTHERS = {"request": "bootloader", "send": "bootloader::SetBootIndex", "message": "bootloader"}
 
 
-def test_sessions_outlive_their_port_and_requests_are_given_up(shipped, libraries, tmp_path):
+def test_sessions_outlive_their_port_and_requests_are_given_up(shipped, tmp_path):
     tools = Toolchain("default")
-    library = libraries(shipped.crate, "default", "0", *STD)
+    library = Toolchain("default").library(shipped.crate, "0", *STD)
     run(tools.program(PROGRAM, library, tmp_path / "program"))
 
 
 @pytest.mark.parametrize("name", list(toolchains()))
-def test_a_message_of_another_node_does_not_compile(shipped, libraries, name, tmp_path):
+def test_a_message_of_another_node_does_not_compile(shipped, name, tmp_path):
     """Telemetry 132 is `State` on both nodes; it is refused where it is requested, and where it is taken from an event."""
     tools = Toolchain(name)
-    library = libraries(shipped.crate, name, "0")
+    library = Toolchain(name).library(shipped.crate, "0")
 
     def compiled(text: str) -> str:
         source = tmp_path / "main.rs"

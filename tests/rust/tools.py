@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import fcntl
+import hashlib
 import os
 import shutil
 import subprocess
 from functools import cache
 from pathlib import Path
+
+from tests.conformance.build import cache_folder
 
 OLDEST = "1.63"
 MERGING = "2024"
@@ -87,10 +91,21 @@ class Toolchain:
         command = (*self.start, "rustdoc", "--test", "--edition", edition, "--crate-name", "icd", "--test-args", only)
         return run(*command, *STD, "--extern", f"icd={library}", file)
 
-    def library(self, file: Path, out: Path, level: str, *more: str) -> Path:
-        """Compiles the crate, optimised to that level; its file."""
+    def library(self, file: Path, level: str, *more: str) -> Path:
+        """Compiles the crate, optimised to that level; its file. What was compiled before is taken from the cache."""
         options = ("--crate-type", "lib", "-C", "panic=abort", "-C", f"opt-level={level}")
-        run(*self._rustc("icd"), *options, *more, "--out-dir", out, file)
+        command = (*self._rustc("icd"), *options, *more)
+        digest = hashlib.sha256("\0".join([*command, *map(str, self.version)]).encode())
+        for source in sorted(file.parent.rglob("*.rs")):
+            digest.update(f"\0{source.relative_to(file.parent)}\0".encode() + source.read_bytes())
+        out = cache_folder() / f"library-{digest.hexdigest()[:16]}"
+        out.mkdir(parents=True, exist_ok=True)
+        with open(out / "lock", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not (out / "libicd.rlib").exists():
+                made = out / "made"
+                run(*command, "--out-dir", made, file)
+                (made / "libicd.rlib").rename(out / "libicd.rlib")
         return out / "libicd.rlib"
 
     def program(self, file: Path, library: Path, out: Path) -> Path:

@@ -34,7 +34,7 @@ def headers(tmp_path_factory) -> Path:
 def crate(tmp_path_factory) -> Path:
     """The compiled crate, with std."""
     folder = tmp_path_factory.mktemp("crate")
-    return Toolchain("default").library(rust.generate(rust.shipped(), folder), folder, "0", *STD)
+    return Toolchain("default").library(rust.generate(rust.shipped(), folder), "0", *STD)
 
 
 @pytest.fixture(scope="module")

@@ -53,7 +53,7 @@ def streams(icd) -> list[str]:
     source = random.Random(7)
     messages = [m for node in icd.nodes for m in icd.messages_of(node)]
     found = []
-    for _ in range(450):
+    for _ in range(700):
         message = source.choice(messages)
         data = source.randbytes(message.length if source.random() < 0.8 else source.randrange(12))
         id = source.choice(message.ids)

@@ -9,6 +9,7 @@ from math import ceil
 from typing import TypeVar
 
 from icdgen.frozen import dataclass
+from icdgen.icd.kept import kept
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol.envelope import Stream
 from icdgen.protocol.reading import Assumption, Reader
@@ -129,6 +130,7 @@ def need(part: T | None, name: str) -> T:
     return part
 
 
+@kept
 def of(icd: Icd, node: Node) -> Facts:
     """The protocol facts that hold for a node."""
     reader = Reader(icd, node)

@@ -10,11 +10,10 @@ from icdgen_runtime.wire.uart import UartDecoder, UartEvent
 
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Message, Node
-from icdgen.protocol import facts
 from icdgen.recognize import bus, envelopes, match
 from icdgen.recognize.given import of_message
 from icdgen.recognize.pasted import Pasted, read
-from icdgen.recognize.reading import Reading, Speaker
+from icdgen.recognize.reading import Reading, Speaker, all_speakers, speaker_of
 from icdgen.values.errors import Ambiguous, BadHex, BadLength, NotFound
 from icdgen.values.find import KINDS, find_message, find_node, find_sharing
 from icdgen.values.frame import frame
@@ -51,7 +50,7 @@ def _named(icd: Icd, node: Node, key: str, kind: str | None, text: str | bytes) 
     except Ambiguous:
         known = find_sharing(icd, node.name, key, kind)
         data = b"" if not known else text if isinstance(text, bytes) else read(text).data
-        both = Speaker(icd, node, facts.of(icd, node)).taken_apart(data) if known else None
+        both = speaker_of(icd, node).taken_apart(data) if known else None
         found = match.message_of(icd, known, data) if known else None
         if found is None and both is not None and both[0] in known[0].ids:
             found = match.message_of(icd, known, both[1])
@@ -76,8 +75,8 @@ def _line_by_line(
 
 
 def _readings(icd: Icd, pasted: Pasted, asked: Node | None, message: Message | None, kind: str | None) -> list[Reading]:
-    speakers = [Speaker(icd, node, facts.of(icd, node)) for node in ([asked] if asked else icd.nodes)]
-    if pasted.packets and any(speaker.facts.can for speaker in speakers):
+    speakers = [speaker_of(icd, asked)] if asked else all_speakers(icd)
+    if pasted.packets and any(one.facts.can for one in speakers):
         found = bus.readings(speakers, pasted.packets)
     else:
         data = b"".join(packet.data for packet in pasted.packets) or pasted.data

@@ -6,9 +6,8 @@ import shlex
 
 from icdgen.describe.numbers import length_text
 from icdgen.icd.model import Icd, Message
-from icdgen.protocol import facts
 from icdgen.recognize import match
-from icdgen.recognize.reading import TELECOMMAND, TELEMETRY, Reading, Speaker
+from icdgen.recognize.reading import TELECOMMAND, TELEMETRY, Reading, Speaker, all_speakers
 from icdgen.values.errors import BadLength
 
 
@@ -45,5 +44,5 @@ def _reading(speaker: Speaker, message: Message, id: int | None, data: bytes, *r
 
 def _talking(icd: Icd, speaker: Speaker, message: Message) -> list[Speaker]:
     """How all talk that have the message: those that include it may add a checksum."""
-    others = [node for node in icd.nodes if node is not speaker.node and message in icd.messages_of(node)]
-    return [speaker, *(Speaker(icd, node, facts.of(icd, node)) for node in others)]
+    others = (one for one in all_speakers(icd) if one.node is not speaker.node)
+    return [speaker, *(one for one in others if message in icd.messages_of(one.node))]

@@ -9,8 +9,10 @@ from icdgen_runtime.wire.link import Link
 
 from icdgen.backends.python.objects.links import link_of
 from icdgen.icd import wire_ids
+from icdgen.icd.kept import kept
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.variants import Ids, ids_of
+from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
 from icdgen.values.find import KINDS, describe
 from icdgen.values.frame import Frame
@@ -40,6 +42,17 @@ class Speaker:
         """The id that bytes begin with, and the rest; None if there are too few."""
         size = wire_ids.size(self.node.id_bits)
         return (wire_ids.number(body[:size]), body[size:]) if len(body) >= size else None
+
+
+@kept
+def speaker_of(icd: Icd, node: Node) -> Speaker:
+    """That node of the set."""
+    return Speaker(icd, node, facts.of(icd, node))
+
+
+def all_speakers(icd: Icd) -> list[Speaker]:
+    """Every node of the set."""
+    return [speaker_of(icd, node) for node in icd.nodes]
 
 
 @dataclass(frozen=True, slots=True)

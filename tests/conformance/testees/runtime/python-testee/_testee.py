@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from functools import cache
 from importlib import import_module
 from typing import Any, NamedTuple, Optional
 
@@ -71,14 +72,19 @@ def _decode(node: Any, words: Words) -> str:
     return f" name={_hex(frame.NAME)} bytes={frame.to_bytes().hex()}"
 
 
-def _encode(node: Any, words: Words) -> str:
-    message = _message(node, words)()
-    names = {
+@cache
+def _names(message: type[Message]) -> dict[str, str]:
+    """Attribute -> name of each field, of elements and of what stands in structs too."""
+    return {
         one.attribute: one.name
         for info in message.FIELDS
         for line in (info, *info.lines)
         for one in (line, *line.parts)
     }
+
+
+def _encode(node: Any, words: Words) -> str:
+    message = _message(node, words)()
     try:
         for held in _held(message, is_made=True):
             _set(held, words)
@@ -86,7 +92,8 @@ def _encode(node: Any, words: Words) -> str:
             _cut(message, words)
         return _described(message)
     except RangeError as error:
-        raise Refusal(f"range field={_hex(names[error.field])}") from None
+        name = _names(type(message))[error.field]
+        raise Refusal(f"range field={_hex(name)}") from None
 
 
 def _set(held: Held, words: Words) -> None:
@@ -151,10 +158,16 @@ def _held(owner: Any, head: str = "", is_made: bool = False) -> Iterator[Held]:
             yield from _held(one, f"{name}[{index}]." if info.elements else f"{name}.")
 
 
+@cache
+def _decoder(kind: type[Message]) -> Any:
+    """The one of frames with all elements."""
+    return _compiled.longest(kind, "from_bytes")
+
+
 def _rest(message: Any) -> Any:
     """The open end of a message with all elements, each 0."""
     kind = type(message)
-    zeros = _compiled.longest(kind, "from_bytes")(kind, bytes(kind.LENGTH))
+    zeros = _decoder(kind)(kind, bytes(kind.LENGTH))
     return getattr(zeros, kind.TAIL.part)
 
 
