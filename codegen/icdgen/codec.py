@@ -36,11 +36,12 @@ def decode(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]
         raw |= {one.name: _read(node, one, bits) for one in message.fields if one.when and is_present(one, raw)}
     tail, counter = message.tail, message.counter
     if tail is not None and counter is not None:
-        count = (actual - message.least) // tail.step
+        count = (actual - message.begin) // tail.step
         if counter.implied:
             raw[counter.name] = count
-        elif raw[counter.name] != count:
-            raise LengthError(message, message.least + _number(raw[counter.name]) * tail.step, actual)
+        elif _number(raw[counter.name]) + tail.plus != count:
+            told = message.begin + (_number(raw[counter.name]) + tail.plus) * tail.step
+            raise LengthError(message, max(0, told), actual)
     return raw
 
 
@@ -55,22 +56,22 @@ def _number(raw: int | bytes) -> int:
 
 
 def count_of(message: Message, raw: Mapping[str, int | bytes]) -> int:
-    """How many elements the open end has. Raises `CodecError` if it is more than it can have."""
+    """How many elements the open end has. Raises `CodecError` if it cannot have so many."""
     tail = message.tail
     if tail is None:
         return 0
-    count = _number(raw.get(tail.counter, 0))
-    if count > tail.most:
-        raise CodecError(f"{tail.counter!r} takes 0 to {tail.most}, not {count}")
-    return count
+    told = _number(raw.get(tail.counter, tail.low))
+    if not tail.low <= told <= tail.high:
+        raise CodecError(f"{tail.counter!r} takes {tail.low} to {tail.high}, not {told}")
+    return told + tail.plus
 
 
 def counted(node: Node, message: Message, frame: bytes, count: int) -> bytes:
     """The frame with another count in the field that counts the elements of its open end, if it has such a field."""
-    counter = message.counter
-    if counter is None or counter.implied:
+    tail, counter = message.tail, message.counter
+    if tail is None or counter is None or counter.implied:
         return frame
-    return frame_of(node, frame, {counter: count})
+    return frame_of(node, frame, {counter: count - tail.plus})
 
 
 def frame_of(node: Node, frame: bytes, values: Mapping[Field, int]) -> bytes:
@@ -89,7 +90,7 @@ def is_present(field: Field, raw: Mapping[str, int | bytes]) -> bool:
 
 def is_there(message: Message, field: Field, count: int) -> bool:
     """Whether a frame holds a field, if its open end has ``count`` elements; bytes and text that are cut off are there."""
-    return not field.path or message.tail is None or field.at < 8 * (message.least + count * message.tail.step)
+    return not field.path or message.tail is None or field.at < 8 * (message.begin + count * message.tail.step)
 
 
 def which(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | None:
@@ -149,7 +150,7 @@ def frame_with(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> 
         if field.name in raw and is_there(message, field, count) and is_present(field, raw):
             bits |= _written(node, field, raw[field.name])
     frame = bits.to_bytes(message.length, "little")
-    return frame if message.tail is None else frame[: message.least + count * message.tail.step]
+    return frame if message.tail is None else frame[: message.begin + count * message.tail.step]
 
 
 def check_raw(field: Field, value: int | bytes) -> None:

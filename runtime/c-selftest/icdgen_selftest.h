@@ -100,7 +100,7 @@ typedef struct {
 typedef struct {
     uint16_t least;                      /* bytes of the shortest frame */
     uint16_t counter;                    /* which field has the number of elements */
-    uint16_t most;                       /* elements */
+    uint32_t high;                       /* the largest count */
     size_t (*size)(const void *message); /* bytes of the frame that it makes */
     const uint8_t *refused_frames;       /* that have more or fewer elements than they say, `length` bytes each */
     const uint16_t *refused_frame_lengths;
@@ -136,7 +136,8 @@ typedef struct {
 typedef struct {
     uint32_t id;
     int32_t length;
-    uint16_t least; /* of its frames that have none but zeros */
+    uint16_t least;      /* of its frames */
+    icd_status_t status; /* of so many zeros */
 } icdgen_selftest_id_t;
 
 /** A frame that came under an id which several messages have: what the dispatcher answers, and the name of the message. */

@@ -28,18 +28,22 @@ const icdgenCodec = (() => {
     if (!tail) return raw;
     const counter = counterOf(message);
     if (message.fields[counter].implied) raw[counter] = BigInt(count);
-    else if (raw[counter] !== BigInt(count)) throw misfit(message, tail.least + Number(raw[counter]) * tail.step, frame.length);
+    else if (raw[counter] !== BigInt(count - plusOf(message))) throw misfit(message, Math.max(0, tail.least + (Number(raw[counter]) + plusOf(message)) * tail.step), frame.length);
     return raw;
   }
 
   /** How many elements the end of a frame of so many bytes has. Throws a CodecError if no frame has so many. */
   function elementsIn(message, actual) {
     const { least, step } = message.tail;
-    if (actual < least) throw misfit(message, least, actual);
+    const shortest = least + Math.max(0, plusOf(message)) * step;
+    if (actual < shortest) throw misfit(message, shortest, actual);
     if (actual > message.length) throw misfit(message, message.length, actual);
     if ((actual - least) % step) throw misfit(message, actual - ((actual - least) % step), actual);
     return (actual - least) / step;
   }
+
+  /** How many more elements the end of a message has than the field says that counts them. */
+  const plusOf = (message) => message.tail.plus ?? 0;
 
   function misfit(message, expected, actual) {
     return new CodecError("length", `${message.name} has ${expected} bytes, ${actual} given`, { expected, actual });
@@ -61,8 +65,10 @@ const icdgenCodec = (() => {
     const counter = counterOf(message);
     const { least, step, most } = message.tail;
     check(message.fields[counter], raw[counter]);
-    if (raw[counter] > most) throw unfit(message.fields[counter], `takes 0 to ${most}, not ${raw[counter]}`);
-    return least + Number(raw[counter]) * step;
+    const plus = plusOf(message);
+    const [low, high] = [Math.max(0, -plus), most - plus];
+    if (raw[counter] < low || raw[counter] > high) throw unfit(message.fields[counter], `takes ${low} to ${high}, not ${raw[counter]}`);
+    return least + (Number(raw[counter]) + plus) * step;
   }
 
   /** Whether a frame of so many bytes holds a field; open bytes and text are there, if only in part. */
@@ -126,7 +132,8 @@ const icdgenCodec = (() => {
 
   /** The raw values of a fresh message: 0, or what is demanded. */
   function fresh(message) {
-    const raw = message.fields.map((field) => (field.type === "bytes" ? new Uint8Array(field.bits / 8) : BigInt(field.const ?? 0)));
+    const first = (field) => BigInt(field.const ?? (field.name === message.tail?.counter ? Math.max(0, -plusOf(message)) : 0));
+    const raw = message.fields.map((field) => (field.type === "bytes" ? new Uint8Array(field.bits / 8) : first(field)));
     return decode(message, encode(message, raw));
   }
 
@@ -282,7 +289,7 @@ const icdgenCodec = (() => {
   }
 
   return {
-    CodecError, decode, encode, isIn, isThere, sizeOf, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf, text,
+    CodecError, plusOf, decode, encode, isIn, isThere, sizeOf, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf, text,
     rawFromText, floatValue, floatBits, memberName,
   };
 })();

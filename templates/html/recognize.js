@@ -161,7 +161,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
     const count = (data.length - tail.least) / tail.step;
     if (data.length < tail.least || data.length > length || !Number.isInteger(count)) return false;
     const told = tail.pieces.reduce((sum, [byte, shift, bits, at]) => sum + ((data[byte] >> shift) & ((1 << bits) - 1)) * 2 ** at, 0);
-    return !tail.pieces.length || told === count;
+    return !tail.pieces.length || told === count + (tail.low ?? 0);
   }
 
   /** Bytes of a message, for people. */

@@ -133,10 +133,10 @@
       const typed = changed[index].subarray(0, filled ? codec.text(changed[index]).length : changed[index].length);
       changed[index] = new Uint8Array(Math.max(field.bits / 8, typed.length));
       changed[index].set(typed);
-      changed[at] = BigInt(typed.length);
+      changed[at] = BigInt(Math.max(0, typed.length - codec.plusOf(plan)));
     } else if (!field.view && !codec.isIn(field, codec.sizeOf(plan, raw))) {
       const first = field.type === "bytes" ? field.first : Math.min(...field.pieces.map(([byte]) => byte));
-      changed[at] = BigInt(Math.floor((first - least) / step) + 1);
+      changed[at] = BigInt(Math.max(0, Math.floor((first - least) / step) + 1 - codec.plusOf(plan)));
     }
   }
 

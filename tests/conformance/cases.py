@@ -59,7 +59,9 @@ class MessageCases:
         self.id = message.get("id", message.get("set_id"))
         self.fresh = {field["name"]: shown(field, field["default"]) for field in self.fields}
         self.tail: dict | None = message.get("tail")
-        self.full = self.fresh | ({self.tail["counter"]: self.tail["most"]} if self.tail else {})
+        self.full = self.fresh | (
+            {self.tail["counter"]: self.tail["most"] - self.tail.get("plus", 0)} if self.tail else {}
+        )
         self.conditional = {field["name"]: field["when"] for field in self.fields if "when" in field}
         self.given = self.owned(self.full)  # what makes such a message, with all elements
 
@@ -183,7 +185,8 @@ class MessageCases:
             return self.message["length"] if actual else Maybe(...)
         if self.tail is None:
             return self.message["length"]
-        least, step = self.tail["least"], self.tail["step"]
+        step = self.tail["step"]
+        least = self.tail["least"] + step * max(0, self.tail.get("plus", 0))
         if least <= actual < self.message["length"]:
             return Maybe(actual - (actual - least) % step)
         return Maybe(least if actual < least else self.message["length"])

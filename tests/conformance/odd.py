@@ -538,6 +538,11 @@ structs:
       - {at: 128, bits: 16, count: 2, name: Pair, type: int, const: 1}
       - {at: 163, bits: 5, name: Low, type: uint, const: 3}
       - {at: 168, bits: 24, name: Wide, type: int, byte_order: little, formula: raw*2^-70}
+  - name: Label
+    length: 9
+    fields:
+      - {at: 0, bits: 8, name: Kind, type: uint}
+      - {at: 8, bits: 32, name: Words, type: text, count: 2}
 enums:
   - name: Gauge
     members: [{value: 1, name: First}, {value: 300, name: Last},
@@ -622,6 +627,81 @@ messages:
     byte_order: little
     bit_order: lsb0
     fields: [{at: 0, name: Inners, struct: Inner, count: rest, up_to: 3}]
+  - name: Sized Text
+    id: 144
+    kind: telecommand
+    length: 3
+    fields:
+      - {at: 0, bits: 4, name: Kind, type: uint}
+      - {at: 4, bits: 10, name: Fn, type: uint}
+      - {at: 24, name: Ref, type: text, size: Fn, up_to: 300}
+  - name: Sized with its head
+    id: 145
+    kind: telemetry
+    length: 4
+    fields:
+      - {at: 16, bits: 16, name: Octets Count, type: uint, byte_order: little}
+      - {at: 0, bits: 16, name: Number, type: int}
+      - {at: 32, name: Data, type: bytes, size: {field: Octets Count, plus: -4}, up_to: 40}
+  - name: At least two
+    id: 146
+    kind: telemetry
+    length: 1
+    fields:
+      - {at: 0, bits: 3, name: Last, type: uint}
+      - {at: 8, bits: 24, name: Values, type: int, count: {field: Last, plus: 2}, up_to: 6, const: -3, formula: raw*0.25}
+  - name: Structs and one
+    id: 147
+    kind: telecommand
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Last, type: uint}
+      - {at: 16, name: Elements, struct: Element, count: {field: Last, plus: 1}, up_to: 3}
+  - name: Structs but three
+    id: 148
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 8, bits: 8, name: Last, type: uint}
+      - {at: 16, name: Elements, struct: Inner, count: {field: Last, plus: -3}, up_to: 2}
+  - name: Text of one and more
+    id: 149
+    kind: telecommand
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Last, type: uint}
+      - {at: 8, name: Word, type: text, size: {field: Last, plus: 1}, up_to: 12}
+  - name: Rows
+    id: 150
+    kind: telecommand
+    length: 100
+    fields:
+      - {at: 0, bits: 64, name: Words, type: text, count: 4}
+      - {at: 256, bits: 16, name: Pairs, type: bytes, count: 3}
+      - {at: 304, bits: 240, name: Longer, type: text, count: 2}
+      - {at: 784, bits: 8, name: Data, type: bytes, count: 1}
+      - {at: 792, bits: 1, name: Flag, type: bool, count: 3}
+  - name: Open Rows
+    id: 151
+    kind: telemetry
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Number, type: uint}
+      - {at: 8, bits: 320, name: Extensions, type: text, count: rest, up_to: 3}
+  - name: Counted Rows
+    id: 152
+    kind: telecommand
+    length: 1
+    fields:
+      - {at: 0, bits: 2, name: Last, type: uint}
+      - {at: 8, bits: 24, name: Rows, type: bytes, count: {field: Last, plus: 1}, up_to: 3}
+  - name: Rows in structs
+    id: 153
+    kind: telemetry
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Number, type: uint}
+      - {at: 8, name: Labels, struct: Label, count: Number, up_to: 2}
   - name: Cut Off
     id: 140
     kind: telemetry

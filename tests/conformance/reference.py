@@ -141,7 +141,7 @@ class Reference:
 
     def constants(self, request: dict) -> dict:
         node, message = self.message(request)
-        fresh = {f.name: bytes(f.bits // 8) if f.is_bytes else f.const or 0 for f in message.owners}
+        fresh = {f.name: f.fresh for f in message.owners}
         default = codec.decode(node, message, codec.encode(node, message, fresh))
         return {
             "name": message.name,

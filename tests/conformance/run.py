@@ -106,7 +106,7 @@ def _random(icd: Icd, message, cases: MessageCases, frames: int, seed: int) -> I
         for _ in range(count):
             frame = source.randbytes(message.length)
             if message.tail is not None:
-                frame = patterns.cut(message, node, frame, source.randint(0, message.tail.most))
+                frame = patterns.cut(message, node, frame, source.randint(message.tail.fewest, message.tail.most))
             elif message.has_conditions and source.random() < 0.7:
                 field = source.choice([one for one in message.fields if one.when])
                 values = {known[one.field]: source.choice(one.values) for one in field.when}

@@ -9,6 +9,7 @@ from itertools import pairwise
 from hypothesis import strategies as st
 
 from icdgen.icd import exact, formula
+from tests.conformance.open_ends import open_end
 from tests.conformance.sharing import sharing
 
 # Words that mean something to a language, to generated code, or to a template; alone each would be a bad identifier.
@@ -295,31 +296,9 @@ def _decides(field: dict) -> bool:
 
 @st.composite
 def _open_end(draw, fields: list[dict], length: int, enums: list[dict], structs: list[dict]) -> dict:
-    """What ends a message of variable length: elements or structs that a field counts or that the frame ends, bytes or text."""
-    end = {"at": 8 * length, **Names(draw, {field["name"] for field in fields}).one("end")}
-    if draw(st.integers(0, 3)) == 0:
-        return end | {
-            "type": draw(st.sampled_from(("bytes", "text"))),
-            "size": "rest",
-            "up_to": draw(st.integers(1, 20)),
-        }
-    if structs and draw(st.booleans()):
-        element = {"struct": draw(st.sampled_from(structs))["name"]}
-    else:
-        element = draw(
-            _field(enums).filter(lambda one: one["type"] not in ("bool", "bytes", "text") and one["bits"] % 8 == 0)
-        )
-    counters = [field for field in fields if _counts(field)]
-    counter = draw(st.sampled_from([None, *counters]))
-    most = draw(st.integers(1, 2 if "struct" in element else 9))
-    most = min(most, (1 << counter["bits"]) - 1) if counter else most
-    return end | element | {"count": counter["name"] if counter else "rest", "up_to": most}
-
-
-def _counts(field: dict) -> bool:
-    """Whether a field can say how many elements there are."""
-    others = ("formula", "const", "count", "view", "bitfields")
-    return field.get("type") == "uint" and not any(key in field for key in others)
+    """What ends a message of variable length, behind ``length`` bytes."""
+    place = {"at": 8 * length, **Names(draw, {field["name"] for field in fields}).one("end")}
+    return draw(open_end(place, fields, _field(enums), structs))
 
 
 @st.composite
@@ -359,9 +338,9 @@ def _division(draw, names: Names, bits: int) -> list[dict]:
 @st.composite
 def _field(draw, enums: list[dict]) -> dict:
     kind = draw(st.sampled_from(("uint", "int", "uint", "int", "bool", "enum", "float", "bytes", "text")))
-    if kind in ("bytes", "text"):
-        return {"bits": 8 * draw(st.integers(1, 12)), "type": kind}
     array = {"count": draw(st.sampled_from((1, 2, 3, 8, 9)))} if draw(st.integers(0, 3)) == 0 else {}
+    if kind in ("bytes", "text"):
+        return {"bits": 8 * draw(st.integers(1, 12)), "type": kind, **array}
     if kind == "bool":
         return {"bits": 1, "type": kind, **array}
     if kind == "float":

@@ -56,3 +56,11 @@ def test_a_kind_that_there_is_not_and_a_broken_file_are_no_tracebacks(folder):
     result = icdgen("import", "bad.dbc", cwd=folder)
     assert result.returncode == 1 and "bad.dbc" in result.stderr and "error[IMP005]" in result.stderr
     assert not (folder / "icd").exists()
+
+
+def test_what_the_library_notes_by_the_way_is_not_printed(tmp_path):
+    message = 'BO_ {} Twice: 1 Node\n SG_ Level : 0|8@1+ (1,0) [0|0] "" Node\n\n'
+    (tmp_path / "twice.dbc").write_text('VERSION ""\n\nBU_: Node\n\n' + message.format(1) + message.format(2))
+    result = icdgen("import", "twice.dbc", "--dry-run", cwd=tmp_path)
+    assert "Overwriting" not in result.stderr + result.stdout
+    assert "error[IMP070]: message `Twice` is not held: " in result.stdout + result.stderr

@@ -170,45 +170,45 @@ def test_ubx_is_read_as_by_pyubx2(testee: Testee) -> None:
     assert agreement.messages == 21 and agreement.values > 7000
 
 
-def _attribute(name: str) -> str:
-    """What pyubx2 calls a field of a satellite."""
-    found = re.fullmatch(r"satellites\[(\d+)\]\.(\w+)", name)
-    return f"{found[2]}_{int(found[1]) + 1:02}" if found else name
+@pytest.mark.parametrize("count", [0, 1, 3, 32, 64])
+def test_the_satellites_of_a_ubx_frame_are_read_as_by_pyubx2(testee: Testee, count: int) -> None:
+    chance = random.Random(count)
+    data = chance.randbytes(5) + bytes([count]) + chance.randbytes(2 + 12 * count)
+    theirs, ours = ubx_message("NAV-SAT", data), decoded(testee, "ublox", "telemetry", 0x0135, data)
+    names = [one.name for one in devices().node("ublox").structs[0].fields]
+    assert len(names) == 26 and {key: ours[key] for key in ("iTOW", "version", "numSvs")} == {
+        key: theirs[key] for key in ("iTOW", "version", "numSvs")
+    }
+    for index in range(64):
+        mine = {name: ours[f"satellites[{index}].{name}"] for name in names}
+        if index < count:
+            read = {name: theirs[f"{name}_{index + 1:02}"] for name in names}
+            assert mine == read | {"prRes": round(float(str(read["prRes"])) * 10)}
+        else:
+            assert set(mine.values()) == {0}  # it is not in the frame
 
 
 @pytest.mark.parametrize("count", [0, 1, 3, 30])
-def test_ubx_messages_of_variable_length_begin_as_pyubx2_reads_them(testee: Testee, count: int) -> None:
-    chance = random.Random(count)
-    rate = b"\x01\x00\x21\x30"  # the key of the rate of measurement, of two bytes
-    for name, kind, id, head, rest in (
-        (
-            "NAV-SAT",
-            "telemetry",
-            0x0135,
-            chance.randbytes(5) + bytes([count]) + chance.randbytes(2),
-            chance.randbytes(12 * count),
-        ),
-        (
-            "MON-VER",
-            "telemetry",
-            0x0A04,
-            b"EXT CORE 1.00".ljust(30, b"\0") + b"00190000".ljust(10, b"\0"),
-            b"MOD=ANY".ljust(30, b"\0") * count,
-        ),
-        ("CFG-VALSET", "telecommand", 0x068A, bytes([0, 5, 1, 0]), (rate + chance.randbytes(2)) * count),
-    ):
-        theirs, ours = ubx_message(name, head + rest), decoded(testee, "ublox", kind, id, head + rest)
-        for key in [key for key in ours if key in ("extensions", "cfgData")]:
-            assert str(ours.pop(key)).rstrip("0") == rest.hex().rstrip("0")  # what is not in the frame is 0
-        found = {_attribute(key): value for key, value in ours.items()}
-        if name == "NAV-SAT":
-            assert sum(key in theirs for key in found) == 3 + 26 * count
-            theirs |= {key: round(float(str(theirs[key])) * 10) for key in theirs if key.startswith("prRes")}
-        for key, value in found.items():
-            if name == "MON-VER" and key in theirs:
-                assert bytes.fromhex(str(value)).rstrip(b"\0") == theirs[key].rstrip(b"\0")  # type: ignore[attr-defined]
-            elif key in theirs:
-                assert value == theirs[key], (name, key)
+def test_the_extensions_of_a_ubx_version_are_read_as_by_pyubx2(testee: Testee, count: int) -> None:
+    rows = [f"MOD=ANY-{number}".encode().ljust(30, b"\0") for number in range(count)]
+    data = b"EXT CORE 1.00".ljust(30, b"\0") + b"00190000".ljust(10, b"\0") + b"".join(rows)
+    theirs, ours = ubx_message("MON-VER", data), decoded(testee, "ublox", "telemetry", 0x0A04, data)
+    for key in ("swVersion", "hwVersion"):
+        assert bytes.fromhex(str(ours[key])).rstrip(b"\0") == theirs[key].rstrip(b"\0")  # type: ignore[attr-defined]
+    assert ours["extension Count"] == count
+    for index, row in enumerate(rows, 1):
+        assert bytes.fromhex(str(ours[f"extension[{index - 1}]"])) == row
+        assert theirs[f"extension_{index:02}"].rstrip(b"\0") == row.rstrip(b"\0")  # type: ignore[attr-defined]
+
+
+def test_the_keys_of_a_ubx_configuration_are_the_bytes_that_pyubx2_makes_of_them(testee: Testee) -> None:
+    import pyubx2
+
+    made = pyubx2.UBXMessage.config_set(5, 1, [("CFG_RATE_MEAS", 250), ("CFG_NAVSPG_DYNMODEL", 4)])
+    ours = decoded(testee, "ublox", "telecommand", 0x068A, made.payload)
+    assert [ours[key] for key in ("ram", "bbr", "flash", "action")] == [True, False, True, 1]
+    data = b"\x01\x00\x21\x30\xfa\x00" + b"\x21\x00\x11\x20\x04"
+    assert bytes.fromhex(str(ours["cfgData"]))[: int(str(ours["cfgData Size"]))] == data
 
 
 # BME280, by the layout of its registers in the data sheet

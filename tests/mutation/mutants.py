@@ -13,7 +13,7 @@ from itertools import product
 from icdgen.backends.assurance.changes import OTHER_TYPES, formulas
 from icdgen.icd.build import plain
 from icdgen.icd.model import Enum, Field, Icd, Message, Node
-from icdgen.icd.tails import is_open
+from icdgen.icd.tails import is_open, key_of
 
 Change = Callable[[dict], object]
 
@@ -169,12 +169,25 @@ def _swaps(fields: list[dict]) -> Iterator[tuple[str, Change]]:
             yield about, lambda t, p=places: [t["fields"][i].update(at=at) for i, at in p.items()]
 
 
+def _open(field: dict) -> Iterator[tuple[str, str, Change]]:
+    """How many elements, or bytes, an open end has."""
+    for step in (-1, 1):
+        yield _number("up to", field, "up_to", step)
+    key = key_of(field)
+    said = field[key]
+    if said != "rest":
+        yield "counter", "up to the end", lambda f: f.update({key: "rest"})
+    if isinstance(said, str) and said != "rest":
+        yield "counter", "one more than it says", lambda f: f.update({key: {"field": said, "plus": 1}})
+    for step in (-1, 1) if isinstance(said, dict) else ():
+        plus = said["plus"] + step
+        about = f"plus {said['plus']} -> {plus}"
+        yield "counter", about, lambda f, v=plus: f.update({key: {"field": said["field"], "plus": v}})
+
+
 def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
     if "struct" in field and is_open(field):
-        for step in (-1, 1):
-            yield _number("up to", field, "up_to", step)
-        if field["count"] != "rest":
-            yield "counter", "up to the end", lambda f: f.update(count="rest")
+        yield from _open(field)
         return
     if "struct" in field:
         for key, steps in (("at", (-8, 8)), ("count", (-1, 1) if "count" in field else ())):
@@ -182,12 +195,9 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
                 yield _number("offset" if key == "at" else "count", field, key, step)
         return
     if is_open(field):
-        for step in (-1, 1):
-            yield _number("up to", field, "up_to", step)
+        yield from _open(field)
         for step in (-8, 8) if "bits" in field else ():
             yield _number("width", field, "bits", step)
-        if field.get("count", "rest") != "rest":
-            yield "counter", "up to the end", lambda f: f.update(count="rest")
     for step in (-8, -1, 1, 8) if not is_open(field) else ():
         yield _number("offset", field, "at", step)
     for step in (-1, 1) if field["type"] not in ("bytes", "text") else (-8, 8):

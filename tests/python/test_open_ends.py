@@ -47,6 +47,76 @@ def test_a_field_that_counts_must_agree(package, messages):
         messages.Gauges.from_bytes(bytes([3, 0, 0, 1]))
 
 
+def test_a_field_may_count_what_stands_before_the_bytes_too(package, messages):
+    errors, sized = package.module("_errors"), messages.SizedWithItsHead
+    assert sized().octets_count == 4 and sized().to_bytes() == bytes([0, 0, 4, 0])
+    message = sized(number=-1, data=b"abc", octets_count=7)
+    assert message.to_bytes() == b"\xff\xff\7\0abc" and sized.from_bytes(message.to_bytes()) == message
+    with pytest.raises(
+        errors.RangeError, match="octets_count takes 7, as many as data has, of which there are 3, not 3"
+    ):
+        sized(data=b"abc", octets_count=3).to_bytes()
+    for counted, expected in ((3, 3), (0, 0), (6, 6)):
+        with pytest.raises(errors.LengthError, match=f"has {expected} bytes, 4 given"):
+            sized.from_bytes(bytes([0, 0, counted, 0]))
+
+
+def test_what_is_always_there_is_there_in_a_new_message(package, messages):
+    errors, two = package.module("_errors"), messages.AtLeastTwo
+    assert (two().last, two().values) == (0, (-3, -3)) and two().values_physical == (-0.75, -0.75)
+    assert len(two().to_bytes()) == 7 and two.from_bytes(two().to_bytes()) == two()
+    with pytest.raises(errors.LengthError, match="has 7 bytes, 4 given"):
+        two.from_bytes(bytes(4))
+    with pytest.raises(errors.RangeError, match="values takes 2 to 6 values"):
+        two(values=(1,)).to_bytes()
+    one = messages.StructsAndOne()
+    assert len(one.elements) == 1 and one.elements[0].low == 3
+    word = messages.TextOfOneAndMore()
+    word.word_text = "ab"
+    word.last = 1
+    assert word.to_bytes() == b"\1ab"
+    word.word_text, word.last = "", 0
+    assert word.to_bytes() == b"\0\0"
+
+
+def test_texts_may_be_an_array(package, messages):
+    rows = messages.Rows()
+    rows.words_text = ("a", "", "four", "12345678")
+    assert rows.words == (b"a".ljust(8, b"\0"), bytes(8), b"four".ljust(8, b"\0"), b"12345678")
+    rows.pairs = (b"ab", b"cd", b"ef")
+    again = messages.Rows.from_bytes(rows.to_bytes())
+    assert again == rows and again.words_text == ("a", "", "four", "12345678")
+    assert messages.Rows.from_json(rows.to_json()) == rows
+    error = package.module("_errors").RangeError
+    with pytest.raises(error, match=r"words\[1\] takes up to 8 ASCII"):
+        rows.words_text = ("", "123456789", "", "")
+    with pytest.raises(error, match="words takes 4 values"):
+        rows.words_text = ("", "")
+    with pytest.raises(error, match=r"pairs\[2\] takes 2 bytes"):
+        messages.Rows(pairs=(b"ab", b"cd", b"e")).to_bytes()
+    opened = messages.OpenRows.from_bytes(b"\1" + b"one".ljust(40, b"\0") + b"two".ljust(40, b"\0"))
+    assert opened.extensions_text == ("one", "two") and len(opened.extensions) == 2
+    with pytest.raises(error, match=r"extensions\[0\] takes 40 bytes"):
+        messages.OpenRows(extensions=(b"one",)).to_bytes()
+
+
+def test_columns_hold_arrays_of_texts(messages):
+    rows, none = messages.Rows(pairs=(b"ab", b"cd", b"ef")), messages.Rows()
+    rows.words_text = ("a", "", "four", "12345678")
+    frames = rows.to_bytes() + none.to_bytes()
+    columns = messages.Rows.decode_many(frames, physical=True)
+    assert columns["words_text"].tolist() == [["a", "", "four", "12345678"], [""] * 4]
+    assert columns["pairs"][0].tolist() == [[97, 98], [99, 100], [101, 102]]
+    table = messages.Rows.decode_table(frames)
+    assert table["words_text"].to_pylist() == [["a", "", "four", "12345678"], [""] * 4]
+    assert table["pairs"].to_pylist() == [[b"ab", b"cd", b"ef"], [b"\0\0"] * 3]
+    assert messages.Rows.decode_table(frames, physical=False)["words"].to_pylist()[0][2] == b"four\0\0\0\0"
+    opened = [b"\1" + b"one".ljust(40, b"\0"), b"\2"]
+    assert messages.OpenRows.decode_table(opened)["extensions_text"].to_pylist() == [["one"], []]
+    raw = messages.OpenRows.decode_table(opened, physical=False)["extensions"].to_pylist()
+    assert raw == [[b"one".ljust(40, b"\0")], []]
+
+
 @pytest.mark.parametrize("size", [0, 2, 3, 5, 17, 400])
 def test_a_frame_of_no_length_of_the_message_is_refused(package, messages, size):
     with pytest.raises(package.module("_errors").LengthError):

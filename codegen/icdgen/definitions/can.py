@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 from fractions import Fraction
 from pathlib import PurePath
@@ -14,6 +15,7 @@ from icdgen.definitions.wording import formula, limits, line, node_name, printed
 from icdgen.icd.fmt.emit import Spelled
 
 BEYOND_FRAME = "IMP072"
+_UNHEARD = logging.NullHandler()
 _STANDARD, _EXTENDED = 11, 29  # bits of an id
 _NOBODY = ("", "Vector__XXX")  # as a DBC names a sender that is not known
 
@@ -48,6 +50,9 @@ class _Database:
     def parsed(self, text: str) -> Any:
         from cantools import database
 
+        logging.getLogger("cantools").addHandler(
+            _UNHEARD
+        )  # what it notes by the way is found again, and said as a finding
         return database.load_string(text, self.form, strict=False)
 
 

@@ -17,6 +17,7 @@ from icdgen.describe.numbers import (
     byte_range,
     exact_text,
     length_text,
+    octets_text,
     special_text,
     value_text,
 )
@@ -163,7 +164,8 @@ def field_comment(
         facts.append(_limits(field))
     facts += (f"{special_text(special)}: {sentence(special.meaning)}" for special in field.special)
     if tail is not None and tail.counter == field.name:
-        facts.append(f"Counts {words(tail.name)}: at most {tail.most}.")
+        plus = f", of which there are {abs(tail.plus)} {'more' if tail.plus > 0 else 'less'}" if tail.plus else ""
+        facts.append(f"Counts {words(tail.name)}{plus}: at most {tail.most}.")
     place = _place(field) if tail is None or tail.name != field.name else _open_place(field, tail)
     head = f"{words(field.name)}: {place}{_meaning(field)}."
     return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, told)
@@ -181,7 +183,8 @@ def limits_text(limits: Iterable[Bound], field: Field) -> str:
 
 def _place(field: Field) -> str:
     if field.is_bytes:
-        where = byte_range(field.at // 8, field.bits // 8)
+        where = byte_range(field.at // 8, field.width // 8)
+        where += f", {octets_text(field.count, field.bits)}" if field.count else ""
         return f"{where}, text filled with NUL" if field.type == "text" else where
     if field.struct is not None:
         where = byte_range(field.at // 8, field.width // 8)
@@ -193,7 +196,9 @@ def _place(field: Field) -> str:
 
 def _open_place(field: Field, tail: Tail) -> str:
     """``from byte 4 on, up to 12 elements of 16 bits``"""
-    if field.type == "bytes":
+    if field.is_bytes and field.count:
+        what = f"up to {octets_text(tail.most, field.bits)}{', text filled with NUL' if field.type == 'text' else ''}"
+    elif field.type == "bytes":
         what = f"up to {byte_count(tail.most)}"
     elif field.type == "text":
         what = f"text of up to {tail.most} character{'s' * (tail.most != 1)}"

@@ -16,7 +16,7 @@ from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, storage_of
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.curve import Curve
-from icdgen.icd.model import Enum, Field, Message, Node, Struct
+from icdgen.icd.model import Enum, Field, Message, Node, Struct, Tail
 from icdgen.icd.paths import Step, placed
 from icdgen.once import cached_property
 
@@ -137,7 +137,7 @@ class FieldDescription(Named[Field]):
     @property
     def fresh(self) -> int:
         """The raw value in a new message, as a number."""
-        return self.model.const or 0
+        return self.model.const or self.model.counts_from
 
     @property
     def byte_order(self) -> str:
@@ -217,17 +217,46 @@ class TailDescription(NamedTuple):
 
     part: FieldDescription  # the array as one, or the bytes or text
     counter: FieldDescription  # how many elements there are; implied, or a field of the frame
-    least: int  # bytes of a frame without any element
-    step: int  # bytes of an element
-    most: int  # elements
+    begin: int  # bytes before it
+    model: Tail
     element: (
         StructDescription | None
     )  # what an element is made of, where that is a struct, in the orders that hold here
 
     @property
+    def step(self) -> int:
+        """Bytes of an element."""
+        return self.model.step
+
+    @property
+    def most(self) -> int:
+        """The most elements."""
+        return self.model.most
+
+    @property
+    def fewest(self) -> int:
+        """Elements that every frame has."""
+        return self.model.fewest
+
+    @property
+    def low(self) -> int:
+        """The smallest value of the counter: of a frame that has the fewest elements."""
+        return self.model.low
+
+    @property
+    def high(self) -> int:
+        """The largest."""
+        return self.model.high
+
+    @property
+    def least(self) -> int:
+        """Bytes of the shortest frame."""
+        return self.begin + self.fewest * self.step
+
+    @property
     def is_bound(self) -> bool:
-        """Whether the integer that holds the count holds larger ones than there can be."""
-        return self.counter.storage.max > self.most
+        """Whether the integer that holds the count holds larger or smaller ones than there can be."""
+        return self.low > 0 or self.counter.storage.max > self.high
 
 
 Fielded = TypeVar("Fielded", bound=Message | Struct)

@@ -40,7 +40,9 @@ class Example(NamedTuple):
 
 def worth_showing(message: MessageDescription) -> FieldDescription | None:
     """The first field with a formula that leads back, else the first that is neither constant nor an array."""
-    counter = message.tail.counter if message.tail else None  # which is 0 in an example, as the frame has no element
+    counter = (
+        message.tail.counter if message.tail else None
+    )  # which is the smallest in an example, whose frame has the fewest elements
     decides = {need.field.model.name for one in message.conditional for need in one.needs}  # what else is there
     usual = [
         one
@@ -59,7 +61,9 @@ def example(message: MessageDescription) -> Example:
     """The example of a message."""
     field = worth_showing(message)
     shown = _shown(field) if field else None
-    raw: dict[str, int | bytes] = {one.name: one.const for one in message.model.owners if one.const is not None}
+    raw: dict[str, int | bytes] = {
+        one.name: one.fresh for one in message.model.owners if one.const is not None or one.counts_from
+    }
     if shown is not None:
         raw[shown.field.model.name] = shown.raw
     return Example(shown, codec.frame_with(message.node, message.model, raw))

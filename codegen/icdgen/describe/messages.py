@@ -58,7 +58,7 @@ class MessageDescription(Composite[Message]):
         part, counter = (
             next(one for one in self.members if one.model.name == name) for name in (tail.name, tail.counter)
         )
-        return TailDescription(part, counter, self.model.least, tail.step, tail.most, self._element(part))
+        return TailDescription(part, counter, self.model.begin, tail, self._element(part))
 
     def _element(self, part: FieldDescription) -> StructDescription | None:
         if part.struct is None:

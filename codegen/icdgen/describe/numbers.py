@@ -57,6 +57,11 @@ def array_text(count: int, bits: int) -> str:
     return f"{count} element{'s' * (count != 1)} of {bits} bit{'s' * (bits != 1)}"
 
 
+def octets_text(count: int, bits: int) -> str:
+    """``10 elements of 30 bytes``"""
+    return f"{count} element{'s' * (count != 1)} of {byte_count(bits // 8)}"
+
+
 def byte_range(first: int, count: int) -> str:
     """``byte 3``, ``bytes 4 to 7``"""
     return f"byte {first}" if count == 1 else f"bytes {first} to {first + count - 1}"
@@ -67,6 +72,13 @@ def length_text(message: Message) -> str:
     return (
         byte_count(message.length) if len(message.lengths) == 1 else f"{message.least} to {byte_count(message.length)}"
     )
+
+
+def count_text(message: Message) -> str:
+    """``Levels Count``, ``Size - 4``: how many elements, bytes or characters the open end has."""
+    tail = message.tail
+    assert tail is not None
+    return tail.counter + (f" {'+' if tail.plus > 0 else '-'} {abs(tail.plus)}" if tail.plus else "")
 
 
 def byte_count(count: int) -> str:

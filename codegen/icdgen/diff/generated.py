@@ -328,7 +328,7 @@ class _Cut:
             return rust.raw_type(one)
         if language == "c":
             array = f"[{field.count}]" if field.count else ""
-            return f"uint8_t[{field.bits // 8}]" if field.is_bytes else f"{c.type_of(one)}{array}"
+            return f"uint8_t{array}[{field.bits // 8}]" if field.is_bytes else f"{c.type_of(one)}{array}"
         if one.count:
             return f"tuple[{_python_type(one)}, ...]"
         return f"Optional[{_python_type(one)}]" if field.when else _python_type(one)

@@ -227,7 +227,7 @@ def orders(node: Node) -> tuple[str, str]:
 
 def _firsts_of(one: Field) -> tuple[Field, ...]:
     """The first element, or byte; of a field of a struct, what the first struct has of it."""
-    if one.is_bytes and not one.path:
+    if one.is_bytes and not one.path and not one.count:
         return (replace(one, bits=8),)
     return tuple(element for element in one.elements if not element.path or not element.path[0].index)
 

@@ -157,7 +157,7 @@ class Builder:
             name=item["name"],
             kind=item["kind"],
             length=item["length"] + (tail.most * tail.step if tail else 0),
-            fields=fields + ends,
+            fields=(tail.counted_in(fields) if tail else fields) + ends,
             id=_id(item, "id"),
             set_id=_id(item, "set_id"),
             get_id=_id(item, "get_id"),
@@ -189,7 +189,8 @@ class Builder:
         most, bits, counter = item["up_to"], tails.unit(item, known), tails.counter_of(message, item)
         if not bits:
             return None, ()  # there is no such struct
-        tail = model.Tail(item["name"], counter["name"] if counter else "", bits // 8, most)
+        plus = tails.counting(item).plus
+        tail = model.Tail(item["name"], counter["name"] if counter else "", bits // 8, most, plus)
         struct = self.scope.structs.get(item.get("struct", ""))
         end = self.field(item, orders(message)) if struct is None else self.standing(item, struct, orders(message))
         end = replace(end, bits=8 * most) if "size" in item else replace(end, count=most)
@@ -201,7 +202,7 @@ class Builder:
     def fields(self, message: Map, item: Map) -> tuple[model.Field, ...]:
         """The field, the elements of an array, the fields of a struct, or the parts that it is divided into."""
         around = orders(message)
-        if tails.is_open(item) or id(item.get("when")) in self.broken:
+        if tails.is_open(item) or any(id(item.get(key)) in self.broken for key in ("when", "count", "size")):
             return ()  # see `tail`
         if "when" in item and item.keys().isdisjoint(("struct", "count")):
             return (replace(self.field(item, around), when=conditions.of(message, item, self.scope.enums)),)

@@ -10,7 +10,7 @@ def implied_count(end: Field, length: int) -> Field:
 
     It is for frames whose longest has so many bytes, and no field that says it.
     """
-    most, what = (end.bits // 8, "Size") if end.is_bytes else (end.count, "Count")
+    most, what = (end.count, "Count") if end.count else (end.bits // 8, "Size")
     return Field(
         name=f"{end.name} {what}",
         at=8 * length,

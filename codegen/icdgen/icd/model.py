@@ -85,6 +85,7 @@ class Field:
     count: int = 0  # of an array that stands as one: its elements, of which this is the first but for its name
     struct: Struct | None = None  # what a member of type "struct" is made of
     implied: bool = False  # it has no bits: the length of a frame tells its value; see `Tail`
+    counts_from: int = 0  # the smallest value of one that counts an open end, and something before it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
@@ -153,8 +154,8 @@ class Field:
 
     @property
     def fresh(self) -> int | bytes:
-        """The raw value in a new message: the only valid one, or 0; of a float its bits, of bytes all of them."""
-        return bytes(self.bits // 8) if self.is_bytes else self.const or 0
+        """The raw value in a new message: the only valid one, or the smallest; of a float its bits, of bytes all of them."""
+        return bytes(self.bits // 8) if self.is_bytes else self.const or self.counts_from
 
     @property
     def raw_min(self) -> int:
@@ -212,6 +213,28 @@ class Tail:
     counter: str  # the field that says how many elements there are: one of the frame, or an implied one
     step: int  # bytes of an element
     most: int  # elements
+    plus: int = 0  # there are so many more elements than the counter says
+
+    @property
+    def fewest(self) -> int:
+        """Elements that every frame has."""
+        return max(0, self.plus)
+
+    @property
+    def low(self) -> int:
+        """The smallest value of the counter."""
+        return max(0, -self.plus)
+
+    @property
+    def high(self) -> int:
+        """The largest value of the counter."""
+        return self.most - self.plus
+
+    def counted_in(self, fields: tuple[Field, ...]) -> tuple[Field, ...]:
+        """The fields of the message, the counter knowing what it counts from."""
+        if not self.low:
+            return fields
+        return tuple(replace(one, counts_from=self.low) if one.name == self.counter else one for one in fields)
 
 
 @dataclass(frozen=True, slots=True)
@@ -255,6 +278,11 @@ class Message:
         """Bytes of the shortest frame."""
         if self.may_end_early:
             return min(1, self.length)  # of zeros alone, one is sent
+        return self.begin + (self.tail.fewest * self.tail.step if self.tail else 0)
+
+    @property
+    def begin(self) -> int:
+        """Bytes before the open end, where there is one; else of a frame."""
         return self.length - (self.tail.most * self.tail.step if self.tail else 0)
 
     @property

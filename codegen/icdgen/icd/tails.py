@@ -26,9 +26,30 @@ class Obstacle(NamedTuple):
     help: str
 
 
+class Counting(NamedTuple):
+    """What is said of how many elements there are: the name of a field, or `REST`, and what is added to its value."""
+
+    name: str
+    plus: int = 0
+
+
 def is_open(item: Map) -> bool:
-    """Whether a field is said to be there as often, or as long, as the frame goes."""
-    return "size" in item or isinstance(item.get("count"), str)
+    """Whether a field is said to be there as often, or as long, as the frame goes or a field says."""
+    said = item.get(key_of(item))
+    if isinstance(said, dict):
+        return isinstance(said.get("field"), str) and type(said.get("plus")) is int
+    return isinstance(said, str)
+
+
+def key_of(item: Map) -> str:
+    """The key that says how many elements there are."""
+    return "size" if "size" in item else "count"
+
+
+def counting(item: Map) -> Counting:
+    """How many elements an open part is said to have."""
+    said = item[key_of(item)]
+    return Counting(said["field"], said["plus"]) if isinstance(said, dict) else Counting(said)
 
 
 def open_parts(message: Map) -> list[Map]:
@@ -46,7 +67,7 @@ def unit(item: Map, structs: Lengths) -> int:
 
 def counter_of(message: Map, item: Map) -> Map | None:
     """The field that says how many elements there are; None where the end of the frame does, or there is none."""
-    name = item.get("count", REST)
+    name = counting(item).name
     found = None if name == REST else next((one for one in _fields(message) if one.get("name") == name), None)
     return None if found is None or "struct" in found else found
 
@@ -71,35 +92,41 @@ def _is_sized(item: Map) -> bool:
 def faults_of_count(message: Map, item: Map) -> Iterator[Obstacle]:
     """What is wrong with how many elements there are said to be."""
     name = f"`{item['name']}`"
-    key = "size" if "size" in item else "count"
+    key, (said, plus) = key_of(item), counting(item)
     if _is_unknown(message, item):
-        text = f"`{item['count']}`, which counts {name}, is no field of `{message['name']}`"
-        yield Obstacle(item, "count", text, "`count` is a number, the name of an earlier field, or `rest`")
+        text = f"`{said}`, which counts {name}, is no field of `{message['name']}`"
+        numbers = "a number, " if key == "count" else ""
+        yield Obstacle(item, key, text, f"`{key}` is {numbers}the name of an earlier field, or `rest`")
         return
     if "up_to" not in item and key == "count":
         text = f"{name} has no fixed {key}, and nothing says how large it can become"
         yield Obstacle(item, key, text, "add `up_to:`, the most elements that there are: buffers are made for them")
-    if key == "size" or "up_to" not in item:
+    if "up_to" not in item:
         return
-    if item["up_to"] > MOST_ELEMENTS:
+    if item["up_to"] > MOST_ELEMENTS and key == "count":
         text = f"{name} has up to {item['up_to']:,} elements: an array has at most {MOST_ELEMENTS:,}"
         yield Obstacle(item, "up_to", text, "what is longer is `bytes` with `size: rest`")
-    if item["count"] == REST:
+    if said == REST:
         return
     counter = counter_of(message, item)
     assert counter is not None
     odd = _odd(counter, message)
     if odd:
         text = f"`{counter['name']}`, which counts {name}, {odd}"
-        yield Obstacle(item, "count", text, "what counts is an unsigned number in the bytes before")
-    elif (1 << counter["bits"]) - 1 < item["up_to"]:
-        text = f"`{counter['name']}` counts up to {(1 << counter['bits']) - 1:,}, and {name} has up to {item['up_to']:,} elements"
+        yield Obstacle(item, key, text, "what counts is an unsigned number in the bytes before")
+        return
+    most, elements = (1 << counter["bits"]) - 1 + plus, "bytes" if key == "size" else "elements"
+    if most < item["up_to"]:
+        text = f"`{counter['name']}` counts up to {max(most, 0):,}, and {name} has up to {item['up_to']:,} {elements}"
         yield Obstacle(item, "up_to", text, "correct `up_to`, or the `bits` of the field that counts")
+    elif plus > item["up_to"]:
+        text = f"{name} has at least {plus:,} {elements}, and up to {item['up_to']:,}"
+        yield Obstacle(item, "up_to", text, "correct `up_to`, or `plus`")
 
 
 def _is_unknown(message: Map, item: Map) -> bool:
     """Whether what is said to count is no field."""
-    return item.get("count", REST) != REST and counter_of(message, item) is None
+    return counting(item).name != REST and counter_of(message, item) is None
 
 
 def _odd(counter: Map, message: Map) -> str:
@@ -128,16 +155,13 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Obsta
         return
     if item["at"] != fixed:
         text = f"{name} is open and begins at bit {item['at']:,}; the `length` of `{message['name']}` ends at bit {fixed:,}"
-        help = "`length` is that of the shortest frame, which ends where the open part begins"
+        help = "`length` is that of a frame without any of it, which ends where the open part begins"
         yield Obstacle(item, "at", text, help)
         return
     is_octets = item.get("type") in _OCTETS
     if "size" in item and not is_octets:
-        text = f"{name} is `{item.get('type')}`: `size: rest` is for bytes and text"
-        yield Obstacle(item, "size", text, "of numbers write `bits` of an element, and `count: rest`")
-    elif "size" not in item and is_octets:
-        text = f"{name} is `{item.get('type')}`, and the elements of an array are numbers"
-        yield Obstacle(item, "count", text, "bytes or text up to the end of the frame: `size: rest`, without `bits`")
+        text = f"{name} is `{item.get('type')}`: `size` is for bytes and text"
+        yield Obstacle(item, "size", text, "of numbers write `bits` of an element, and `count`")
     elif unit(item, structs) % 8:
         text = f"an element of {name} has {unit(item, structs)} bits, and a frame ends with a byte"
         yield Obstacle(item, "bits", text, "describe its bytes as elements, or count them")

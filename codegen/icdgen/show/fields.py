@@ -8,7 +8,7 @@ from fractions import Fraction
 from icdgen import layout
 from icdgen.describe.bounds import allowed_ends, bounds
 from icdgen.describe.comments import condition_text, orders_text
-from icdgen.describe.numbers import byte_count, exact_text, factor_text, special_text, value_text
+from icdgen.describe.numbers import byte_count, count_text, exact_text, factor_text, special_text, value_text
 from icdgen.icd.model import Field, Message, Node
 from icdgen.tables import Column, render
 
@@ -56,7 +56,7 @@ def remarks(
     """
     counter = message.counter if message else None
     if message is not None and _is_open(message, field) and counter is not None:
-        yield "up to the end of the frame" if counter.implied else f"as many as {counter.name} says"
+        yield "up to the end of the frame" if counter.implied else f"as many as {count_text(message)} says"
     if field.when:
         yield f"only there if {' and '.join(condition_text(one, message) for one in field.when)}"
     if field.view:

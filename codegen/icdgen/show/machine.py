@@ -23,7 +23,7 @@ _PLAIN = ("str", "int", "str | None", "int | None")  # types, as the model's cla
 _OTHERWISE = {  # what is not shown, or not as it is
     Node: ("file",),
     Message: ("node",),
-    Field: ("at", "formula"),
+    Field: ("at", "formula", "counts_from"),  # the last follows from the `tail` of its message
     Enum: ("node",),
     Struct: ("node",),
     Erratum: ("why",),
@@ -91,9 +91,10 @@ def _tail(message: Message) -> _Object | None:
     return _present(
         part=tail.name,
         counter=None if counter.implied else counter.name,
-        least=message.least,
+        least=message.begin,
         step=tail.step,
         most=tail.most,
+        plus=tail.plus or None,
     )
 
 

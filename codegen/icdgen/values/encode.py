@@ -122,8 +122,8 @@ def _count(message: Message, tail: Tail, given: dict[str, str], values: dict[str
     if left:
         raise BadValue(f"no value for {', '.join(left)}", "give each field as name=value")
     if counter.name not in given:
-        values[counter.name] = count
-    elif values[counter.name] != count:
+        values[counter.name] = count - tail.plus
+    elif values[counter.name] != count - tail.plus:
         given_text = f"{count} element{'s' * (count != 1)} of `{tail.name}` {'are' if count != 1 else 'is'} given"
         raise BadValue(f"`{counter.name}` is {given[counter.name]}, and {given_text}", f"leave `{counter.name}` out")
 

@@ -91,7 +91,7 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
 
 def _refused(message: Message) -> tuple[int, ...]:
     """Lengths that no frame has: none at all, and one byte less or more than one that frames have."""
-    ends = {end + step for end in (message.least, message.least + 1, message.length) for step in (-1, 1)}
+    ends = {end + step for end in (message.begin, message.least, message.least + 1, message.length) for step in (-1, 1)}
     ends = {message.length - 1, message.length + 1} if message.tail is None else ends
     return tuple(sorted({0, *(max(end, 0) for end in ends)} - set(message.lengths)))
 
@@ -102,9 +102,11 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
     if tail is None or counter is None or counter.implied:
         return
     frame = patterns.random_frame(message, "miscounted")
-    for count, told in ((0, 1), (tail.most, tail.most - 1), (tail.most - 1, tail.most), (tail.most, counter.raw_max)):
-        if told != count:
-            yield codec.counted(node, message, frame, told)[: message.least + count * tail.step]
+    few, most, low, high = tail.fewest, tail.most, counter.raw_min + tail.plus, counter.raw_max + tail.plus
+    told_of = [(few, few + 1), (most, most - 1), (most - 1, most), (most, high)]
+    for count, told in (*told_of, *([(few, few - 1), (most, low)] if tail.plus else ())):
+        if told != count >= few and low <= told <= high:
+            yield codec.counted(node, message, frame, told)[: message.begin + count * tail.step]
 
 
 def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from icdgen import codec
-from icdgen.icd.model import Field, Message, Node
+from icdgen.icd.model import Field, Message, Node, Tail
 
 RANDOM_FRAMES = 4
 
@@ -38,8 +38,9 @@ def frames(message: Message, node: Node) -> Iterator[tuple[str, bytes]]:
     if message.tail is None:
         yield from _longest(message)
         return
-    counts = _counts(message.tail.most)
-    yield "all zeros, no element", cut(message, node, bytes(message.length), 0)
+    counts = _counts(message.tail)
+    few = message.tail.fewest
+    yield f"all zeros, {few or 'no'} element{'s' * (few > 1)}", cut(message, node, bytes(message.length), few)
     for number, (why, frame) in enumerate(_longest(message)):
         yield why, cut(message, node, frame, message.tail.most)
         count = counts[number % len(counts)]
@@ -72,15 +73,17 @@ def _ended_early(message: Message) -> Iterator[tuple[str, bytes]]:
     yield "ended early, zeros", bytes(longest - 1)
 
 
-def _counts(most: int) -> list[int]:
+def _counts(tail: Tail) -> list[int]:
     """Numbers of elements that are worth a frame."""
-    return list(dict.fromkeys((1, most - 1, 0, (most + 1) // 2, min(2, most), most)))
+    few, most = tail.fewest, tail.most
+    found = (few + 1, most - 1, few, (few + most + 1) // 2, few + 2, most)
+    return list(dict.fromkeys(max(few, min(one, most)) for one in found))
 
 
 def cut(message: Message, node: Node, frame: bytes, count: int) -> bytes:
     """The longest frame as one of so many elements."""
     assert message.tail is not None
-    return codec.counted(node, message, frame, count)[: message.least + count * message.tail.step]
+    return codec.counted(node, message, frame, count)[: message.begin + count * message.tail.step]
 
 
 def _longest(message: Message) -> Iterator[tuple[str, bytes]]:
@@ -163,14 +166,14 @@ def raw_columns(message: Message) -> Iterator[dict[str, int | bytes]]:
 def _counted(message: Message) -> list[int | bytes]:
     """Values of the field that counts: every second time all elements are there."""
     assert message.tail is not None
-    most = message.tail.most
-    return [one for count in _counts(most) for one in (most, count)]
+    tail = message.tail
+    return [one - tail.plus for count in _counts(tail) for one in (tail.most, count)]
 
 
 def unfit(message: Message, field: Field) -> list[int]:
     """Raw values that encoding must refuse."""
     if message.tail is not None and field.name == message.tail.counter:
-        return list(dict.fromkeys((message.tail.most + 1, field.raw_max + 1, field.raw_min - 1)))
+        return list(dict.fromkeys((message.tail.high + 1, message.tail.low - 1, field.raw_max + 1, field.raw_min - 1)))
     if field.type not in ("uint", "int", "enum"):
         return []
     return [field.raw_max + 1, field.raw_min - 1]

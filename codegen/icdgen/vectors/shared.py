@@ -83,5 +83,6 @@ def _cut(message: Message, node: Node, frame: bytes) -> list[bytes]:
     tail = message.tail
     if tail is None:
         return [frame]
-    counts = dict.fromkeys((tail.most, 0, 1, (tail.most + 1) // 2))
+    few = tail.fewest
+    counts = dict.fromkeys((tail.most, few, min(few + 1, tail.most), max(few, (tail.most + 1) // 2)))
     return [patterns.cut(message, node, frame, count) for count in counts]

@@ -98,10 +98,10 @@ def _message(vectors: MessageVectors) -> str:
         head["tail"] = {
             "part": tail.name,
             "counter": tail.counter,
-            "least": message.least,
+            "least": message.begin,
             "step": tail.step,
             "most": tail.most,
-        }
+        } | ({"plus": tail.plus} if tail.plus else {})
     parts = [_json(head)[1:-1]]
     parts.append(_array("fields", [_field(vectors, field) for field in message.fields]))
     parts.append(f'"refused_lengths": {_json(list(vectors.lengths))}')

@@ -7,7 +7,6 @@ import struct
 
 from . import _lazy
 from ._errors import LengthError, RangeError
-from ._fields import elements_of, has_elements, is_there
 
 REFUSED = (
     struct.error,
@@ -18,6 +17,30 @@ REFUSED = (
     ValueError,
 )
 """What a value that does not fit makes the encoders raise."""
+
+
+def is_there(info: _lazy.FieldInfo, message: _lazy.Any) -> bool:
+    """Whether the message has the field, by the values of those on which it depends."""
+    return all(getattr(message, name) in values for name, values in info.when)
+
+
+def has_elements(info: _lazy.FieldInfo, values: _lazy.Any) -> bool:
+    """Whether there are as many values as an array takes."""
+    if not hasattr(values, "__getitem__") or not hasattr(values, "__len__"):
+        return False
+    least = info.fewest if info.is_open else info.elements
+    return least <= len(values) <= info.elements
+
+
+def elements_of(info: _lazy.FieldInfo) -> str:
+    """``6 values``: how many an array takes."""
+    return f"{_at_least(info)}{info.elements} values"
+
+
+def _at_least(info: _lazy.FieldInfo) -> str:
+    if not info.is_open:
+        return ""
+    return f"{info.fewest} to " if info.fewest else "up to "
 
 
 def signed(value: int, bits: int) -> int:
@@ -131,6 +154,25 @@ def text_bytes(value: str, field: str, size: int) -> bytes:
     return value.encode("ascii").ljust(size, b"\0")
 
 
+def texts_of(info: _lazy.FieldInfo, value: _lazy.Any) -> _lazy.Any:
+    """The text of a field of characters, of an array those of its elements."""
+    return tuple(map(text, value)) if info.elements else text(value)
+
+
+def bytes_of_texts(info: _lazy.FieldInfo, said: _lazy.Any) -> _lazy.Any:
+    """What such a field has for a text, or an array for texts. Raises `RangeError`."""
+    size = info.bits // 8
+    if not info.elements:
+        raw = text_bytes(said, info.attribute, size)
+        return raw[: max(len(said), info.fewest)] if info.is_open else raw
+    if not has_elements(info, said):
+        raise RangeError(info.attribute, elements_of(info), said)
+    return tuple(
+        text_bytes(one, f"{info.attribute}[{index}]", size)
+        for index, one in enumerate(said)
+    )
+
+
 def length_error(message: type[_lazy.Message], data: _lazy.Buffer) -> LengthError:
     """What to raise for a frame that does not have the length of the message."""
     return LengthError(message.NAME, message.LENGTH, memoryview(data).nbytes)
@@ -206,10 +248,10 @@ def _fits_float(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
 def _fits_bytes(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
     try:
         size, most = memoryview(value).nbytes, info.bits // 8
-        fits = size <= most if info.is_open else size == most
+        fits = (info.fewest if info.is_open else most) <= size <= most
     except TypeError:
         fits = False
-    return f"{'up to ' if info.is_open else ''}{info.bits // 8} bytes", fits
+    return f"{_at_least(info)}{info.bits // 8} bytes", fits
 
 
 _FITS: dict[str, _lazy.Callable[[_lazy.FieldInfo, _lazy.Any], tuple[str, bool]]] = {

@@ -28,7 +28,7 @@ def decode_many(
     columns, counts = _columns(numpy, message, frames, physical)
     for (info, parts), (name, column) in zip(_lines(message), columns.items()):
         if info.is_open and column.ndim > 1:
-            is_octets = info.type in OCTETS and len(parts) == 1
+            is_octets = info.type in OCTETS and not info.elements
             columns[name] = rows = numpy.empty(len(counts), object)
             for row, count in enumerate(counts):
                 one = column[row, :count]
@@ -104,17 +104,17 @@ def decode_table(message: type[Message], frames: Frames, physical: bool) -> Any:
             continue
         column = numpy.ascontiguousarray(column)
         if info.is_open and column.ndim > 1:
-            is_octets = info.type in OCTETS and len(parts) == 1
+            is_octets = info.type in OCTETS and not info.elements
             array = _lists(numpy, pyarrow, column, counts, is_octets)
-        elif info.type in OCTETS and column.ndim == 2:
-            kind = pyarrow.binary(info.bits // 8)
-            buffers = [None, pyarrow.py_buffer(column)]
-            array = pyarrow.Array.from_buffers(kind, len(column), buffers)
-        elif info.elements:
-            values = pyarrow.array(column.ravel())
-            array = pyarrow.FixedSizeListArray.from_arrays(values, info.elements)
         else:
-            array = pyarrow.array(column)
+            is_octets = info.type in OCTETS and name != info.physical
+            array = (
+                _octets(pyarrow, column, info.bits // 8)
+                if is_octets
+                else pyarrow.array(column.ravel())
+            )
+            if info.elements:
+                array = pyarrow.FixedSizeListArray.from_arrays(array, info.elements)
         fields.append(pyarrow.field(name, array.type, metadata=_metadata(info)))
         arrays.append(array)
     about = {
@@ -177,12 +177,15 @@ def _lists(numpy: Any, pyarrow: Any, rows: Any, counts: Any, is_octets: bool) ->
         buffers = [None, pyarrow.py_buffer(ends), pyarrow.py_buffer(values)]
         return pyarrow.Array.from_buffers(pyarrow.binary(), len(rows), buffers)
     if values.ndim == 2:
-        kind = pyarrow.binary(values.shape[1])
-        octets = numpy.ascontiguousarray(values)
-        buffers = [None, pyarrow.py_buffer(octets)]
-        made = pyarrow.Array.from_buffers(kind, len(octets), buffers)
+        made = _octets(pyarrow, numpy.ascontiguousarray(values), values.shape[1])
         return pyarrow.ListArray.from_arrays(pyarrow.array(ends), made)
     return pyarrow.ListArray.from_arrays(pyarrow.array(ends), pyarrow.array(values))
+
+
+def _octets(pyarrow: Any, rows: Any, size: int) -> Any:
+    """Rows of so many bytes."""
+    buffers = [None, pyarrow.py_buffer(rows)]
+    return pyarrow.Array.from_buffers(pyarrow.binary(size), rows.size // size, buffers)
 
 
 def _metadata(info: FieldInfo) -> dict[str, str]:

@@ -22,7 +22,7 @@ class FieldInfo:
     __slots__ = (
         "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
         "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
-        "elements", "is_open", "struct", "curve", "leads_back", "when",
+        "elements", "is_open", "fewest", "struct", "curve", "leads_back", "when",
     )  # fmt: skip
 
     def __init__(
@@ -48,6 +48,7 @@ class FieldInfo:
         default: _lazy.Any = None,
         elements: int = 0,
         is_open: bool = False,
+        fewest: int = 0,
         struct: _lazy.Optional[type[_lazy.Struct]] = None,
         curve: tuple[float, ...] = (),
         leads_back: bool = True,
@@ -97,6 +98,8 @@ class FieldInfo:
         """
         self.is_open = is_open
         """Whether frames hold up to so many elements, or bytes: see `Message.TAIL`."""
+        self.fewest = fewest
+        """How many of them every frame holds."""
         self.struct = struct
         """The class of what stands here, where that is a struct; the offsets in it begin at 0."""
         self.curve = curve
@@ -148,7 +151,7 @@ class FieldInfo:
             told[key] += f"[{index}]"
         told["at"] += index * self.bits
         if self.is_open or self.default is None:
-            told["default"] = None
+            told.update(default=None, is_open=False, fewest=0)
         else:
             told["default"] = self.default[index]
         return FieldInfo(**{**told, "elements": 0})
@@ -188,9 +191,10 @@ class FieldInfo:
     def fresh(self) -> _lazy.Any:
         """The raw value in a new message: of a struct a new one."""
         made = self.struct
-        if made is None or self.is_open:
+        if made is None:
             return self.default
-        return tuple(made() for _ in range(self.elements)) if self.elements else made()
+        count = self.fewest if self.is_open else self.elements
+        return tuple(made() for _ in range(count)) if self.elements else made()
 
     def _values(self) -> tuple[_lazy.Any, ...]:
         return tuple(getattr(self, name) for name in self.__slots__)
@@ -208,33 +212,17 @@ class FieldInfo:
         return f"FieldInfo({', '.join(values)})"
 
 
-def is_there(info: FieldInfo, message: _lazy.Any) -> bool:
-    """Whether the message has the field, by the values of those on which it depends."""
-    return all(getattr(message, name) in values for name, values in info.when)
-
-
-def has_elements(info: FieldInfo, values: _lazy.Any) -> bool:
-    """Whether there are as many values as an array takes."""
-    if not hasattr(values, "__getitem__") or not hasattr(values, "__len__"):
-        return False
-    count = len(values)
-    return count <= info.elements if info.is_open else count == info.elements
-
-
-def elements_of(info: FieldInfo) -> str:
-    """``6 values``: how many an array takes."""
-    return f"{'up to ' if info.is_open else ''}{info.elements} values"
-
-
 class Tail:
     """The end of a message whose frames differ in length.
 
     A frame is the beginning of the longest one, which has ``LENGTH`` bytes.
     """
 
-    __slots__ = ("part", "counter", "step", "most")
+    __slots__ = ("part", "counter", "step", "most", "plus")
 
-    def __init__(self, part: str, counter: str, step: int, most: int) -> None:
+    def __init__(
+        self, part: str, counter: str, step: int, most: int, plus: int = 0
+    ) -> None:
         self.part = part
         """The attribute that holds it: a tuple, or `bytes`."""
         self.counter = counter
@@ -246,6 +234,8 @@ class Tail:
         """Bytes of an element."""
         self.most = most
         """The most elements."""
+        self.plus = plus
+        """There are so many more elements than the counter says."""
 
 
 class Form:
@@ -341,6 +331,8 @@ def _curve_property(info: FieldInfo) -> property:
 
 def _counted(info: FieldInfo, values: Any) -> None:
     """Raises `RangeError` unless there is a value for each element."""
+    from ._codec import elements_of, has_elements
+
     if not has_elements(info, values):
         raise RangeError(info.attribute, elements_of(info), values)
 
@@ -368,20 +360,19 @@ def _array_property(info: FieldInfo, form: Form) -> property:
 
 
 def _text_property(info: FieldInfo) -> property:
-    attribute, size = info.attribute, info.bits // 8
+    attribute = info.attribute
 
-    def get_text(self: Any) -> str:
-        from ._codec import text
+    def get(self: Any) -> Any:
+        from ._codec import texts_of
 
-        return text(getattr(self, attribute))
+        return texts_of(info, getattr(self, attribute))
 
-    def set_text(self: Any, value: str) -> None:
-        from ._codec import text_bytes
+    def set(self: Any, value: Any) -> None:
+        from ._codec import bytes_of_texts
 
-        raw = text_bytes(value, attribute, size)
-        setattr(self, attribute, raw[: len(value)] if info.is_open else raw)
+        setattr(self, attribute, bytes_of_texts(info, value))
 
-    return property(get_text, set_text)
+    return property(get, set)
 
 
 def field(
@@ -443,8 +434,8 @@ def whole(p: int, c: int, *, init: _lazy.Literal[False] = False) -> _lazy.Any:
     return Form("whole", (p, c, 1))
 
 
-def text(*, default: str) -> _lazy.Any:
-    """The field above as a text: what stands before the first NUL.
+def text(*, default: _lazy.Any) -> _lazy.Any:
+    """The field above as a text, or texts: what stands before the first NUL.
 
     A byte that is not ASCII reads as U+FFFD. Setting it raises `RangeError`.
     """

@@ -15,12 +15,10 @@ def decoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
     def from_bytes(cls: _lazy.Any, data: _lazy.Buffer) -> _lazy.Any:
         count = count_in(cls, data)
         self = longest(cls, padded(cls, data))
-        if tail.counter and getattr(self, tail.counter) != count:
-            told = getattr(self, tail.counter)
-            least = cls.LENGTH - tail.most * tail.step
-            raise LengthError(
-                cls.NAME, least + told * tail.step, memoryview(data).nbytes
-            )
+        if tail.counter and getattr(self, tail.counter) + tail.plus != count:
+            told = getattr(self, tail.counter) + tail.plus
+            expected = max(0, cls.LENGTH - (tail.most - told) * tail.step)
+            raise LengthError(cls.NAME, expected, memoryview(data).nbytes)
         setattr(self, tail.part, getattr(self, tail.part)[:count])
         return self
 
@@ -61,10 +59,11 @@ def encoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
         except TypeError:
             raise range_error(self) from None
         count = len(values)
-        if count > tail.most:
+        if not info.fewest <= count <= tail.most:
             raise range_error(self)
-        if tail.counter and getattr(self, tail.counter) != count:
-            allowed = f"{count}, as many as {tail.part} has"
+        if tail.counter and getattr(self, tail.counter) != count - tail.plus:
+            less = f", of which there are {count}" if tail.plus else ""
+            allowed = f"{count - tail.plus}, as many as {tail.part} has{less}"
             raise RangeError(tail.counter, allowed, getattr(self, tail.counter))
         whole = object.__new__(type(self))
         for one in self.FIELDS:
@@ -79,9 +78,10 @@ def encoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
 def count_in(message: _lazy.Any, data: _lazy.Buffer) -> int:
     """How many elements the end of a frame has. Raises `LengthError`."""
     tail, actual = message.TAIL, memoryview(data).nbytes
-    least: int = message.LENGTH - tail.most * tail.step
+    begin: int = message.LENGTH - tail.most * tail.step
     step: int = tail.step
-    count, part = divmod(actual - least, step)
+    count, part = divmod(actual - begin, step)
+    least = begin + max(0, tail.plus) * step
     if actual < least:
         raise LengthError(message.NAME, least, actual)
     if actual > message.LENGTH:

@@ -14,6 +14,7 @@ from ._layout import byte_order, pieces
 
 _INTEGERS = {8: "B", 16: "H", 32: "I", 64: "Q"}
 _FLOATS = {32: "f", 64: "d"}
+_NO_WORDS = ("bool", "bytes", "text")
 _DECODER = """\
 def from_bytes(cls, data):
     self = new(cls)
@@ -282,7 +283,7 @@ class Codec:
         own, local, target = self._own(info), f"v{byte}", self._target(info)
         code = _INTEGERS.get(info.bits, "")
         if info.type in ("bytes", "text"):
-            self._items.append(_Item(byte, size, f"{size}s", own, local))
+            self._items.append(_Item(byte, size, f"{size}s", target, local))
             self.names["sized"] = _codec.sized
             self._prepare.append(f"{local} = sized({own}, {size})")
         elif info.type == "float" and info.bits == 32 and "." in info.attribute:
@@ -381,8 +382,8 @@ class Codec:
 
 def _is_run(info: _lazy.FieldInfo) -> bool:
     """Whether it is an array of words, which are taken apart at once."""
-    is_word = info.at % 8 == 0 and info.bits in _INTEGERS and info.type != "bool"
-    return bool(info.elements) and is_word
+    is_word = info.at % 8 == 0 and info.bits in _INTEGERS
+    return bool(info.elements) and is_word and info.type not in _NO_WORDS
 
 
 def _bytes_of(info: _lazy.FieldInfo) -> range:

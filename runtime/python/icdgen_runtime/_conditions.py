@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from . import _lazy
-from ._codec import REFUSED, range_error, signed, signed_bits, unsigned_bits
-from ._fields import is_there
+from ._codec import REFUSED, is_there, range_error, signed, signed_bits, unsigned_bits
 from ._floats import float32, float32_bits, float64, float64_bits
 from ._layout import pieces
 

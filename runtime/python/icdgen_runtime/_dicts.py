@@ -60,19 +60,19 @@ def _raw(info: FieldInfo, value: Any) -> Any:
     """A raw value as the attribute holds it: bytes may be given as digits, structs as their values."""
     if info.struct is not None:
         return _structs(info, info.struct, value)
-    if info.type in OCTETS and isinstance(value, str):
-        try:
-            return bytes.fromhex(value)
-        except ValueError:
-            allowed = f"{info.bits // 8} bytes in hexadecimal digits"
-            raise RangeError(info.attribute, allowed, value) from None
     if info.elements and isinstance(value, (list, tuple)):
         return tuple(_member(info, one) for one in value)
     return _member(info, value)
 
 
 def _member(info: FieldInfo, value: Any) -> Any:
-    """Of an enumeration the member, if the value is one of it."""
+    """Of an enumeration the member, if the value is one of it; bytes of their digits."""
+    if info.type in OCTETS and isinstance(value, str):
+        try:
+            return bytes.fromhex(value)
+        except ValueError:
+            allowed = f"{info.bits // 8} bytes in hexadecimal digits"
+            raise RangeError(info.attribute, allowed, value) from None
     if info.enum is None or type(value) is not int:
         return value
     try:

@@ -106,7 +106,9 @@ def _field(field: FieldDescription) -> FieldEntry:
     scale, text, special, limits = "None", "None", "Vec::new", "Vec::new"
     within = f"m.{names.raw_words(field.holder)}" if field.holder else "m"
     if field.is_text:
-        get, set = (f"|m| {within}.{field.physical_name}()", f"|m, text| {within}.set_{field.physical_name}(text)")
+        which = "" if field.model.index is None else f"{field.model.index}"
+        get = f"|m| {within}.{field.physical_name}({which})"
+        set = f"|m, text| {within}.set_{field.physical_name}({f'{which}, ' if which else ''}text)"
         text = f"Some(Text {{ get: {get}, set: {set} }})"
     if field.is_scaled:
         get, set = f"{within}.{field.physical_name}", f"{within}.set_{field.physical_name}"

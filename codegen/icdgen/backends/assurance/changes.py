@@ -55,7 +55,7 @@ def of_field(field: Field, message: Message | Struct, node: Node) -> Iterator[tu
         yield from _of_open(field)
         return
     if message.tail is not None:
-        size = 8 * message.least
+        size = 8 * message.begin
         if message.tail.counter == field.name:
             return  # it counts the elements: as another field it may count none
     if isinstance(message, Message) and any(one.field == field.name for other in message.fields for one in other.when):

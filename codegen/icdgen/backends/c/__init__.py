@@ -102,6 +102,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "empty": decoding.EMPTY,
         "decode": decoding.statements(message, groups),
         "element": None,
+        "miscount": "",
         "excess": bits.excess,
         "narrow": [(field, bits.excess(field)) for field in message.fields if field.is_narrow and not field.is_open],
         "excess_type": bits.excess_type(message),
@@ -137,6 +138,9 @@ def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, objec
         "size": encoding.size(message),
         "misfit_length": decoding.misfit_length(tail, names.constant(message, "length")),
         "miscounted": decoding.miscounted(tail),
+        "elements": decoding.elements(tail),
+        "counted_text": encoding.counted_text(tail),
+        "miscount": decoding.miscount(tail) if tail.is_bound else "",
     }
 
 

@@ -45,14 +45,22 @@ def _float(one: Constant, bits: int) -> str:
 
 
 def initial(message: Composite[Any]) -> list[str]:
-    """Statements that give fields with only one valid value that value."""
-    return [
+    """Statements that give fields with only one valid value that value, and what counts an open end its smallest."""
+    counter = message.tail.counter if message.tail is not None and message.tail.low else None
+    counted = [] if counter is None else [f"message->{counter.member} = {counter.fresh}u;"]
+    return counted + [
         f"message->{field.member} = {names.constant(field.declaration.message, one.name)};"
         for field in message.fields
-        if not field.is_open
+        if not field.is_open or _is_always_there(field)
         for one in field.constants
         if one.key == "const"
     ]
+
+
+def _is_always_there(field: FieldDescription) -> bool:
+    """Whether every frame has an element of an open end, or what stands in it."""
+    tail, path = field.message.tail, field.model.path
+    return tail is not None and bool(path) and (path[0].index or 0) < tail.fewest
 
 
 def of_enum(enum: EnumDescription) -> tuple[bool, Callable[[int], str]]:

@@ -31,7 +31,7 @@ def statements(message: Composite[Any], groups: Groups) -> list[str]:
 
 
 def _count(tail: TailDescription) -> str:
-    """How many elements there are in ``length`` bytes."""
+    """How many elements there are in ``length`` bytes, without the fewest that there can be."""
     rest = f"length - {tail.least}u" if tail.least else "length"
     if tail.step == 1:
         return rest
@@ -57,13 +57,15 @@ def miscounted(tail: TailDescription) -> tuple[str, str, str] | None:
         return None
     bits = max(tail.counter.storage.bits, 32)
     value = "value" if tail.counter.storage.bits == bits else cast("value", bits)
-    return type_of(tail.counter), _number(tail.counter, "value"), f"{value} != {cast(_count(tail), bits)}"
+    told = cast(_count(tail), bits) + (f" + {tail.low}u" if tail.low else "")
+    return type_of(tail.counter), _number(tail.counter, "value"), f"{value} != {told}"
 
 
 def of_elements(message: MessageDescription, tail: TailDescription) -> list[str]:
     """The statements that read the structs of an open end, each where it stands in ``buffer``."""
     name, count = tail.part.member, _count(tail)
     count = f"({count})" if " " in count else count
+    count += f" + {tail.fewest}u" if tail.fewest else ""
     return [
         f"(void)memset(message->{name}, 0, sizeof message->{name});",
         f"for (size_t element = 0u; element < {count}; element++) {{",
@@ -75,7 +77,23 @@ def of_elements(message: MessageDescription, tail: TailDescription) -> list[str]
 def element_place(tail: TailDescription) -> str:
     """The byte at which ``element`` begins."""
     offset = "element" if tail.step == 1 else f"element * {tail.step}u"
-    return f"{tail.least}u + {f'({offset})' if tail.step > 1 else offset}" if tail.least else offset
+    return f"{tail.begin}u + {f'({offset})' if tail.step > 1 else offset}" if tail.begin else offset
+
+
+def elements(tail: TailDescription) -> str:
+    """How many elements a message has."""
+    count = f"ICDGEN_SIZE(message->{tail.counter.name})"
+    if not tail.model.plus:
+        return count
+    return f"({count} {'+' if tail.fewest else '-'} {abs(tail.model.plus)}u)"
+
+
+def miscount(tail: TailDescription) -> str:
+    """What holds of a message whose count is none that it can have."""
+    count = f"message->{tail.counter.name}"
+    tests = [f"{count} < {tail.low}u"] if tail.low else []
+    tests += [f"{count} > {tail.high}u"] if tail.counter.storage.max > tail.high else []
+    return " || ".join(f"({test})" for test in tests) if len(tests) > 1 else tests[0]
 
 
 def _group(group: Flags | Row, message: Composite[Any]) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.decoding import element_place
+from icdgen.backends.c.decoding import element_place, elements
 from icdgen.backends.c.member_groups import Flags, Groups, Row
 from icdgen.backends.c.names import stem, writing
 from icdgen.backends.c.statement import assigned_byte, call
@@ -18,17 +18,24 @@ def size(message: MessageDescription) -> str:
     """Bytes of the frame that a message makes."""
     tail = message.tail
     assert tail is not None
-    count = f"ICDGEN_SIZE(message->{tail.counter.name})"
+    count = elements(tail)
     if tail.step == 1:
-        return f"{tail.least}u + {count}" if tail.least else count
-    return f"{tail.least}u + ({count} * {tail.step}u)" if tail.least else f"{count} * {tail.step}u"
+        return f"{tail.begin}u + {count}" if tail.begin else count
+    return f"{tail.begin}u + ({count} * {tail.step}u)" if tail.begin else f"{count} * {tail.step}u"
+
+
+def counted_text(tail: TailDescription) -> str:
+    """What the counter of an open text says of a ``text``, which is filled up to the fewest characters."""
+    if tail.fewest:
+        return f"(strlen(text) > {tail.fewest}u) ? (strlen(text) - {tail.fewest}u) : 0u"
+    return f"strlen(text) + {tail.low}u" if tail.low else "strlen(text)"
 
 
 def of_elements(message: MessageDescription, tail: TailDescription) -> list[str]:
     """The statements that write the structs of an open end, each where it stands in ``buffer``."""
     name = tail.part.member
     return [
-        f"for (size_t element = 0u; element < ICDGEN_SIZE(message->{tail.counter.name}); element++) {{",
+        f"for (size_t element = 0u; element < {elements(tail)}; element++) {{",
         f"{STEP}{writing(message, tail)}(&message->{name}[element], &buffer[{element_place(tail)}]);",
         "}",
     ]
@@ -37,7 +44,7 @@ def of_elements(message: MessageDescription, tail: TailDescription) -> list[str]
 def statements(message: Composite[Any], groups: Groups) -> list[str]:
     """Statements that write every byte of the frame once, in order, but for structs of an open end."""
     if message.tail is not None and message.tail.element is not None:
-        return _Frame(message, groups, message.tail.least).in_order()
+        return _Frame(message, groups, message.tail.begin).in_order()
     frame = _Frame(message, groups, message.model.length)
     unused = [] if message.fields else ["(void)message;"]
     if not message.fields and not message.model.length:

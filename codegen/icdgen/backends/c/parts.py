@@ -56,4 +56,6 @@ def _statements(copied: Copied) -> Iterator[str]:
         yield call("(void)memcpy", (whole, f"message->{copied.twins[0].member}", f"sizeof {whole}"))
         return
     for one, twin in zip(member.elements or (member,), copied.twins, strict=True):
-        yield f"part->{one.member} = message->{twin.member};"
+        target, source = f"part->{one.member}", f"message->{twin.member}"
+        is_bytes = one.model.is_bytes
+        yield call("(void)memcpy", (target, source, f"sizeof {target}")) if is_bytes else f"{target} = {source};"

@@ -23,7 +23,7 @@ def type_of(field: FieldDescription) -> str:
 def declaration(field: FieldDescription) -> str:
     """The member of a message's struct."""
     if field.model.is_bytes:
-        return f"uint8_t {field.name}[{field.model.bits // 8}]"
+        return f"uint8_t {field.name}{f'[{field.count}]' if field.count else ''}[{field.size}]"
     kind = f"{stem(field.struct)}_t" if field.struct is not None else type_of(field)
     return f"{kind} {field.name}{f'[{field.count}]' if field.count else ''}"
 

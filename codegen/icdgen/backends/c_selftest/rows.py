@@ -15,7 +15,7 @@ from icdgen.backends.lines import in_rows
 from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.nodes import Direction
-from icdgen.icd.model import Icd
+from icdgen.icd.model import Icd, Message
 from icdgen.render import Renderer
 from icdgen.vectors.ids import worth_asking
 from icdgen.vectors.make import MessageVectors, Raw, Row, make
@@ -61,7 +61,7 @@ class TailRow(NamedTuple):
 
     least: int
     counter: int
-    most: int
+    high: int
     frames: list[str]
     frame_lengths: list[int]
 
@@ -130,8 +130,7 @@ class _Rows:
         lengths = {one.id: one.first.message.model for one in known if not one.is_shared}
         shared = {one.id for one in known if one.is_shared}
         asked = (id for id in worth_asking((*lengths, *shared), id_bits) if id not in shared)
-        known_or_not = ((id, lengths.get(id)) for id in asked)
-        rows = [f"{{{id}u, {one.length}, {one.least}u}}" if one else f"{{{id}u, -1, 0u}}" for id, one in known_or_not]
+        rows = [_id(id, lengths.get(id)) for id in asked]
         frames = [_frame(row) for row in self.vectors.shared if row.direction == direction.kind]
         return f"{self.node.name}_{direction.kind}", rows, bool(shared), frames
 
@@ -198,6 +197,14 @@ class _Rows:
         )
 
 
+def _id(id: int, message: Message | None) -> str:
+    """An id, the longest and the shortest frame of its message, and what becomes of the latter where all is 0."""
+    if message is None:
+        return f"{{{id}u, -1, 0u, ICD_ERROR_UNKNOWN_ID}}"
+    is_refused = message.tail is not None and message.tail.low > 0  # zeros count less than there can be
+    return f"{{{id}u, {message.length}, {message.least}u, {'ICD_ERROR_LENGTH' if is_refused else 'ICD_OK'}}}"
+
+
 def _frame(row: SharedRow) -> str:
     """A frame of an id that several messages have, and what becomes of it."""
     octets = f"(const uint8_t[]){{{', '.join(f'0x{byte:02X}' for byte in row.frame)}}}" if row.frame else "NULL"
@@ -229,7 +236,7 @@ def _tail(message: MessageDescription, vectors: MessageVectors) -> TailRow:
     return TailRow(
         least=tail.least,
         counter=next(place for place, one in enumerate(message.all_fields) if one.model == tail.counter.model),
-        most=tail.most,
+        high=tail.high,
         frames=_bytes(frames),
         frame_lengths=[len(frame) for frame in vectors.miscounted],
     )

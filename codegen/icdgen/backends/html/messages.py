@@ -11,7 +11,7 @@ from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.usage import names, snippets
 from icdgen.describe import describe
 from icdgen.describe.errata import errata_of_message
-from icdgen.describe.numbers import length_text
+from icdgen.describe.numbers import count_text, length_text
 from icdgen.describe.shared_ids import sharing
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
@@ -60,7 +60,7 @@ def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str
     facts = [("Length", length_text(message), ""), ("Fields", str(len(message.fields)), "")]
     tail, counter = message.tail, message.counter
     if tail is not None and counter is not None:
-        until = "up to the end" if counter.implied else f"as many as {counter.name} says"
+        until = "up to the end" if counter.implied else f"as many as {count_text(message)} says"
         what = "element" if tail.step > 1 or any(one.path for one in message.fields) else "byte"
         facts.append(("Open end", f"{tail.name}: up to {texts.count(tail.most, what)}, {until}", ""))
     if message.may_end_early:

@@ -26,7 +26,8 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
     if message.tail is not None:
         tail = message.tail
         plan["tail"] = {
-            "part": tail.name, "counter": tail.counter, "least": message.least, "step": tail.step, "most": tail.most,
+            "part": tail.name, "counter": tail.counter, "least": message.begin, "step": tail.step, "most": tail.most,
+            **({"plus": tail.plus} if tail.plus else {}),
         }  # fmt: skip
         for field, own in zip(message.fields, fields, strict=True):
             if field.name == tail.name:

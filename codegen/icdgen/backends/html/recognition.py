@@ -33,7 +33,8 @@ def _tail(relations: Relations, message: Message) -> list[dict[str, Any]]:
     if tail is None or counter is None:
         return []
     pieces = () if counter.implied else layout.pieces(counter, relations.icd.node(message.node))
-    return [{"least": message.least, "step": tail.step, "pieces": [[p.byte, p.shift, p.bits, p.at] for p in pieces]}]
+    found = {"least": message.least, "step": tail.step, "pieces": [[p.byte, p.shift, p.bits, p.at] for p in pieces]}
+    return [found | ({"low": tail.low} if tail.low else {})]
 
 
 def script(relations: Relations) -> str:

@@ -83,7 +83,8 @@ def _functions() -> dict[str, object]:
     from icdgen.describe.comments import physical_comment, text_comment
 
     found = (
-        fields.annotation, fields.declaration, fields.exact, fields.physical, fields.scaled, fields.tail, fields.view_info,
+        fields.annotation, fields.declaration, fields.exact, fields.physical, fields.scaled, fields.tail, fields.text,
+        fields.view_info,
         fields.whole, fields.whole_comment, names.class_name, physical_comment, nodes.listing, nodes.literals, nodes.mapping,
         text.docstring,
         text.documented, text.literal, text.prose, text_comment,

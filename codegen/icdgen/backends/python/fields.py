@@ -38,8 +38,17 @@ def _annotation(field: FieldDescription) -> str:
 def default(field: FieldDescription) -> str:
     """The raw value in a new message."""
     if field.is_open:
-        return "()" if field.count else 'b""'
+        few = _fewest(field)
+        if not few:
+            return "()" if field.count else 'b""'
+        return f"({_default(field)},) * {few}" if field.count else f"bytes({few})"
     return f"({_default(field)},) * {field.count}" if field.count else _default(field)
+
+
+def _fewest(field: FieldDescription) -> int:
+    """How many elements of an open end every frame has."""
+    tail = field.message.tail
+    return tail.fewest if tail is not None else 0
 
 
 def _default(field: FieldDescription) -> str:
@@ -59,6 +68,7 @@ def _told(field: FieldDescription) -> list[str]:
         items.append(f"elements={field.count}")
     if field.is_open:
         items.append("is_open=True")
+        items += [f"fewest={few}"] if (few := _fewest(field)) else []
     if field.is_open and field.enum is not None:
         items.append(f"enum={class_name(field.enum)}")
     if field.needs:
@@ -103,7 +113,8 @@ def tail(message: MessageDescription) -> str:
     one = message.tail
     assert one is not None
     counter = "" if one.counter.model.implied else one.counter.name
-    return f'_base.Tail("{one.part.name}", "{counter}", {one.step}, {one.most})'
+    plus = f", {one.model.plus}" if one.model.plus else ""
+    return f'_base.Tail("{one.part.name}", "{counter}", {one.step}, {one.most}{plus})'
 
 
 def view_info(field: FieldDescription) -> str:
@@ -133,7 +144,8 @@ def scaled(field: FieldDescription) -> str:
     curve, steps = field.curve, field.steps
     first = repr(curve.double(field.fresh) if curve is not None else steps.double(field.fresh) if steps else 0.0)
     if field.is_open:
-        first, note = "()", "tuple[float, ...]"
+        few = _fewest(field)
+        first, note = f"({first},) * {few}" if few else "()", "tuple[float, ...]"
     elif field.count:
         first, note = f"({first},) * {field.count}", "tuple[float, ...]"
     else:
@@ -143,6 +155,13 @@ def scaled(field: FieldDescription) -> str:
         return _statement(field.physical_name, note, "curve" if field.is_set else "curve_only", items)
     assert steps is not None
     return _statement(field.physical_name, note, "scaled", [*map(str, steps.terms), f"default={first}"])
+
+
+def text(field: FieldDescription) -> str:
+    """``version_text: str = _base.text(...)``: a field of characters as what it says."""
+    first = f'("",) * {_fewest(field) if field.is_open else field.count}' if field.count else '""'
+    first = "()" if field.is_open and field.count and not _fewest(field) else first
+    return _statement(field.physical_name, "tuple[str, ...]" if field.count else "str", "text", [f"default={first}"])
 
 
 def whole(field: FieldDescription) -> Whole | None:

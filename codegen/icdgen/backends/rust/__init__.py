@@ -87,9 +87,10 @@ def _functions() -> dict[str, object]:
     from icdgen.backends.rust.examples import direction_example, enum_example, message_example
     from icdgen.backends.rust.physical import big_parts
     from icdgen.describe.comments import sentence, text_comment, words
+    from icdgen.describe.numbers import count_text
 
     found = (
-        accessors, big_parts, curve_of, direction_example, enum_example, field_row, message_example,
+        accessors, big_parts, count_text, curve_of, direction_example, enum_example, field_row, message_example,
         names.catch_all, names.field_name, names.message_path, names.open_type, names.raw_type, names.type_name,
         scale_of, sentence, text.arm,
         text.assigned, text.code, text.described, text.doc, text.integer, text.prose, text.signature, text.string,

@@ -68,13 +68,15 @@ def _structs(field: FieldDescription, struct: StructDescription, tables: set[int
 def _is_run(field: FieldDescription) -> bool:
     """Whether the elements of an array are words that lie in the frame as they do in memory, but for their byte order."""
     one = field.model
-    return is_whole_bytes(one) and one.bits == field.storage.bits and one.type != "bool"
+    return one.is_bytes or (is_whole_bytes(one) and one.bits == field.storage.bits and one.type != "bool")
 
 
 def _array(field: FieldDescription, depth: int) -> str:
     """The words of an array, read one after the other."""
     one, size = field.model, field.model.bits
     first = one.at // 8
+    if one.is_bytes:
+        return f"arrays(bytes, {first})"
     if one.type == "uint" and size == 8:
         return f"array(bytes, {first})"
     kind = "f" if one.type == "float" else "i" if one.signed else "u"
@@ -235,6 +237,9 @@ def _put_run(field: FieldDescription, source: str) -> list[str]:
     """The words of an array, written one after the other."""
     one, size = field.model, field.model.bits
     first = one.at // 8
+    if one.is_bytes:
+        arguments = ("&mut bytes", str(first), f"&{source}", "|octets| octets")
+        return [bracketed("put_words(", arguments, ");", WIDTH, STEP * 2)]
     if one.type == "uint" and size == 8:
         return [f"put_array(&mut bytes, {first}, &{source});"]
     kind = "f" if one.type == "float" else "i" if one.signed else "u"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from icdgen.backends.rust import bits, conditional, constants, parts
-from icdgen.backends.rust.names import own_name, struct_path
+from icdgen.backends.rust.names import field_name, own_name, struct_path
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
 from icdgen.describe import FieldDescription, MessageDescription, StructDescription
@@ -34,6 +34,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         written += of_element.writings
     imported = {
         "array": any("array(" in reading for reading in read),
+        "arrays": any("arrays(" in reading for reading in read),
         "flags": bool(tables or (of_element and of_element.tables)),
         "message": True,
         "put": any("put!(" in line for line in written),
@@ -43,6 +44,8 @@ def values(message: MessageDescription) -> dict[str, object]:
         "there": bool(conditions),
         "counted": tail is not None and not tail.counter.model.implied,
         "elements": tail is not None,
+        "first": any(map(_has_first, fields)),
+        "number": tail is not None and bool(tail.model.plus),
         "longest": tail is not None or bool(message.model.may_end_early),
         "present": tail is not None,
         "structs": any("structs(" in reading for reading in read),
@@ -56,7 +59,10 @@ def values(message: MessageDescription) -> dict[str, object]:
         "refused": message.is_narrow or bool(conditions),
         "conditional": conditions,
         "tail": tail,
-        "length_of_frame": "" if tail is None else _length_of_frame(tail),
+        "length_of_frame": "" if tail is None else _length(tail.least, tail.step),
+        "length_of_elements": "" if tail is None else _length(tail.begin, tail.step),
+        "counted_text": "" if tail is None else _counted_text(tail),
+        "number_of_elements": "" if tail is None else _number(tail),
         "tables": sorted(tables),
         "literal": _literal(fields, readings),
         "views": views,
@@ -99,7 +105,8 @@ def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]
     fields = one.members
     is_there = any(field.model.name in field.message.model.fresh for field in fields if field.model.when)
     has_default = not is_there and all(
-        (field.fresh == 0 or field.is_open or field.model.when) and not _is_long(field) for field in fields
+        (field.fresh == 0 or (field.is_open and not _fewest(field)) or field.model.when) and not _is_long(field)
+        for field in fields
     )
     has_default = has_default and not any(
         field.struct is not None and field.is_open and any(one.fresh for one in field.struct.fields) for field in fields
@@ -109,10 +116,11 @@ def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]
     scales = [field for field in one.all_members if has_constant(field)]
     has_text = any(field.is_text for field in fields)
     has_elements = any(field.count and field.is_scaled for field in fields)
+    has_texts = any(field.count and field.is_text for field in fields)
     curves = [field for field in one.all_members if field.curve is not None]
     imported |= {
         "element_of": has_elements,
-        "put_element": any(field.count and field.is_scaled and field.is_set for field in fields),
+        "put_element": has_texts or any(field.count and field.is_scaled and field.is_set for field in fields),
         "text": has_text,
         "text_array": has_text,
         "Big": one.has_wide_steps,
@@ -133,28 +141,56 @@ def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]
     }
 
 
-def _length_of_frame(tail: TailDescription) -> str:
-    """Bytes of a frame that has ``count`` elements."""
-    rest = "count" if tail.step == 1 else f"{tail.step} * count"
-    return f"{tail.least} + {rest}" if tail.least else rest
+def _length(before: int, step: int) -> str:
+    """Bytes of a frame that has ``count`` elements behind so many bytes."""
+    rest = "count" if step == 1 else f"{step} * count"
+    return f"{before} + {rest}" if before else rest
+
+
+def _counted_text(tail: TailDescription) -> str:
+    """What the counter of an open text says of a ``text``, which is filled up to the fewest characters."""
+    if tail.fewest:
+        return f"text.len().saturating_sub({tail.fewest})"
+    return f"(text.len() + {tail.low})" if tail.low else "text.len()"
+
+
+def _number(tail: TailDescription) -> str:
+    """How many elements a message has."""
+    counter = f"self.{field_name(tail.counter)}"
+    return f"number({counter}, {tail.low}, {tail.fewest})" if tail.model.plus else counter
 
 
 def _is_long(field: FieldDescription) -> bool:
     """Whether it is an array that has no `Default`."""
-    if field.count:
-        return field.count > DERIVES_DEFAULT
+    if field.count > DERIVES_DEFAULT:
+        return True
     return field.model.is_bytes and field.model.bits > DERIVES_DEFAULT * 8
 
 
+def _fewest(field: FieldDescription) -> int:
+    """How many elements of an open end every frame has."""
+    return field.message.tail.fewest if field.message.tail is not None else 0
+
+
 def _fresh(field: FieldDescription) -> str:
-    if field.is_open and field.struct is not None:
-        return f"[Self::read_element(&[0; {field.struct.model.length}]); {field.count}]"
     if field.is_open and field.count:
-        return f"[{_zero(field)}; {field.count}]"
+        length = field.struct.model.length if field.struct is not None else 0
+        absent = f"Self::read_element(&[0; {length}])" if length else _zero(field)
+        return (
+            f"first({_fewest(field)}, {_one_fresh(field)}, {absent})"
+            if _has_first(field)
+            else f"[{absent}; {field.count}]"
+        )
     if field.model.when:
         is_there = field.model.name in field.message.model.fresh
         return f"Some({_one_fresh(field)})" if is_there else "None"
     return f"[{_one_fresh(field)}; {field.count}]" if field.count else _one_fresh(field)
+
+
+def _has_first(field: FieldDescription) -> bool:
+    """Whether a new message has elements of an open end that are not 0."""
+    fields = field.struct.fields if field.struct is not None else (field,)
+    return field.is_open and _fewest(field) > 0 and any(one.fresh for one in fields)
 
 
 def _one_fresh(field: FieldDescription) -> str:

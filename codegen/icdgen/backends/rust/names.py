@@ -95,7 +95,7 @@ def has(field: FieldDescription) -> str:
 
 def open_type(field: FieldDescription) -> str:
     """Type of the elements that are in a frame."""
-    return "[u8]" if field.model.is_bytes else f"[{_one_type(field)}]"
+    return f"[{_one_type(field)}]" if field.count else "[u8]"
 
 
 def _one_type(field: FieldDescription) -> str:

@@ -107,7 +107,7 @@ def _verb(kind: str) -> str:
 def length_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
     if old.tail is not None or new.tail is not None:
-        if old.tail is not None and new.tail is not None and old.least != new.least:
+        if old.tail is not None and new.tail is not None and old.begin != new.begin:
             text = f"{quote(new.name)} has {length_text(new)}, had {length_text(old)}"
             yield Found(text, ("length",), length_text(old), length_text(new))
         return
@@ -145,7 +145,8 @@ def _open_end(message: Message) -> str:
     tail, counter = message.tail, message.counter
     if tail is None or counter is None:
         return "of fixed size"
-    counted = "as many as come" if counter.implied else f"counted by {quote(counter.name)}"
+    plus = f" {'+' if tail.plus > 0 else '-'} {abs(tail.plus):,}" if tail.plus else ""
+    counted = "as many as come" if counter.implied else f"counted by {quote(counter.name)}{plus}"
     return f"up to {tail.most} of {quote(tail.name)}, {counted}"
 
 

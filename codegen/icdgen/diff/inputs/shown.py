@@ -177,7 +177,8 @@ class _Reader:
             end = next(one for one in members if one.name == told["part"])
             implied = implied_count(end, item["length"])
             counter, fields = implied.name, (*fields, implied)
-        return {"fields": fields, "tail": model.Tail(told["part"], counter, told["step"], told["most"])}
+        tail = model.Tail(told["part"], counter, told["step"], told["most"], told.get("plus", 0))
+        return {"fields": tail.counted_in(fields), "tail": tail}
 
     def message(self, item: Map, node: str) -> model.Message:
         return self.row(

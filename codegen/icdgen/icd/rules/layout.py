@@ -196,15 +196,6 @@ def order_of_nothing(ctx: Context) -> Iterator[Fault]:
                 yield Fault(field.source, field.source.at(key), message, f"remove `{key}`")
 
 
-@rule("ICD028")
-def array_of_numbers(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.having["count"]:
-        if field.is_bytes:
-            what = "an array of them is one field of bytes" if field.type == "bytes" else "write a field for each text"
-            message = f"{quote(field.name)} is `{field.type}`, and the elements of an array are numbers"
-            yield Fault(field.source, field.source.at("count"), message, what)
-
-
 @rule("ICD029")
 def view_of_fields(ctx: Context) -> Iterator[Fault]:
     for field, message, node in ctx.having["view"]:

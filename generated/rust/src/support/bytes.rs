@@ -118,6 +118,19 @@ pub(crate) fn structs<T: Copy, const SIZE: usize, const N: usize>(
     values
 }
 
+/// `N` rows of `SIZE` bytes, from `at` on.
+#[inline(always)]
+pub(crate) fn arrays<const SIZE: usize, const N: usize>(
+    bytes: &[u8],
+    at: usize,
+) -> [[u8; SIZE]; N] {
+    let mut rows = [[0; SIZE]; N];
+    for (index, row) in rows.iter_mut().enumerate() {
+        *row = array(bytes, at + index * SIZE);
+    }
+    rows
+}
+
 /// Puts values, of each the `SIZE` bytes that `word` makes of it, from `at` on.
 #[inline(always)]
 pub(crate) fn put_words<T: Copy, const SIZE: usize, const N: usize>(

@@ -13,13 +13,15 @@ mod bytes;
 mod curve;
 mod field;
 mod message;
+#[cfg(feature = "serde")]
+pub(crate) mod octets;
 mod scale;
 mod tail;
 mod text;
 mod wide;
 
 pub(crate) use self::bytes::{
-    array, element_of, flags, put, put_array, put_element, put_words, structs, take, words,
+    array, arrays, element_of, flags, put, put_array, put_element, put_words, structs, take, words,
     write_to,
 };
 pub(crate) use self::curve::Curve;
@@ -29,7 +31,7 @@ pub(crate) use self::message::{enumeration, message, shown, structure};
 pub use self::message::{Message, Telecommand, Telemetry};
 pub(crate) use self::scale::{there, Scale};
 pub use self::tail::Frame;
-pub(crate) use self::tail::{counted, elements, longest, present, write_frame};
+pub(crate) use self::tail::{counted, elements, first, longest, number, present, write_frame};
 pub(crate) use self::text::{text, text_array};
 pub(crate) use self::wide::{Big, Wide};
 

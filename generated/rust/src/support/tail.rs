@@ -69,30 +69,49 @@ pub(crate) fn longest<const N: usize>(
     }
 }
 
-/// Whether a frame says of itself how many elements it has: `told`, of `step` bytes behind `least`.
+/// Whether a frame says of itself how many elements it has: `told`, which is `low` in a frame of `least` bytes, and one more for
+/// each `step` bytes.
 pub(crate) fn counted(
     told: impl TryInto<usize>,
+    low: usize,
     least: usize,
     step: usize,
     actual: usize,
 ) -> Result<(), Error> {
     let told = told.try_into().unwrap_or(usize::MAX);
-    match least.saturating_add(told.saturating_mul(step)) {
+    let expected = least.saturating_add(told.saturating_mul(step));
+    match expected.saturating_sub(low * step) {
         expected if expected == actual => Ok(()),
         expected => Error::length(expected, actual),
     }
 }
 
-/// How many elements there are, if that is not too many.
+/// How many elements there are beside those of every frame, if the count is one of `low` to `high`.
 pub(crate) fn elements(
     field: &'static str,
     count: impl TryInto<usize>,
-    most: usize,
+    low: usize,
+    high: usize,
 ) -> Result<usize, Error> {
     match count.try_into() {
-        Ok(count) if count <= most => Ok(count),
+        Ok(count) if (low..=high).contains(&count) => Ok(count - low),
         _ => Err(Error::Range { field }),
     }
+}
+
+/// How many elements there are, `fewest` where the count is `low`.
+pub(crate) fn number(count: impl TryInto<usize>, low: usize, fewest: usize) -> usize {
+    let count = count.try_into().unwrap_or(usize::MAX);
+    count.saturating_sub(low).saturating_add(fewest)
+}
+
+/// So many elements that are there, and others that are not.
+pub(crate) fn first<T: Copy, const N: usize>(count: usize, present: T, absent: T) -> [T; N] {
+    let mut elements = [absent; N];
+    for element in elements.iter_mut().take(count) {
+        *element = present;
+    }
+    elements
 }
 
 /// The elements that are in the frame.

@@ -73,7 +73,7 @@ macro_rules! message {
         $crate::support::message!($type as [u8; <$type>::LENGTH] { $($rows)* });
     };
     ($type:ident as $bytes:ty {
-        $($member:ident $(up to $counter:ident)?: ($($place:tt)*) $(.$what:ident($($how:tt)*))*,)*
+        $($member:ident $(as $elements:ident)?: ($($place:tt)*) $(.$what:ident($($how:tt)*))*,)*
     }) => {
         impl $crate::Message for $type {
             const NAME: &'static str = <$type>::NAME;
@@ -109,7 +109,7 @@ macro_rules! message {
             fn fmt(&self, out: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
                 #[allow(unused_mut, unused_variables)]
                 let mut row = $crate::support::Row::begin::<Self>(out)?;
-                $(row.show(out, $crate::support::shown!(self, $member $(, $counter)?))?;)*
+                $(row.show(out, $crate::support::shown!(self, $member $(, $elements)?))?;)*
                 Ok(())
             }
         }
@@ -167,8 +167,8 @@ macro_rules! shown {
     ($message:ident, $member:ident) => {
         &$message.$member
     };
-    ($message:ident, $member:ident, $counter:ident) => {
-        $crate::support::present(&$message.$member, $message.$counter)
+    ($message:ident, $member:ident, $elements:ident) => {
+        $message.$elements()
     };
 }
 pub(crate) use shown;

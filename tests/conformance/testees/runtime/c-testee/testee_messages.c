@@ -329,10 +329,12 @@ static void decode(void)
 static void encode(void)
 {
     subject_t subject;
+    const char **words;
     size_t i;
     if (!find(&subject)) {
         return;
     }
+    words = (const char **)memory((subject.message->field_count + 1u) * sizeof *words);
     subject.message->init(subject.value);
     for (i = 0; i < subject.message->field_count; i++) {
         const testee_field_t *field = &subject.message->fields[i];
@@ -344,6 +346,12 @@ static void encode(void)
         if (!fits) {
             refuse_at(i);
             return;
+        }
+        words[i] = word;
+    }
+    for (i = 0; i < subject.message->field_count; i++) { /* a text sets what counts it, too */
+        if (*words[i] == 'r') {
+            (void)take_raw(&subject.message->fields[i], subject.value, words[i] + 1);
         }
     }
     put_message(&subject);

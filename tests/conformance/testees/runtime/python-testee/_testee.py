@@ -106,10 +106,8 @@ def _set(held: Held, words: Words) -> None:
     try:
         if word == "n":
             setattr(owner, info.attribute, None)
-        elif word[0] == "p" and info.type == "text":
-            setattr(owner, info.physical, bytes.fromhex(word[1:]).decode())
         elif word[0] == "p":
-            setattr(owner, info.physical, _floats.float64(int(word[1:])))
+            setattr(owner, info.physical, _physical(info, word[1:]))
         elif info.is_open and len(word) != 1 + info.bits // 4:
             raise Refusal(f"range field={_hex(held.name)}")
         else:
@@ -124,7 +122,7 @@ def _set_elements(held: Held, words: Words) -> None:
     info, owner = held.info, held.owner
     for index, word in zip(range(info.elements), words):
         if word[0] == "p":
-            given = (_floats.float64(int(word[1:])),) * info.elements
+            given = (_physical(info, word[1:]),) * info.elements
             try:
                 setattr(owner, info.physical, given)
             except RangeError:
@@ -177,7 +175,7 @@ def _cut(message: Message, words: Words) -> None:
     """Leaves the elements that are to be in the frame."""
     tail: Any = message.TAIL
     if tail.counter:
-        count = getattr(message, tail.counter)
+        count = getattr(message, tail.counter) + tail.plus
     else:
         count = int(next(words)[1:])
         if not 0 <= count <= tail.most:
@@ -215,6 +213,8 @@ class Element:
         if self.index < len(value):
             return value[self.index]
         _, c, q = info.scale  # it is not in the frame
+        if info.type in ("bytes", "text"):
+            return "" if attribute == info.physical else bytes(info.bits // 8)
         if attribute == info.physical:
             return c / q
         return info.enum(0) if info.enum else 0.0 if info.type == "float" else 0
@@ -241,6 +241,15 @@ def _elements(message: Message) -> list[Element]:
         for held in found
         for index in range(held.info.elements or 1)
     ]
+
+
+def _physical(info: FieldInfo, word: str) -> Any:
+    """A physical value as it is given: of text the characters."""
+    return (
+        bytes.fromhex(word).decode()
+        if info.type == "text"
+        else _floats.float64(int(word))
+    )
 
 
 def _raw(info: FieldInfo, word: str) -> Any:

@@ -26,7 +26,8 @@ function messageOf(node, direction, word) {
 }
 
 /** What not every frame of a message has all of. */
-const endOf = (plan) => (plan.endsEarly ? { least: 1, step: 1 } : plan.tail);
+const endOf = (plan) => (plan.endsEarly ? { least: 1, step: 1 } : plan.tail && shortest(plan.tail));
+const shortest = ({ least, step, plus = 0 }) => ({ least: least + Math.max(0, plus) * step, step });
 
 /** Name and bytes of the message that a frame of a shared id is. */
 function told(candidates, frame) {

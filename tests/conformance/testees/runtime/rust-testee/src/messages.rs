@@ -247,11 +247,15 @@ fn decode<M: Subject>(words: &mut Words, id: u32, dispatcher: Option<Dispatcher>
 
 fn encode<M: Subject>(words: &mut Words) -> Answer {
     let mut message = M::default();
+    let mut raw = Vec::new();
     for (place, field) in M::FIELDS.iter().enumerate() {
         if matches!(field.value, Place::View(_)) {
             break;
         }
         let (kind, given) = words.word().split_at(1);
+        if kind == "r" {
+            raw.push((place, field, given));
+        }
         match (&field.scale, &field.text) {
             (Some(scale), _) if kind == "p" => (scale.set)(&mut message, double(given))?,
             (_, Some(text)) if kind == "p" => {
@@ -259,6 +263,9 @@ fn encode<M: Subject>(words: &mut Words) -> Answer {
             }
             _ => take(field, place, &mut message, given)?,
         }
+    }
+    for (place, field, given) in raw {
+        take(field, place, &mut message, given)?; // a text sets what counts it, too
     }
     described(&mut message)
 }
