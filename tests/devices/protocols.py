@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.devices import can, cygnss, mavlink, sbp, sunspec, ubx, xtce
+from tests.devices import can, cygnss, kaitai, mavlink, sbp, sunspec, ubx, xtce
 from tests.devices.definition import Protocol
 
 PROTOCOLS = {
@@ -15,5 +15,6 @@ PROTOCOLS = {
         Protocol("cygnss", "ccsdspy", cygnss.packets),
         Protocol("sunspec", "pysunspec2", sunspec.models),
         Protocol("xtce", "space-packet-parser", xtce.packets),
+        Protocol("kaitai", "satnogs-decoders through kaitaistruct", kaitai.satellites),
     )
 }

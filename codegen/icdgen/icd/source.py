@@ -69,7 +69,7 @@ def parse(data: bytes, name: str) -> Map:
         place = _after(name, data[: error.start].decode("utf-8-sig"))
         problem = f"byte 0x{data[error.start]:02X} is not UTF-8"
         raise Findings([Finding("ICD001", problem, place, "save the file as UTF-8")]) from None
-    tree, findings = _Builder(text, name).build()
+    tree, findings = Builder(text, name).build()
     if not findings and tree is None:
         findings = [Finding("ICD001", "the file is empty", Place(name), "an ICD begins with `icdgen: 1`")]
     elif not findings and not isinstance(tree, Map):
@@ -98,7 +98,7 @@ class EventParser(Protocol):
     def get_event(self) -> Any: ...  # an `Event`; of which class tells what it is
 
 
-class _Builder:
+class Builder:
     """Builds the tree from parser events with a stack of its own, so that depth is ours to limit."""
 
     def __init__(self, text: str, name: str) -> None:

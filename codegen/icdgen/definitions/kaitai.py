@@ -1,0 +1,177 @@
+"""Kaitai Struct (.ksy): the sequence of a format as messages, one for each way in which it goes on."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+
+from icdgen.definitions.frames import ORDERS, usual
+from icdgen.definitions.kaitai_layout import File, Key, Layout, Part, Undecided
+from icdgen.definitions.kaitai_types import Type, declared, mapping
+from icdgen.definitions.kaitai_yaml import parse
+from icdgen.definitions.model import Definitions, Item, Network, NotHeld
+from icdgen.definitions.wording import line, node_name, summary
+
+MOST_MESSAGES = 256
+_META = re.compile(r"^meta:[ \t]*(?:#.*)?\r?\n(?:[ \t]*(?:#.*)?\r?\n)*[ \t]+\w", re.MULTILINE)
+_BODY = re.compile(r"^(?:seq|types|instances|enums|doc):", re.MULTILINE)
+_MOST_BYTES = 65_535
+_MOST_ELEMENTS = 1024
+_ID, _ID_BITS = 1, 8  # no frame of Kaitai has an id but in its data
+
+
+class Kaitai:
+    """What of the language says where fields stand, without programs."""
+
+    name = "ksy"
+    title = "a format of Kaitai Struct"
+    needs: tuple[str, ...] = ()
+
+    def knows(self, start: str) -> bool:
+        return _META.search(start) is not None and _BODY.search(start) is not None
+
+    def read(self, file: str, data: bytes) -> Definitions:
+        """Raises `Findings` for what is no YAML, or no .ksy."""
+        body = parse(file, data)
+        to = Definitions(file)
+        shared = File(to)
+        meta = mapping(body, "meta")
+        name = str(meta.get("id") or node_name(file))
+        layouts = _messages(declared(name, body), shared)
+        order = usual(part.place for layout in layouts for part in layout.parts if part.is_ordered)
+        network = Network(node_name(file), line(str(meta.get("title") or name), 100), {**ORDERS[order]})
+        network.head["id_bits"] = _ID_BITS
+        for struct in shared.structs.values():
+            inside: Layout = struct["parts"]
+            network.structs.append({"name": struct["name"], "length": struct["length"], "fields": _fields(inside, order)})
+        for layout, called in zip(layouts, _names(name, layouts), strict=True):
+            if not any(part.is_whole for part in layout.parts):
+                to.left_out(called, "none of its fields is")
+                continue
+            made: Item = {"name": called, "id": _ID, "kind": "telemetry", "length": -(-layout.at // 8)}
+            made |= summary(str(body.get("doc") or "")) if len(layouts) == 1 else {}
+            network.messages.append({**made, "fields": _fields(layout, order)})
+        declared_enums = shared.enums.declared()
+        used = {one.get("enum") for owner in (*network.messages, *network.structs) for one in owner["fields"]}
+        network.enums = [one for one in declared_enums if one["name"] in used]
+        to.networks.append(network)
+        return to
+
+
+def _messages(root: Type, shared: File) -> list[Layout]:
+    """A layout for each way in which values decide what comes next, in the order of the file."""
+    found: list[Layout] = []
+    left: list[dict[Key, int | None]] = [{}]
+    while left:
+        decided = left.pop()
+        layout = Layout(shared, decided)
+        try:
+            layout.read(root)
+        except Undecided as asked:
+            left += [{**decided, asked.key: option} for option in reversed(asked.options)]
+            continue
+        except NotHeld as why:
+            shared.to.total += 1
+            shared.to.left_out(root.name, why)
+            continue
+        shared.to.total += 1
+        found.append(layout)
+        if len(found) >= MOST_MESSAGES and left:
+            shared.to.total += 1
+            shared.to.left_out(root.name, f"it goes on in more than {MOST_MESSAGES} ways; the others are not held")
+            break
+    return found
+
+
+def _names(name: str, layouts: list[Layout]) -> list[str]:
+    """What was decided tells messages apart, with the values where the words do not."""
+    words = [" ".join([name, *(label.word for label in one.labels if label.word)]) for one in layouts]
+    times = Counter(words)
+    said = [
+        text if times[text] == 1 else " ".join([name, *(f"{label.word} {label.value}".strip() for label in one.labels)])
+        for text, one in zip(words, layouts, strict=True)
+    ]
+    times = Counter(said)
+    seen: Counter[str] = Counter()
+    made = []
+    for text in said:
+        seen[text] += 1
+        made.append(text if times[text] == 1 else f"{text} {seen[text]}")
+    return [line(text, 200) for text in made]
+
+
+def _fields(layout: Layout, order: str) -> list[Item]:
+    """The parts as fields; bits on which something depends become fields of their own, and the whole a view."""
+    fields: list[Item] = []
+    room = _MOST_BYTES - -(-layout.at // 8)
+    for part, name in zip(layout.parts, shortest([one.path for one in layout.parts]), strict=True):
+        item = part.item
+        if not part.bits:
+            element = part.piece.bits // 8 or 1
+            size: Item = {} if "count" in item else {"size": "rest"}
+            most = min(room // element, _MOST_ELEMENTS) if "count" in item else room
+            fields.append({"at": part.at, "name": name, **item, **size, "up_to": most})
+        elif "struct" in item:
+            fields.append({"at": part.at, "name": name, **item})
+        elif not part.mask:
+            fields.append(_again(item, {**_placed(part, part.at, part.bits, order), "name": name, **item}))
+        elif part.mask == (1 << part.bits) - 1:
+            value = part.value - (1 << part.bits) if item["type"] == "int" and part.value >> part.bits - 1 else part.value
+            kind = {"type": "uint"} if item["type"] == "bool" else {}  # a flag has no constant
+            said = {**_placed(part, part.at, part.bits, order), "name": name, **item, **kind, "const": value}
+            fields.append(_again(item, said))
+        else:
+            fields += _divided(part, name, order)
+    return fields
+
+
+def _divided(part: Part, name: str, order: str) -> list[Item]:
+    """The runs of bits that are known, and of those that are not; and the whole as a view."""
+    made: list[Item] = []
+    low = 0
+    is_lsb = part.place.order != "big"
+    while low < part.bits:
+        high = low
+        while high + 1 < part.bits and (part.mask >> high + 1 & 1) == (part.mask >> low & 1):
+            high += 1
+        width = high - low + 1
+        at = part.at + (low if is_lsb else part.bits - 1 - high)
+        called = f"{name} bit {low}" if width == 1 else f"{name} bits {low} to {high}"
+        one: Item = {**_placed(part, at, width, order), "name": called, "type": "uint"}
+        if part.mask >> low & 1:
+            one["const"] = part.value >> low & (1 << width) - 1
+        made.append(one)
+        low = high + 1
+    whole = _again(part.item, {**_placed(part, part.at, part.bits, order), "name": name, **part.item, "view": True})
+    return sorted([*made, whole], key=lambda one: one["at"])
+
+
+def _placed(part: Part, at: int, bits: int, order: str) -> Item:
+    if not part.is_ordered:
+        return {"at": at, "bits": bits}
+    place = part.place._replace(at=at, bits=bits).counted(order)
+    return {"at": place.at, "bits": bits, **(ORDERS[place.order] if place.order != order and bits > 1 else {})}
+
+
+def _again(item: Item, said: Item) -> Item:
+    """The same mapping with other keys: an enumeration is named in it later."""
+    item.clear()
+    item |= said
+    return item
+
+
+def shortest(paths: list[tuple[str, ...]]) -> list[str]:
+    """Of each path the last words that no other ends with."""
+    lengths = [1] * len(paths)
+    while True:
+        names = [" ".join(path[-length:]) for path, length in zip(paths, lengths, strict=True)]
+        times = Counter(names)
+        longer = [
+            number
+            for number, (name, path) in enumerate(zip(names, paths, strict=True))
+            if times[name] > 1 and lengths[number] < len(path)
+        ]
+        if not longer:
+            return names
+        for number in longer:
+            lengths[number] += 1

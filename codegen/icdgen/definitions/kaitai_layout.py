@@ -1,0 +1,456 @@
+"""The sequence of a .ksy as fields one after the other, for one way of deciding all that it makes depend on values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from icdgen.definitions.enumerations import Enumerations
+from icdgen.definitions.frames import BIG, Place
+from icdgen.definitions.kaitai_expressions import Masked, equalities, line_of, masked, number
+from icdgen.definitions.kaitai_types import Piece, Type, built_in, contents, named, sized
+from icdgen.definitions.kaitai_yaml import integer
+from icdgen.definitions.model import Definitions, Item, NotHeld
+from icdgen.definitions.wording import line, summary, unit
+from icdgen.icd.located import Map
+
+RAW_ONLY, AS_BYTES = "IMP078", "IMP081"
+MOST_STEPS = 100_000  # attributes of all messages
+MOST_FIELDS = 5000
+_MOST_BITS = 8 * 65_535
+_MOST_ELEMENTS = 1024
+_DEEPEST = 50  # types that hold each other
+_WORD = 8  # bytes of the largest number
+
+Key = tuple[tuple[str, ...], int, tuple[int, ...]]  # a field by its path, bits of it, and the values that are asked for
+
+
+class Undecided(Exception):
+    """What comes next depends on a value: one of ``options``, or none of them (None)."""
+
+    def __init__(self, key: Key, options: list[int | None]) -> None:
+        self.key, self.options = key, options
+
+
+class _Ended(Exception):
+    """The rest of what is being read is held as bytes."""
+
+
+class Label(NamedTuple):
+    """What a decision adds to the name of the message, and the value that was decided on."""
+
+    word: str
+    value: str
+
+
+@dataclass
+class Part:
+    """A field in its place. Of ``mask`` the bits are known, as ``value`` has them; ``excluded`` are values that it has not."""
+
+    path: tuple[str, ...]
+    item: Item
+    piece: Piece
+    at: int
+    mask: int = 0
+    value: int = 0
+    excluded: set[tuple[int, int]] = field(default_factory=set)
+    is_whole: bool = True  # whether it is what the file defines, and not bytes that stand for it
+
+    @property
+    def bits(self) -> int:
+        """All of it; 0 where it goes on to the end."""
+        count = self.item.get("count", 1)
+        return self.piece.bits * count if isinstance(count, int) else 0
+
+    @property
+    def is_ordered(self) -> bool:
+        """Whether it matters which of its bits or bytes is sent first."""
+        is_number = self.item.get("type", "bytes") not in ("bytes", "text")
+        return is_number and (self.piece.is_bits or self.piece.bits > 8 or (self.mask > 0 and "count" not in self.item))
+
+    @property
+    def place(self) -> Place:
+        return Place(self.at, self.bits, self.piece.order)
+
+
+@dataclass
+class Scope:
+    """What an expression can name within a type."""
+
+    type: Type
+    outer: Scope | None = None
+    names: dict[str, Part | Scope] = field(default_factory=dict)
+
+    def find(self, path: str) -> Part:
+        """Raises `NotHeld`."""
+        here: Part | Scope | None = self
+        for name in path.split("."):
+            if not isinstance(here, Scope):
+                here = None
+            elif name == "_root":
+                while here.outer is not None:
+                    here = here.outer
+            elif name == "_parent":
+                here = here.outer
+            else:
+                here = here.names.get(name)
+        if not isinstance(here, Part):
+            raise NotHeld(f"`{line(path, 80)}` is no number in front of it")
+        return here
+
+
+@dataclass
+class File:
+    """What all messages of a file share."""
+
+    to: Definitions
+    enums: Enumerations = field(default_factory=Enumerations)
+    structs: dict[int, Item] = field(default_factory=dict)  # by the type
+    steps: int = 0
+    said: set[str] = field(default_factory=set)
+
+    def step(self) -> None:
+        """Counts what is done, so that a small file cannot ask for much. Raises `NotHeld`."""
+        self.steps += 1
+        if self.steps > MOST_STEPS:
+            raise NotHeld(f"with it the file says more than {MOST_STEPS:,} things")
+
+    def heard(self, what: str) -> Definitions:
+        """Where to note faults of something: nowhere once they have been."""
+        is_new = what not in self.said
+        self.said.add(what)
+        return self.to if is_new else Definitions("")
+
+    def note(self, code: str, message: str, help: str, severity: str, at: int | None) -> None:
+        """Once, however many messages it concerns."""
+        if message not in self.said:
+            self.said.add(message)
+            self.to.warn(code, message, help, severity, at)
+
+
+@dataclass
+class Layout:
+    """Walks the root type. ``decided`` are the values of fields on which something depends."""
+
+    file: File
+    decided: dict[Key, int | None]
+    is_struct: bool = False
+    at: int = 0
+    parts: list[Part] = field(default_factory=list)
+    labels: list[Label] = field(default_factory=list)
+    ends: list[int] = field(default_factory=list)  # of the parts with a size of their own that are being read
+    open: bool = False
+
+    def read(self, root: Type) -> None:
+        """Raises `NotHeld`, and `Undecided`."""
+        try:
+            self.type(root, Scope(root), (), (root,))
+        except _Ended:
+            return
+
+    def type(self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]) -> None:
+        """The attributes of a type, and what is computed from them."""
+        for index, one in enumerate(type_.seq):
+            self.file.step()
+            if len(self.parts) > MOST_FIELDS or self.at > _MOST_BITS:
+                raise NotHeld(f"it has more than {MOST_FIELDS} fields or {_MOST_BITS // 8} bytes")
+            name = str(one.get("id") or f"unnamed{index}")
+            where = (*path, name)
+            known = False
+            try:
+                if self.open:
+                    raise NotHeld("it stands behind a part whose size is not fixed")
+                if "if" in one and not self._is_there(one, name, scope):
+                    continue
+                known = True
+                self._attribute(one, name, where, scope, within)
+            except NotHeld as why:
+                self._as_bytes(one, where, why, known)
+        self._instances(type_, scope, path)
+
+    def _attribute(
+        self, one: Map, name: str, where: tuple[str, ...], scope: Scope, within: tuple[Type, ...]
+    ) -> None:
+        if "process" in one:
+            raise NotHeld(f"its bytes are processed by `{line(str(one['process']), 60)}` before they are read")
+        if (always := contents(one)) is not None:
+            self._constant(where, always, one)
+            return
+        name_of_type = one.get("type", "")
+        if isinstance(name_of_type, Map):
+            chosen = self._switched(name_of_type, scope)
+            if chosen is None:
+                return
+            name_of_type = chosen
+        piece = built_in(str(name_of_type or ""), one, scope.type)
+        count = self._count(one)
+        if piece is not None:
+            part = self._place(where, piece, count, one, scope)
+            scope.names[name] = part
+            return
+        if "(" in str(name_of_type):
+            raise NotHeld(f"the type `{line(str(name_of_type), 60)}` has parameters")
+        inner = scope.type.find(str(name_of_type))
+        if any(inner is other for other in within):
+            circle = " -> ".join(other.name for other in (*within, inner))
+            raise NotHeld(f"types hold each other in a circle: {line(circle, 200)}")
+        if len(within) >= _DEEPEST:
+            raise NotHeld(f"more than {_DEEPEST} types hold each other")
+        if count is not None:
+            self._structs(where, inner, count, one, within)
+            return
+        below = Scope(inner, scope)
+        scope.names[name] = below
+        self._within(one, inner, below, where, within)
+
+    def _within(self, one: Map, inner: Type, below: Scope, where: tuple[str, ...], within: tuple[Type, ...]) -> None:
+        """The fields of a type that stands here once, in so many bytes if it says so."""
+        if "size" in one and sized(one) is None:
+            raise NotHeld(f"its size is `{line(str(one['size']), 80)}`")
+        size = sized(one)
+        if size is None:
+            self.type(inner, below, where, (*within, inner))
+            return
+        self._align()
+        end = self.at + 8 * size
+        if self.ends and end > self.ends[-1]:
+            raise NotHeld(f"its {size} bytes are more than there are around it")
+        self.ends.append(end)
+        try:
+            self.type(inner, below, where, (*within, inner))
+        except _Ended:
+            pass
+        finally:
+            self.ends.pop()
+        if self.at > end:
+            raise NotHeld(f"it has more than the {size} bytes that are there for it")
+        self.at = end
+
+    def _count(self, one: Map) -> int | str | None:
+        """How often it is there: a number, or to the end (`rest`)."""
+        repeat = one.get("repeat")
+        if repeat is None:
+            return None
+        if repeat == "eos":
+            if self.ends:
+                raise NotHeld("it is repeated to the end of what is around it")
+            return "rest"
+        said = one.get("repeat-expr")
+        count = integer(said) if isinstance(said, str) else said
+        if repeat != "expr" or not isinstance(count, int):
+            raise NotHeld(f"it is repeated as often as `{line(str(said or one.get('repeat-until')), 80)}` says")
+        if not 1 <= count <= _MOST_ELEMENTS:
+            raise NotHeld(f"it is repeated {count} times")
+        return count
+
+    def _align(self) -> None:
+        self.at = -(-self.at // 8) * 8
+
+    def _place(self, where: tuple[str, ...], piece: Piece, count: int | str | None, one: Map, scope: Scope) -> Part:
+        """Puts a number, a text or bytes where the last part ended."""
+        if not piece.is_bits:
+            self._align()
+        elif self.at % 8 and self.parts and self.parts[-1].piece.is_bits and self.parts[-1].piece.order != piece.order:
+            raise NotHeld("its bits are counted from the other end than those in front of it, within a byte")
+        if not piece.bits and self.ends:
+            piece.bits = self.ends[-1] - self.at
+            if piece.bits <= 0:
+                raise NotHeld("there is no byte left for it")
+        if "enum" in one:
+            reference = str(one["enum"])
+            named(piece.item, piece.bits, reference, scope.type, self.file.enums, self.file.heard(reference))
+        if count is not None:
+            if piece.item["type"] == "bytes" or not piece.bits:
+                raise NotHeld("it is an array of what is no number")
+            piece.item |= {"bits": piece.bits, "count": count}
+        piece.item |= summary(str(one.get("doc") or "")) | unit(_unit(one))
+        part = Part(where, piece.item, piece, self.at)
+        self._valid(part, one.get("valid"), scope)
+        if self.ends and self.at + part.bits > self.ends[-1]:
+            raise NotHeld("it goes beyond the bytes that are there for it")
+        self._add(part)
+        return part
+
+    def _add(self, part: Part) -> None:
+        self.parts.append(part)
+        self.at += part.bits
+        self.open = not part.bits
+
+    def _valid(self, part: Part, said: Any, scope: Scope) -> None:
+        """The only value, or the limits, if that is what is valid."""
+        item = part.item
+        if said is None or item["type"] not in ("uint", "int", "enum", "bool") or "count" in item:
+            return
+        equal = said.get("eq") if isinstance(said, Map) else said
+        if equal is not None and not isinstance(equal, float):
+            value = number(str(equal), scope.type.members)
+            part.mask = (1 << part.bits) - 1
+            part.value = value & part.mask
+        elif isinstance(said, Map) and item["type"] in ("uint", "int"):
+            for key in ("min", "max"):
+                if isinstance(said.get(key), int):
+                    item[key] = said[key]
+
+    def _constant(self, where: tuple[str, ...], always: bytes, one: Map) -> None:
+        """Bytes that are always the same, as numbers."""
+        self._align()
+        for start in range(0, len(always), _WORD):
+            data = always[start : start + _WORD]
+            name = where if len(always) <= _WORD else (*where, str(start // _WORD + 1))
+            item = {"type": "uint", **(summary(str(one.get("doc") or "")) if not start else {})}
+            bits = 8 * len(data)
+            self._add(Part(name, item, Piece(item, bits), self.at, (1 << bits) - 1, int.from_bytes(data, "big")))
+
+    def _structs(
+        self, where: tuple[str, ...], inner: Type, count: int | str, one: Map, within: tuple[Type, ...]
+    ) -> None:
+        """An array of what a type is. Raises `NotHeld` if that is not always alike."""
+        self._align()
+        layout = Layout(self.file, {}, is_struct=True)
+        try:
+            layout._within(one, inner, Scope(inner), (), (*within, inner) if sized(one) is None else within)
+        except Undecided as error:
+            raise NotHeld(f"what each of them has depends on `{error.key[0][-1]}`") from None
+        if layout.open or layout.at % 8 or not layout.at:
+            raise NotHeld("they are not of a fixed number of bytes")
+        item: Item = {"struct": inner.name, "count": count, **summary(str(one.get("doc") or ""))}
+        known = self.file.structs.setdefault(id(inner), {"name": inner.name, "length": layout.at // 8, "parts": layout})
+        if known["length"] != layout.at // 8:
+            raise NotHeld("they are not as long as elsewhere")
+        part = Part(where, item, Piece(item, layout.at), self.at)
+        if self.ends and self.at + part.bits > self.ends[-1]:
+            raise NotHeld("it goes beyond the bytes that are there for it")
+        self._add(part)
+
+    def _as_bytes(self, one: Map, where: tuple[str, ...], why: NotHeld, known: bool) -> None:
+        """Holds what cannot be told further as bytes: as many as it has, or all that are left. Raises `NotHeld` in a struct."""
+        if self.is_struct:
+            raise why
+        try:
+            size = sized(one) if known and "repeat" not in one else None
+        except NotHeld:
+            size = None
+        line_number = one.place.line
+        message = f"`{' '.join(where)}` is not held: {why}"
+        if self.open:
+            self.file.note(AS_BYTES, message, "nothing of it is held", "error", line_number)
+            raise _Ended
+        self._align()
+        if size is None and self.ends:
+            size = (self.ends[-1] - self.at) // 8
+            self._bytes(where, 8 * size)
+            self.at = self.ends[-1]
+            self.file.note(AS_BYTES, message, "its bytes are held, with those of what follows", "error", line_number)
+            raise _Ended
+        self._bytes(where, 8 * (size or 0), is_open=size is None)
+        if size is None:
+            self.file.note(AS_BYTES, message, "the bytes up to the end of the frame are held", "error", line_number)
+            raise _Ended
+        self.file.note(AS_BYTES, message, "its bytes are held", "error", line_number)
+
+    def _bytes(self, where: tuple[str, ...], bits: int, is_open: bool = False) -> None:
+        if bits > 0 or is_open:
+            item: Item = {"type": "bytes"}
+            self._add(Part(where, item, Piece(item, bits), self.at, is_whole=False))
+
+    # what depends on values
+
+    def _is_there(self, one: Map, name: str, scope: Scope) -> bool:
+        """Whether an attribute with `if` is in this message. Raises `NotHeld`."""
+        asked = equalities(one["if"])
+        if len(asked) > 1 and any(each.is_negated for each in asked):
+            raise NotHeld(f"it depends on `{line(str(one['if']), 80)}`, which is more than equalities of fields")
+        for each in asked:
+            value = number(each.value, scope.type.members)
+            found, is_new = self._choose(each.of, [value], scope, is_else=True)
+            is_met = (found is not None) != each.is_negated
+            if is_new:
+                self.labels.append(Label(f"with {name}" if is_met else "", "" if found is None else f"{value}"))
+            if not is_met:
+                return False
+        return True
+
+    def _switched(self, switch: Map, scope: Scope) -> str | None:
+        """The type that is there in this message; None for none. Raises `NotHeld`."""
+        cases = switch.get("cases")
+        if not isinstance(cases, Map):
+            raise NotHeld("a switch has no cases")
+        types = {number(key, scope.type.members): str(of) for key, of in cases.items() if key != "_"}
+        of = masked(switch.get("switch-on"))
+        found, is_new = self._choose(of, list(types), scope, is_else="_" in cases)
+        chosen = str(cases["_"]) if found is None and "_" in cases else None if found is None else types[found]
+        if is_new and chosen is not None:
+            self.labels.append(Label(chosen, "other" if found is None else f"{found}"))
+        return chosen
+
+    def _choose(self, of: Masked, options: list[int], scope: Scope, is_else: bool) -> tuple[int | None, bool]:
+        """Which of the values some bits of a field have in this message, None for another; and whether that is news."""
+        part = scope.find(of.path)
+        item = part.item
+        if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
+            raise NotHeld(f"it depends on `{of.path}`, which is no whole number")
+        whole = (1 << part.bits) - 1
+        mask = whole if of.mask is None else of.mask & whole
+        raw = {option & mask: option for option in options if option in (option & mask, (option & mask) - whole - 1)}
+        if part.mask & mask == mask:
+            return raw.get(part.value & mask), False
+        common = part.mask & mask
+        possible = [
+            value for value in raw if not (value ^ part.value) & common and (mask, value) not in part.excluded
+        ]
+        key = (part.path, mask, tuple(possible))
+        free = mask & ~part.mask
+        is_all = len(possible) == 1 << free.bit_count()
+        if not possible:
+            return None, False
+        if key not in self.decided:
+            raise Undecided(key, [*possible, *([None] if is_else and not is_all else [])])
+        chosen = self.decided[key]
+        if chosen is None and free.bit_count() == 1 and len(possible) == 1:
+            part.mask, part.value = part.mask | mask, part.value & ~mask | (possible[0] ^ free)
+        elif chosen is None:
+            part.excluded |= {(mask, value) for value in possible}
+        else:
+            part.mask, part.value = part.mask | mask, part.value & ~mask | chosen
+        return (None if chosen is None else raw[chosen]), True
+
+    def _instances(self, type_: Type, scope: Scope, path: tuple[str, ...]) -> None:
+        """Formulas of fields, where an instance is a line over one."""
+        for name, one in type_.instances.items():
+            if not isinstance(one, Map):
+                continue
+            where = " ".join((*path, name))
+            if "value" not in one:
+                text = f"`{where}` is not held: it stands where an expression says"
+                self.file.note(AS_BYTES, text, "what the sequence has is held", "error", one.place.line)
+                continue
+            if not self._formula(one, scope):
+                said = line(str(one["value"]), 80)
+                text = f"`{where}`: `{said}` is no line over one field"
+                self.file.note(RAW_ONLY, text, "the fields that it is computed from are held", "warning", one.place.line)
+
+    def _formula(self, one: Map, scope: Scope) -> bool:
+        if isinstance(one["value"], (int, float)):
+            return True  # a constant, of which nothing is sent
+        found = line_of(one["value"], is_integer=False)
+        if found is None:
+            return False
+        try:
+            part = scope.find(found[0])
+        except NotHeld:
+            return False
+        item = part.item
+        if item.get("type") not in ("uint", "int", "float") or "formula" in item or "view" in item:
+            return False
+        if item["type"] != "float" and line_of(one["value"], is_integer=True) is None:
+            return False
+        if found[1] != "raw":
+            item |= {"formula": found[1], **unit(_unit(one))}
+            if "summary" not in item:
+                item |= summary(str(one.get("doc") or ""))
+        return True
+
+
+def _unit(one: Map) -> str:
+    """That of the key which files of Kaitai use for it; the language itself has none."""
+    return str(one.get("-unit") or "")
