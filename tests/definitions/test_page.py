@@ -46,3 +46,11 @@ def test_the_space_packet_becomes_what_the_page_shows(tmp_path):
     read = run.read(tmp_path / "probe.xml", kinds.get("xtce"))
     (tree,) = read.trees.values()
     assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[1])
+
+
+def test_the_format_of_kaitai_becomes_what_the_page_shows(tmp_path):
+    (tmp_path / "beacon.ksy").write_text(blocks("ksy")[0])
+    read = run.read(tmp_path / "beacon.ksy", kinds.of(tmp_path / "beacon.ksy"))
+    (tree,) = read.trees.values()
+    assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[2])
+    assert read.definitions.troubles == []

@@ -18,18 +18,32 @@ from icdgen.diagnostics import Findings
 from tests.devices import ksy
 from tests.devices.definition import Definition, Definitions, NotHeld, Values
 
-_BEHIND = 4096
+FORMATS = (
+    "co65",
+    "cas4",
+    "connectat11",
+    "us6",
+    "cubebel1",
+    "armadillo",
+    "acrux1",
+    "catsat",
+    "bisonsat",
+    "cas5a",
+    "cosmo",
+    "cas9",
+)
+_BEHIND = 4096  # bytes of zeros
 
 
 def satellites() -> Iterator[Definitions]:
-    """A node for each format of which something can be told."""
+    """A node for each format."""
     import kaitaistruct  # noqa: F401  (that it is there)
 
     spec = find_spec("satnogsdecoders")
     if spec is None or not spec.submodule_search_locations:
         raise ImportError("satnogs-decoders is not installed")
-    for path in sorted(Path(spec.submodule_search_locations[0], "decoder").glob("[a-z]*.py")):
-        made = node(path)
+    for name in FORMATS:
+        made = node(Path(spec.submodule_search_locations[0], "decoder", f"{name}.py"))
         if made is not None:
             yield made
 
@@ -49,9 +63,7 @@ def node(path: Path) -> Definitions | None:
     judge = _judge(module)
     missing = [one.message for one in read.definitions.troubles if one.code == "IMP070"]
     orders = {key: tree["node"][key] for key in ("byte_order", "bit_order")}
-    structs = [
-        {**one, "fields": [{**orders, **part} for part in one["fields"]]} for one in tree.get("structs", ())
-    ]
+    structs = [{**one, "fields": [{**orders, **part} for part in one["fields"]]} for one in tree.get("structs", ())]
     for one in tree["messages"]:  # of bytes of any number the judge may make something
         one["fields"] = [part for part in one["fields"] if "up_to" not in part]
     messages = [_definition(judge, one, orders, structs) for one in tree["messages"]]
@@ -95,7 +107,7 @@ def _reader(judge: Any, fields: list[dict]) -> Callable[[bytes], Values]:
             raise NotHeld(str(error)) from None
         made: Values = {}
         for part in fields:
-            same = [path for path in found if " ".join(path[-1 - part["name"].count(" "):]) == part["name"]]
+            same = [path for path in found if " ".join(path[-1 - part["name"].count(" ") :]) == part["name"]]
             if len(same) == 1:
                 made |= _values(part, found[same[0]])
             elif part["type" if "type" in part else "struct"] != "bytes" and " bit" not in part["name"]:

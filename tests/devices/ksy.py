@@ -89,7 +89,12 @@ def _repeated(loop: ast.For, name: str) -> dict:
     call = loop.body[-1].value  # type: ignore[attr-defined]
     assert isinstance(call, ast.Call)
     times = count[1] if count else "unknown"
-    return {"id": name, "repeat": "expr", "repeat-expr": int(times) if times.isdigit() else times, **_attribute(call.args[0])}
+    return {
+        "id": name,
+        "repeat": "expr",
+        "repeat-expr": int(times) if times.isdigit() else times,
+        **_attribute(call.args[0]),
+    }
 
 
 def _switched(chain: ast.If, switch: str) -> dict:
@@ -119,7 +124,9 @@ def _instance(statement: ast.stmt) -> str:
 def _expression(value: ast.expr) -> str:
     """As Kaitai writes it."""
     text = re.sub(r"\bself\.", "", ast.unparse(value)).replace("//", "/")
-    text = re.sub(r"\b[A-Z]\w*((?:\.[A-Z]\w*)+)\.([a-z]\w*)", lambda found: f"{_path('Root' + found[1])}::{found[2]}", text)
+    text = re.sub(
+        r"\b[A-Z]\w*((?:\.[A-Z]\w*)+)\.([a-z]\w*)", lambda found: f"{_path('Root' + found[1])}::{found[2]}", text
+    )
     return text.replace("True", "true").replace("False", "false")
 
 

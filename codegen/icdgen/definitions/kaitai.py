@@ -6,7 +6,8 @@ import re
 from collections import Counter
 
 from icdgen.definitions.frames import ORDERS, usual
-from icdgen.definitions.kaitai_layout import File, Key, Layout, Part, Undecided
+from icdgen.definitions.kaitai_layout import Layout
+from icdgen.definitions.kaitai_parts import File, Key, Part, TooMuch, Undecided
 from icdgen.definitions.kaitai_types import Type, declared, mapping
 from icdgen.definitions.kaitai_yaml import parse
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld
@@ -17,6 +18,7 @@ _META = re.compile(r"^meta:[ \t]*(?:#.*)?\r?\n(?:[ \t]*(?:#.*)?\r?\n)*[ \t]+\w",
 _BODY = re.compile(r"^(?:seq|types|instances|enums|doc):", re.MULTILINE)
 _MOST_BYTES = 65_535
 _MOST_ELEMENTS = 1024
+_LONGEST_NAME = 40  # beyond that identifiers of it may be too long
 _ID, _ID_BITS = 1, 8  # no frame of Kaitai has an id but in its data
 
 
@@ -43,7 +45,9 @@ class Kaitai:
         network.head["id_bits"] = _ID_BITS
         for struct in shared.structs.values():
             inside: Layout = struct["parts"]
-            network.structs.append({"name": struct["name"], "length": struct["length"], "fields": _fields(inside, order)})
+            network.structs.append(
+                {"name": struct["name"], "length": struct["length"], "fields": _fields(inside, order)}
+            )
         for layout, called in zip(layouts, _names(name, layouts), strict=True):
             if not any(part.is_whole for part in layout.parts):
                 to.left_out(called, "none of its fields is")
@@ -73,6 +77,8 @@ def _messages(root: Type, shared: File) -> list[Layout]:
         except NotHeld as why:
             shared.to.total += 1
             shared.to.left_out(root.name, why)
+            if isinstance(why, TooMuch):
+                break
             continue
         shared.to.total += 1
         found.append(layout)
@@ -84,7 +90,7 @@ def _messages(root: Type, shared: File) -> list[Layout]:
 
 
 def _names(name: str, layouts: list[Layout]) -> list[str]:
-    """What was decided tells messages apart, with the values where the words do not."""
+    """What was decided tells messages apart, with the values where the words do not; a number where that is long."""
     words = [" ".join([name, *(label.word for label in one.labels if label.word)]) for one in layouts]
     times = Counter(words)
     said = [
@@ -92,12 +98,13 @@ def _names(name: str, layouts: list[Layout]) -> list[str]:
         for text, one in zip(words, layouts, strict=True)
     ]
     times = Counter(said)
-    seen: Counter[str] = Counter()
     made = []
-    for text in said:
-        seen[text] += 1
-        made.append(text if times[text] == 1 else f"{text} {seen[text]}")
-    return [line(text, 200) for text in made]
+    for number, (text, one) in enumerate(zip(said, layouts, strict=True), 1):
+        last = next((label.word for label in reversed(one.labels) if label.word), "")
+        if times[text] > 1 or len(text) > _LONGEST_NAME:
+            text = f"{name} {last} {number}" if last and len(name) + len(last) <= _LONGEST_NAME else f"{name} {number}"
+        made.append(line(text, 200))
+    return made
 
 
 def _fields(layout: Layout, order: str) -> list[Item]:
@@ -116,7 +123,9 @@ def _fields(layout: Layout, order: str) -> list[Item]:
         elif not part.mask:
             fields.append(_again(item, {**_placed(part, part.at, part.bits, order), "name": name, **item}))
         elif part.mask == (1 << part.bits) - 1:
-            value = part.value - (1 << part.bits) if item["type"] == "int" and part.value >> part.bits - 1 else part.value
+            value = (
+                part.value - (1 << part.bits) if item["type"] == "int" and part.value >> part.bits - 1 else part.value
+            )
             kind = {"type": "uint"} if item["type"] == "bool" else {}  # a flag has no constant
             said = {**_placed(part, part.at, part.bits, order), "name": name, **item, **kind, "const": value}
             fields.append(_again(item, said))

@@ -3,129 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
-from icdgen.definitions.enumerations import Enumerations
-from icdgen.definitions.frames import BIG, Place
 from icdgen.definitions.kaitai_expressions import Masked, equalities, line_of, masked, number
+from icdgen.definitions.kaitai_parts import Ended, File, Key, Label, Part, Scope, TooMuch, Undecided
 from icdgen.definitions.kaitai_types import Piece, Type, built_in, contents, named, sized
 from icdgen.definitions.kaitai_yaml import integer
-from icdgen.definitions.model import Definitions, Item, NotHeld
+from icdgen.definitions.model import Item, NotHeld
 from icdgen.definitions.wording import line, summary, unit
 from icdgen.icd.located import Map
 
 RAW_ONLY, AS_BYTES = "IMP078", "IMP081"
-MOST_STEPS = 100_000  # attributes of all messages
 MOST_FIELDS = 5000
 _MOST_BITS = 8 * 65_535
 _MOST_ELEMENTS = 1024
 _DEEPEST = 50  # types that hold each other
 _WORD = 8  # bytes of the largest number
-
-Key = tuple[tuple[str, ...], int, tuple[int, ...]]  # a field by its path, bits of it, and the values that are asked for
-
-
-class Undecided(Exception):
-    """What comes next depends on a value: one of ``options``, or none of them (None)."""
-
-    def __init__(self, key: Key, options: list[int | None]) -> None:
-        self.key, self.options = key, options
-
-
-class _Ended(Exception):
-    """The rest of what is being read is held as bytes."""
-
-
-class Label(NamedTuple):
-    """What a decision adds to the name of the message, and the value that was decided on."""
-
-    word: str
-    value: str
-
-
-@dataclass
-class Part:
-    """A field in its place. Of ``mask`` the bits are known, as ``value`` has them; ``excluded`` are values that it has not."""
-
-    path: tuple[str, ...]
-    item: Item
-    piece: Piece
-    at: int
-    mask: int = 0
-    value: int = 0
-    excluded: set[tuple[int, int]] = field(default_factory=set)
-    is_whole: bool = True  # whether it is what the file defines, and not bytes that stand for it
-
-    @property
-    def bits(self) -> int:
-        """All of it; 0 where it goes on to the end."""
-        count = self.item.get("count", 1)
-        return self.piece.bits * count if isinstance(count, int) else 0
-
-    @property
-    def is_ordered(self) -> bool:
-        """Whether it matters which of its bits or bytes is sent first."""
-        is_number = self.item.get("type", "bytes") not in ("bytes", "text")
-        return is_number and (self.piece.is_bits or self.piece.bits > 8 or (self.mask > 0 and "count" not in self.item))
-
-    @property
-    def place(self) -> Place:
-        return Place(self.at, self.bits, self.piece.order)
-
-
-@dataclass
-class Scope:
-    """What an expression can name within a type."""
-
-    type: Type
-    outer: Scope | None = None
-    names: dict[str, Part | Scope] = field(default_factory=dict)
-
-    def find(self, path: str) -> Part:
-        """Raises `NotHeld`."""
-        here: Part | Scope | None = self
-        for name in path.split("."):
-            if not isinstance(here, Scope):
-                here = None
-            elif name == "_root":
-                while here.outer is not None:
-                    here = here.outer
-            elif name == "_parent":
-                here = here.outer
-            else:
-                here = here.names.get(name)
-        if not isinstance(here, Part):
-            raise NotHeld(f"`{line(path, 80)}` is no number in front of it")
-        return here
-
-
-@dataclass
-class File:
-    """What all messages of a file share."""
-
-    to: Definitions
-    enums: Enumerations = field(default_factory=Enumerations)
-    structs: dict[int, Item] = field(default_factory=dict)  # by the type
-    steps: int = 0
-    said: set[str] = field(default_factory=set)
-
-    def step(self) -> None:
-        """Counts what is done, so that a small file cannot ask for much. Raises `NotHeld`."""
-        self.steps += 1
-        if self.steps > MOST_STEPS:
-            raise NotHeld(f"with it the file says more than {MOST_STEPS:,} things")
-
-    def heard(self, what: str) -> Definitions:
-        """Where to note faults of something: nowhere once they have been."""
-        is_new = what not in self.said
-        self.said.add(what)
-        return self.to if is_new else Definitions("")
-
-    def note(self, code: str, message: str, help: str, severity: str, at: int | None) -> None:
-        """Once, however many messages it concerns."""
-        if message not in self.said:
-            self.said.add(message)
-            self.to.warn(code, message, help, severity, at)
 
 
 @dataclass
@@ -145,7 +38,7 @@ class Layout:
         """Raises `NotHeld`, and `Undecided`."""
         try:
             self.type(root, Scope(root), (), (root,))
-        except _Ended:
+        except Ended:
             return
 
     def type(self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]) -> None:
@@ -164,13 +57,13 @@ class Layout:
                     continue
                 known = True
                 self._attribute(one, name, where, scope, within)
+            except TooMuch:
+                raise
             except NotHeld as why:
                 self._as_bytes(one, where, why, known)
         self._instances(type_, scope, path)
 
-    def _attribute(
-        self, one: Map, name: str, where: tuple[str, ...], scope: Scope, within: tuple[Type, ...]
-    ) -> None:
+    def _attribute(self, one: Map, name: str, where: tuple[str, ...], scope: Scope, within: tuple[Type, ...]) -> None:
         if "process" in one:
             raise NotHeld(f"its bytes are processed by `{line(str(one['process']), 60)}` before they are read")
         if (always := contents(one)) is not None:
@@ -218,7 +111,7 @@ class Layout:
         self.ends.append(end)
         try:
             self.type(inner, below, where, (*within, inner))
-        except _Ended:
+        except Ended:
             pass
         finally:
             self.ends.pop()
@@ -334,18 +227,18 @@ class Layout:
         message = f"`{' '.join(where)}` is not held: {why}"
         if self.open:
             self.file.note(AS_BYTES, message, "nothing of it is held", "error", line_number)
-            raise _Ended
+            raise Ended
         self._align()
         if size is None and self.ends:
             size = (self.ends[-1] - self.at) // 8
             self._bytes(where, 8 * size)
             self.at = self.ends[-1]
             self.file.note(AS_BYTES, message, "its bytes are held, with those of what follows", "error", line_number)
-            raise _Ended
+            raise Ended
         self._bytes(where, 8 * (size or 0), is_open=size is None)
         if size is None:
             self.file.note(AS_BYTES, message, "the bytes up to the end of the frame are held", "error", line_number)
-            raise _Ended
+            raise Ended
         self.file.note(AS_BYTES, message, "its bytes are held", "error", line_number)
 
     def _bytes(self, where: tuple[str, ...], bits: int, is_open: bool = False) -> None:
@@ -395,9 +288,7 @@ class Layout:
         if part.mask & mask == mask:
             return raw.get(part.value & mask), False
         common = part.mask & mask
-        possible = [
-            value for value in raw if not (value ^ part.value) & common and (mask, value) not in part.excluded
-        ]
+        possible = [value for value in raw if not (value ^ part.value) & common and (mask, value) not in part.excluded]
         key = (part.path, mask, tuple(possible))
         free = mask & ~part.mask
         is_all = len(possible) == 1 << free.bit_count()
@@ -427,7 +318,9 @@ class Layout:
             if not self._formula(one, scope):
                 said = line(str(one["value"]), 80)
                 text = f"`{where}`: `{said}` is no line over one field"
-                self.file.note(RAW_ONLY, text, "the fields that it is computed from are held", "warning", one.place.line)
+                self.file.note(
+                    RAW_ONLY, text, "the fields that it is computed from are held", "warning", one.place.line
+                )
 
     def _formula(self, one: Map, scope: Scope) -> bool:
         if isinstance(one["value"], (int, float)):

@@ -25,10 +25,14 @@ def parse(file: str, data: bytes) -> Map:
     tree, findings = _Builder(text, file).build()
     if findings:
         first = findings[0]
-        raise unreadable(file, first.message.replace(" of the format", " of what is read"), first.help, first.place.line or 1)
+        raise unreadable(
+            file, first.message.replace(" of the format", " of what is read"), first.help, first.place.line or 1
+        )
     meta = tree.get("meta") if isinstance(tree, Map) else None
     if not isinstance(tree, Map) or not isinstance(meta, Map):
-        raise unreadable(file, "not a Kaitai Struct definition: it has no `meta`", "a .ksy begins with `meta:` and `seq:`")
+        raise unreadable(
+            file, "not a Kaitai Struct definition: it has no `meta`", "a .ksy begins with `meta:` and `seq:`"
+        )
     return tree
 
 

@@ -1,0 +1,211 @@
+"""Formats of Kaitai Struct become ICDs: their sequence a message, or one for each way in which values let it go on.
+
+What is read of random frames is compared with kaitaistruct's reading in tests/devices.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.definitions import kaitai, kaitai_parts, kinds, run
+from icdgen.diagnostics import Findings
+from tests.definitions.test_can import FILES, field, message
+
+
+@pytest.fixture(scope="module")
+def probe():
+    return imported("probe.ksy")
+
+
+@pytest.fixture(scope="module")
+def frame():
+    return imported("frame.ksy")
+
+
+def imported(name):
+    reader = kinds.of(FILES / name)
+    assert isinstance(reader, kaitai.Kaitai)
+    return run.read(FILES / name, reader)
+
+
+def test_each_way_in_which_values_let_the_sequence_go_on_is_a_message_told_by_them(probe):
+    (tree,) = probe.trees.values()
+    told = [
+        (one["name"], [part["const"] for part in one["fields"] if part["name"] in ("is_late", "kind")])
+        for one in tree["messages"]
+    ]
+    assert told == [
+        ("probe with delay power", [1, 1]), ("probe with delay places", [1, 2]),
+        ("probe power", [0, 1]), ("probe places", [0, 2]),
+    ]  # fmt: skip
+    assert {one["id"] for one in tree["messages"]} == {1} and probe.definitions.total == probe.held == 4
+    assert (
+        field(probe, "probe with delay power", "volts_raw")["at"] == field(probe, "probe power", "volts_raw")["at"] + 16
+    )
+
+
+def test_contents_and_what_alone_is_valid_are_constants(probe):
+    assert (field(probe, "probe power", "sync")["const"], field(probe, "probe power", "version")["const"]) == (
+        0xEB90,
+        2,
+    )
+
+
+def test_lines_over_a_field_are_its_formula_and_other_values_are_said(probe, frame):
+    said = field(probe, "probe power", "temperature_raw")
+    assert (said["formula"], said["unit"]) == ("raw*0.5 - 40", "C")
+    assert field(frame, "frame unnumbered", "current")["formula"] == "raw/1000.0 + 0.5"
+    assert "formula" not in field(frame, "frame unnumbered", "uptime")  # whole numbers are divided without the rest
+    assert [(one.code, one.message) for one in (*probe.definitions.troubles, *frame.definitions.troubles)] == [
+        ("IMP078", "`body total`: `cells[0] + cells[1]` is no line over one field"),
+        ("IMP081", "`header callsign` is not held: its bytes are processed by `ror(1)` before they are read"),
+        ("IMP078", "`header ssid`: `(ssid_raw & 0x0f) >> 1` is no line over one field"),
+        ("IMP078", "`payload halves`: `uptime / 2` is no line over one field"),
+        ("IMP081", "`payload elsewhere` is not held: it stands where an expression says"),
+        ("IMP081", "`payload data` is not held: its size is `size * 2`"),
+    ]
+    assert [one.spot.line for one in frame.definitions.troubles] == [18, 28, 46, 47, 58]
+
+
+def test_types_that_are_repeated_are_structs_and_others_part_of_the_message(probe):
+    (tree,) = probe.trees.values()
+    assert [(one["name"], one["length"], len(one["fields"])) for one in tree["structs"]] == [("place", 8, 2)]
+    assert field(probe, "probe places", "place") | {"at": 0} == {
+        "at": 0,
+        "name": "place",
+        "struct": "place",
+        "count": 2,
+    }
+    assert field(probe, "probe power", "cells")["count"] == 3 and field(probe, "probe power", "kind")["enum"] == "kind"
+
+
+def test_some_bits_that_decide_are_fields_of_their_own_and_the_whole_is_a_view(frame):
+    parts = [one for one in message(frame, "frame unnumbered")["fields"] if one["name"].startswith("control")]
+    assert [(one["name"], one["at"], one["bits"], one.get("const")) for one in parts if "view" not in one] == [
+        ("control bits 0 to 1", 56, 2, 3), ("control bits 2 to 3", 58, 2, None),
+        ("control bit 4", 60, 1, 0), ("control bits 5 to 7", 61, 3, None),
+    ]  # fmt: skip
+    assert [(one["name"], one["at"], one["bits"]) for one in parts if "view" in one] == [("control", 56, 8)]
+
+
+def test_bytes_are_held_of_what_cannot_be_told_further(frame):
+    assert field(frame, "frame unnumbered", "callsign") == {"at": 0, "bits": 48, "name": "callsign", "type": "bytes"}
+    assert field(frame, "frame information", "data")["size"] == "rest"
+    assert message(frame, "frame information")["length"] == 10
+
+
+def test_bits_enumerations_limits_and_ends_arrive(frame):
+    of = {one["name"]: one for one in message(frame, "frame unnumbered")["fields"]}
+    assert (of["low"]["at"], of["high"]["at"], of["limit"]["min"], of["limit"]["max"]) == (120, 124, -40, 85)
+    assert (of["number"]["at"], of["data"]["at"], of["data"]["bits"]) == (136, 144, 24)
+    assert of["current"]["byte_order"] == "big" and of["uptime"]["summary"] == "Since the last reset."
+    assert (of["samples"]["at"], of["samples"]["count"]) == (168, "rest")
+    (tree,) = frame.trees.values()
+    assert [(one["value"], one["name"]) for one in tree["enums"][0]["members"]] == [(0, "off"), (1, "on"), (3, "both")]
+
+
+BYTE = "{id: a, type: u1}"
+
+
+def ksy(*attributes, more=""):
+    return "meta:\n  id: bad\nseq:\n" + "".join(f"  - {one}\n" for one in (BYTE, *attributes)) + more
+
+
+NESTED = "types:\n" + "".join(f"  t{n}:\n    seq: [{{id: x, type: t{n + 1}}}]\n" for n in range(60))
+BROAD = "types:\n" + "".join(
+    f"  t{n}:\n    seq: [{{id: x, type: t{n + 1}}}, {{id: y, type: t{n + 1}}}]\n" for n in range(20)
+) + "  t20:\n    seq: [{id: z, type: u1}]\n"  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("attribute", "more", "says"),
+    [
+        ("{id: b, type: nothing}", "", "`b` is not held: there is no type `nothing`"),
+        ("{id: b, type: t}", "types:\n  t:\n    seq: [{id: c, type: u}]\n  u:\n    seq: [{id: d, type: t}]\n",
+         "`b c d` is not held: types hold each other in a circle: bad -> t -> u -> t"),
+        ("{id: b, type: bad}", "", "`b` is not held: types hold each other in a circle: bad -> bad"),
+        ("{id: b, size: a}", "", "`b` is not held: its size is `a`"),
+        ("{id: b, size: 0}", "", "`b` is not held: its size is 0"),
+        ("{id: b, size: 99999}", "", "`b` is not held: its size is 99999"),
+        ("{id: b, type: str}", "", "`b` is not held: nothing says its size"),
+        ("{id: b, type: strz, encoding: ASCII}", "", "`b` is not held: its size is not said: it ends at a terminator"),
+        ("{id: b, type: u2}", "", "`b` is not held: nothing says in which order the bytes of `u2` are"),
+        ("{id: b, type: b65}", "", "`b` is not held: an integer has 65 bits"),
+        ("{id: b, type: f2be}", "", "`b` is not held: there is no type `f2be`"),
+        ("{id: b, type: u1, enum: e}", "", "`b` is not held: there is no enumeration `e`"),
+        ("{id: b, type: u1, repeat: expr, repeat-expr: a}", "", "`b` is not held: it is repeated as often as `a` says"),
+        ("{id: b, type: u1, repeat: expr, repeat-expr: 9999}", "", "`b` is not held: it is repeated 9999 times"),
+        ("{id: b, type: u1, repeat: until, repeat-until: _ == 0}", "",
+         "`b` is not held: it is repeated as often as `_ == 0` says"),
+        ("{id: b, type: u1, if: a > 3}", "", "`b` is not held: it depends on `a > 3`, which is more than equalities of fields"),
+        ("{id: b, type: u1, if: c == 3}", "", "`b` is not held: `c` is no number in front of it"),
+        ("{id: b, type: t(1)}", "", "`b` is not held: the type `t(1)` has parameters"),
+        ("{id: b, contents: [300]}", "", "`b` is not held: its contents are `300`"),
+        ("{id: b, type: t0}", NESTED, "more than 50 types hold each other"),
+        ("{id: b, type: {switch-on: a}}", "", "`b` is not held: a switch has no cases"),
+        ("{id: b, type: {switch-on: a, cases: {'\"x\"': u1}}}", "",
+         '`b` is not held: it depends on whether a field is `"x"`'),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_held_is_said_with_the_reason_and_what_is_before_it_is_held(attribute, more, says, tmp_path):
+    (tmp_path / "bad.ksy").write_text(ksy(attribute, more=more))
+    read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
+    assert read.failed and [one.code for one in read.definitions.troubles] == ["IMP081"]
+    assert says in read.definitions.troubles[0].message and read.definitions.troubles[0].spot.line
+    for one in read.trees["bad"]["messages"]:
+        assert one["fields"][0]["name"] == "a" and one["fields"][-1]["type"] == "bytes"
+
+
+BOMB = (
+    "meta: {id: bad}\na: &a [1, 1]\n"
+    + "".join(f"{y}: &{y} [*{x}, *{x}]\n" for x, y in zip("abcdefg", "bcdefgh", strict=True))
+    + "seq: *h\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "says", "line"),
+    [
+        (BOMB, "anchors and aliases are not part of what is read", 2),
+        ("meta:\n  id: x\nseq: ]", "not YAML: ", 3),
+        ("meta:\n  id: x\nseq: " + "[" * 100, "nested more than 40 deep", 3),
+        (
+            "meta:\n  id: x\nseq: !!python/object:os.system []\n",
+            "the tag `tag:yaml.org,2002:python/object:os.system`",
+            3,
+        ),
+        ("seq: []\n", "not a Kaitai Struct definition: it has no `meta`", 1),
+        ("- 1\n", "not a Kaitai Struct definition: it has no `meta`", 1),
+        ("", "not a Kaitai Struct definition: it has no `meta`", 1),
+        ("meta:\n  id: x\nseq: 5\n", "no message can be held: message `x` is not held: the `seq` of `x` is no list", 1),
+        ("meta:\n  id: x\nseq: []\n", "no message can be held", 1),
+        ("meta:\n  id: x\nseq:\n  - {size: 1, process: zlib}\n", "its bytes are processed by `zlib`", 1),
+    ],
+)
+def test_hostile_files_and_what_is_no_definition_are_refused(text, says, line, tmp_path):
+    (tmp_path / "bad.ksy").write_text(text)
+    reader = kinds.of(tmp_path / "bad.ksy")
+    assert isinstance(reader, kaitai.Kaitai)
+    with pytest.raises(Findings) as raised:
+        run.read(tmp_path / "bad.ksy", reader)
+    (finding,) = raised.value.findings
+    assert (finding.code, finding.place.line) == ("IMP005", line) and says in finding.message
+
+
+@pytest.mark.parametrize("more", [BROAD, ""])
+def test_a_small_file_that_says_much_is_bounded(more, tmp_path, monkeypatch):
+    monkeypatch.setattr(kaitai_parts, "MOST_STEPS", 2000)
+    flags = [f"{{id: f{n}, type: u1}}" for n in range(40)]
+    flags += [f"{{id: x{n}, type: u1, if: f{n} == 1}}" for n in range(40)]
+    text = ksy("{id: b, type: t0}", more=more) if more else ksy(*flags)
+    found = kaitai.Kaitai().read("bad.ksy", text.encode())
+    assert found.troubles[-1].message == "message `bad` is not held: with it the file says more than 2,000 things"
+
+
+def test_ways_to_go_on_are_bounded(tmp_path):
+    cases = ", ".join(f"{n}: u1" for n in range(256))
+    text = ksy("{id: b, type: u1}", f"{{id: c, type: {{switch-on: a, cases: {{{cases}}}}}}}",
+               f"{{id: d, type: {{switch-on: b, cases: {{{cases}}}}}}}")  # fmt: skip
+    found = kaitai.Kaitai().read("bad.ksy", text.encode())
+    assert len(found.networks[0].messages) == kaitai.MOST_MESSAGES
+    assert found.troubles[-1].message.endswith("it goes on in more than 256 ways; the others are not held")
