@@ -104,6 +104,16 @@ def test_bits_enumerations_limits_and_ends_arrive(frame):
     assert [(one["value"], one["name"]) for one in tree["enums"][0]["members"]] == [(0, "off"), (1, "on"), (3, "both")]
 
 
+def test_limits_of_raw_values_are_not_those_of_a_formula_and_what_is_computed_is_none(tmp_path):
+    text = ksy("{id: b, type: u1, valid: {min: 2, max: 999}}", "{id: c, type: u1, valid: {min: 2}}", "{id: d, type: u1, valid: a}",
+               more="instances:\n  e: {value: c * 0.5}\n")  # fmt: skip
+    (tmp_path / "bad.ksy").write_text(text)
+    read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
+    b, c, d = (field(read, "bad", name) for name in "bcd")
+    assert (b["min"], "max" in b, c["formula"], "min" in c, "const" in d) == (2, False, "raw*0.5", False, False)
+    assert read.definitions.troubles == []
+
+
 BYTE = "{id: a, type: u1}"
 
 

@@ -175,14 +175,17 @@ class Layout:
         if said is None or item["type"] not in ("uint", "int", "enum", "bool") or "count" in item:
             return
         equal = said.get("eq") if isinstance(said, Map) else said
-        if equal is not None and not isinstance(equal, float):
+        whole, is_signed = (1 << part.bits) - 1, item["type"] == "int"
+        if isinstance(said, Map) and item["type"] in ("uint", "int"):
+            low, high = (-(whole >> 1) - 1, whole >> 1) if is_signed else (0, whole)
+            item |= {
+                key: said[key] for key in ("min", "max") if type(said.get(key)) is int and low <= said[key] <= high
+            }
+        try:
             value = number(str(equal), scope.type.members)
-            part.mask = (1 << part.bits) - 1
-            part.value = value & part.mask
-        elif isinstance(said, Map) and item["type"] in ("uint", "int"):
-            for key in ("min", "max"):
-                if isinstance(said.get(key), int):
-                    item[key] = said[key]
+        except NotHeld:
+            return  # what is valid is computed
+        part.mask, part.value = whole, value & whole
 
     def _constant(self, where: tuple[str, ...], always: bytes, one: Map) -> None:
         """Bytes that are always the same, as numbers."""
@@ -338,6 +341,8 @@ class Layout:
         if item["type"] != "float" and line_of(one["value"], is_integer=True) is None:
             return False
         if found[1] != "raw":
+            for raw in ("min", "max"):  # in an ICD they are those of the physical value
+                item.pop(raw, None)
             item |= {"formula": found[1], **unit(_unit(one))}
             if "summary" not in item:
                 item |= summary(str(one.get("doc") or ""))
