@@ -26,9 +26,10 @@ builds and runs, [imu.c](api/imu.c), [imu.py](api/imu.py) and [imu.rs](api/imu.r
 `python -m scripts.api_page`.
 
 Messages hold raw values; physical values are computed on demand. A divided field is its parts, which are fields like any other.
-Setting refuses what the field cannot hold; the limits of the ICD are data, which `allows` asks, since only the device knows when
-they hold. What is refused is a status in C (`ICD_ERROR_RANGE`), an exception in Python (`RangeError`) and a `Result` in Rust
-(`Error::Range`). The JavaScript of the documentation site reads and writes the same values, and is no library.
+Setting a physical value refuses what the field cannot hold, and a raw one is looked at when the message is written; the limits of
+the ICD are data, which `allows` asks, since only the device knows when they hold. What is refused is a status in C
+(`ICD_ERROR_RANGE`), an exception in Python (`RangeError`) and a `Result` in Rust (`Error::Range`). The
+JavaScript of the documentation site reads and writes the same values, and is no library.
 """
 END = """
 [A program in each language](programs.md) shows the same at work; [the wire layer](wire.md) describes buses, files and logs. In C an

@@ -146,14 +146,23 @@ def test_messages_of_another_node_are_refused(shipped, wire):
     acp, bootloader, errors = shipped.module("cubeacp"), shipped.module("bootloader"), shipped.module()
     client = wire.Client(acp.LINK, "uart")
     for call, message in ((client.request, bootloader.State), (client.send, bootloader.SetBootIndex())):
-        with pytest.raises(errors.UnknownIdError):
+        with pytest.raises(errors.UnknownIdError, match=r"cubeacp has no tele\w+ '.*': it is a message of bootloader"):
             call(0, message)
-    with pytest.raises(errors.UnknownIdError):
-        client.request(0, acp.Reset)  # can be sent only
-    with pytest.raises(errors.UnknownIdError):
-        client.send(0, acp.EstimatedAttitudeAngles())  # can be requested only
+    with pytest.raises(errors.UnknownIdError, match="'Reset': it is a telecommand: send it"):
+        client.request(0, acp.Reset)
+    with pytest.raises(errors.UnknownIdError, match="Angles': it is telemetry: request it"):
+        client.send(0, acp.EstimatedAttitudeAngles())
     with pytest.raises(errors.RangeError):
         client.send(0, acp.SetAdcsRunMode(enabled=300))
+
+
+def test_a_message_in_the_place_of_its_class_is_told_of_and_the_other_way_round(shipped, wire):
+    acp = shipped.module("cubeacp")
+    client = wire.Client(acp.LINK, "uart")
+    with pytest.raises(TypeError, match=r"a class: State, not State\(\.\.\.\)"):
+        client.request(0, acp.State())
+    with pytest.raises(TypeError, match=r"a message: Reset\(\.\.\.\), not the class"):
+        client.send(0, acp.Reset)
 
 
 def test_what_comes_unasked_is_told(shipped, wire):
@@ -173,6 +182,8 @@ def test_a_bus_that_the_icd_does_not_describe_is_refused(shipped, wire):
     for bus in ("uart", "can", "i2c"):
         with pytest.raises(wire.UnsupportedError, match=bus):
             wire.Client(like, bus)
+    with pytest.raises(wire.UnsupportedError, match="'uart', 'can' or 'i2c', not 'UART'"):
+        wire.Client(link(shipped), "UART")
 
 
 def test_i2c_polls_until_the_telecommand_is_processed(shipped, wire):

@@ -16,6 +16,7 @@ from icdgen.protocol.client import Request
 from icdgen.sim.run import Options, build
 from icdgen.sim.serve import Server
 from icdgen.sim.values import allowed_values
+from tests.conftest import DEMO
 from tests.sim.device import FAST, ICD, session, simulator
 
 WAYS = [("--tcp", "0"), ("--udp", "0"), ("--pty",)]
@@ -286,6 +287,7 @@ def test_strict_refuses_what_no_enumeration_has():
         (("--tcp", "0", "--node", "cubeacp", "roll=1"), "unexpected extra argument"),
         (("--tcp", "0", "--node", "cubemag"), "does not say how messages of cubemag are framed"),
         (("--tcp", "0"), "it is not said which node is meant"),
+        (("--tcp", "0", "--icd", "demo.yaml"), "no node of the ICD says how its messages are framed"),
         (("--tcp", "0", "--node", "cubeacp", "--fault", "rain=1"), "is no fault"),
         (("--tcp", "0", "--node", "cubeacp", "--fault", "drop=2"), "not between 0 and 1"),
         (("--tcp", "0", "--node", "cubeacp", "--fault", "drop=1@tea"), "cannot be on `tea`"),
@@ -302,6 +304,7 @@ def test_what_cannot_be_is_said(options, text, tmp_path):
     import subprocess
     import sys
 
+    (tmp_path / "demo.yaml").write_text(DEMO)
     command = [sys.executable, "-m", "icdgen", "sim", *options]
     result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert result.returncode == 2 and text in result.stderr and "Traceback" not in result.stderr

@@ -51,18 +51,22 @@ class Options:
     chosen: Sequence[str] = ()
 
 
+FRAMING = "`protocol.uart.framing` or `stream` says so; `icdgen init NAME` writes an ICD that has it"
+
+
 def node_of(icd: Icd, name: str | None) -> Node:
     """The node that is meant; without a name the only one that can be talked to. Raises `icdgen.errors.UserError`."""
     able = [node for node in icd.nodes if has_protocol(icd, node) and not is_part(icd, node)]
     if name is None:
         if len(able) == 1:
             return able[0]
+        if not able:
+            raise UserError("no node of the ICD says how its messages are framed on a stream of bytes", FRAMING)
         names = ", ".join(node.name for node in able)
-        raise UserError("it is not said which node is meant", f"--node NAME; nodes: {names}" if able else "")
+        raise UserError("it is not said which node is meant", f"--node NAME; nodes: {names}")
     node = find_node(icd, name)
     if not has_protocol(icd, node):
-        text = f"the ICD does not say how messages of {node.name} are framed on a stream of bytes"
-        raise UserError(text, "`protocol.uart.framing` or `stream` says so, see docs/icd-format.md")
+        raise UserError(f"the ICD does not say how messages of {node.name} are framed on a stream of bytes", FRAMING)
     return node
 
 

@@ -34,7 +34,7 @@ class UnknownIdError(IcdError):
 
     def __init__(self, node: str, kind: str, id: object, why: str = "") -> None:
         what = f"{node} has no {kind} {_shortly(id)}"
-        super().__init__(f"{what} like this: {why}" if why else what)
+        super().__init__(f"{what}: {why}" if why else what)
         self.node, self.kind, self.id, self.why = node, kind, id, why
 
     def __reduce__(self) -> tuple[type[UnknownIdError], tuple[str, str, object, str]]:

@@ -80,6 +80,8 @@ def unit_known(ctx: Context) -> Iterator[Fault]:
         if field.unit is None:
             unit = field.source["unit"]
             known = (u.symbol for n in ctx.scope(node) for u in n.units)
-            close = SPELLINGS.get(unit) or close_to(unit, [*known, *STANDARD])
-            help = f"did you mean {quote(close)}?" if close else "declare it in `units:`"
+            close = close_to(unit, [*known, *STANDARD])
+            help = f"did you mean {quote(close)}? If not, declare it in `units:`" if close else "declare it in `units:`"
+            if unit in SPELLINGS:
+                help = f"did you mean {quote(SPELLINGS[unit])}?"
             yield Fault(field.source, field.source.at("unit"), f"the unit {quote(unit)} is unknown", help)

@@ -7,9 +7,9 @@ from typing import Generic, Literal, NamedTuple, Optional
 
 from .._base import Message
 from .._errors import IcdError, LengthError, UnknownIdError
-from .._hints import Buffer, KindOf, N, SpokenBy, class_of, message_of
+from .._hints import Buffer, KindOf, N, SpokenBy, message_of
 from .can import CanEvent, CanJoiner, CanMessage, CanPacket, can_split
-from .errors import BusyError, ChecksumError, need
+from .errors import BusyError, ChecksumError, UnsupportedError, need
 from .events import (
     Done,
     Event,
@@ -24,6 +24,7 @@ from .events import (
 from .i2c import I2cTransfer, i2c_read_length, i2c_reply, i2c_write
 from .link import Bus, Link, Polled, Settings
 from .logs import LogMessage
+from .spoken import requested, sent
 from .uart import UartDecoder, uart_encode, uart_kind
 
 
@@ -63,9 +64,9 @@ class Client(Generic[N]):
         self.settings = settings or link.settings
         self._checks_sent = self._checks_frames = False
         if form := link.checksum:
-            sent = form.telecommand_buses if crc else form.telecommand_always
+            commands = form.telecommand_buses if crc else form.telecommand_always
             frames = form.telemetry_buses if crc else form.telemetry_always
-            self._checks_sent, self._checks_frames = bus in sent, bus in frames
+            self._checks_sent, self._checks_frames = bus in commands, bus in frames
         self._address = address
         self._decoder: Optional[UartDecoder] = None
         self._joiner: Optional[CanJoiner] = None
@@ -74,8 +75,10 @@ class Client(Generic[N]):
             self._decoder = UartDecoder(link)
         elif bus == "can":
             self._joiner = CanJoiner(link, address, 1)
-        else:
+        elif bus == "i2c":
             need(link.i2c_address, "i2c")
+        else:
+            raise UnsupportedError(f"a bus is 'uart', 'can' or 'i2c', not {bus!r}")
         self._stream: list[bytes] = []
         self._packets: list[CanPacket] = []
         self._transfers: list[I2cTransfer] = []
@@ -100,22 +103,14 @@ class Client(Generic[N]):
 
     def request(self, now: float, message: KindOf[N, Message]) -> list[Event]:
         """Requests telemetry, or reads a setting. See `start`."""
-        kind = class_of(message)
-        id = kind.IDS[-1]
-        if id not in self.link.TELEMETRY or self.link.TELEMETRY[id] is not kind:
-            raise UnknownIdError(self.link.node, "telemetry", kind.NAME)
-        return self.start(now, Request("telemetry", id))
+        return self.start(now, Request("telemetry", requested(self.link, message)))
 
     def send(
         self, now: float, message: SpokenBy[N], repeat: bool = False
     ) -> list[Event]:
         """Sends a telecommand or a setting. See `start`; also raises `RangeError`."""
-        one = message_of(message)
-        id = one.IDS[0]
-        known = self.link.TELECOMMANDS
-        if id not in known or known[id] is not type(one):
-            raise UnknownIdError(self.link.node, "telecommand", one.NAME)
-        return self.start(now, Request("telecommand", id, one.to_bytes(), repeat))
+        id, data = sent(self.link, message), message_of(message).to_bytes()
+        return self.start(now, Request("telecommand", id, data, repeat))
 
     def start(self, now: float, request: Request) -> list[Event]:
         """Begins a request.
@@ -124,9 +119,9 @@ class Client(Generic[N]):
         has not been taken, and `LengthError`.
         """
         id = request.id
-        sent = self.link.commands.get(id)
+        command = self.link.commands.get(id)
         if request.kind == "telecommand":
-            if sent is None:
+            if command is None:
                 raise UnknownIdError(self.link.node, "telecommand", id)
         elif id not in self.link.frames:
             raise UnknownIdError(self.link.node, "telemetry", id)
@@ -134,11 +129,11 @@ class Client(Generic[N]):
             raise BusyError("a request is going on")
         if request.kind == "telemetry":
             request = Request("telemetry", id, b"", True)
-        elif sent:
-            if len(request.data) != sent.length:
+        elif command:
+            if len(request.data) != command.length:
                 name = f"telecommand {id}"
-                raise LengthError(name, sent.length, len(request.data))
-            request = request._replace(repeat=request.repeat or sent.setting)
+                raise LengthError(name, command.length, len(request.data))
+            request = request._replace(repeat=request.repeat or command.setting)
         self._asked, self._attempts = request, 0
         if self._late and self._late[0] == id and now < self._late[1]:
             self._state, self._until = "hold", self._late[1]

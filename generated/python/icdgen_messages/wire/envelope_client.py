@@ -11,11 +11,12 @@ from .._base import Message
 from .._errors import LengthError, UnknownIdError
 from .._hints import Buffer, KindOf, N, SpokenBy, class_of, message_of
 from .client import Request
-from .envelope import Direction, StreamRow
+from .envelope import StreamRow
 from .errors import BusyError, UnsupportedError, need
 from .events import Arrived, Done, Event, Gap, LineError, Timeout
 from .link import Link, Settings
 from .sender import Sender
+from .spoken import requested, sent
 from .stream import StreamDecoder, StreamEvent
 
 
@@ -69,9 +70,8 @@ class EnvelopeClient(Generic[N]):
 
     def request(self, now: float, message: KindOf[N, Message]) -> list[Event]:
         """Asks for telemetry, with the telecommand that the ICD names for it. See `start`."""
-        kind = class_of(message)
-        self._known("telemetry", kind)
-        return self._begin(now, Request("telemetry", kind.IDS[-1]), kind)
+        request = Request("telemetry", requested(self.link, message))
+        return self._begin(now, request, class_of(message))
 
     def send(
         self,
@@ -84,14 +84,12 @@ class EnvelopeClient(Generic[N]):
 
         ``reply``: the telemetry that answers it, where the ICD does not say so.
         """
-        one = message_of(message)
-        self._known("telecommand", type(one))
-        request = Request("telecommand", one.IDS[0], one.to_bytes(), repeat)
+        id, data = sent(self.link, message), message_of(message).to_bytes()
+        request = Request("telecommand", id, data, repeat)
         if reply is None:
             return self._begin(now, request)
-        kind = class_of(reply)
-        self._known("telemetry", kind)
-        return self._begin(now, request, kind)
+        requested(self.link, reply)
+        return self._begin(now, request, class_of(reply))
 
     def start(self, now: float, request: Request) -> list[Event]:
         """Begins a request.
@@ -177,13 +175,6 @@ class EnvelopeClient(Generic[N]):
         if row is None:
             raise UnknownIdError(self.link.node, request.kind, id)
         return row
-
-    def _known(self, direction: Direction, kind: type[Message]) -> None:
-        is_sent = direction == "telecommand"
-        table = self.link.TELECOMMANDS if is_sent else self.link.TELEMETRY
-        id = kind.IDS[0 if is_sent else -1]
-        if id not in table or kind not in table.of(id):
-            raise UnknownIdError(self.link.node, direction, kind.NAME)
 
     def _transmit(self, now: float) -> list[Event]:
         """Sends the request, for the first time or again."""

@@ -12,6 +12,7 @@ from .checks import check
 from .envelope import Direction, EnvelopeField, Stream, StreamRow
 from .errors import need
 from .link import Link
+from .spoken import spoken
 from .stuffing import Unstuffer, stuffed
 
 M = TypeVar("M", bound=Message)
@@ -64,11 +65,7 @@ def stream_encode(
     """
     form = need(link.stream, "stream")
     if isinstance(message, Message):
-        known = link.TELECOMMANDS if direction == "telecommand" else link.TELEMETRY
-        id = message.IDS[0 if direction == "telecommand" else -1]
-        if id not in known or type(message) not in known.of(id):
-            raise UnknownIdError(link.node, direction, message.NAME)
-        data = message.to_bytes()
+        id, data = spoken(link, direction, type(message)), message.to_bytes()
     else:
         id, data = message, bytes(data)
     row = next((row for row in form.rows(direction) if row.id == id), None)

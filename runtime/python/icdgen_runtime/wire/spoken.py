@@ -1,0 +1,51 @@
+"""The ids by which a node speaks messages; what to do with one that it does not speak."""
+
+from __future__ import annotations
+
+from .._base import Message
+from .._errors import UnknownIdError
+from .._hints import KindOf, N, SpokenBy, class_of, message_of
+from .envelope import Direction
+from .link import Link
+
+
+def requested(link: Link[N], message: KindOf[N, Message]) -> int:
+    """The id of telemetry, or of a setting that is read.
+
+    Raises `UnknownIdError`, and `TypeError` for a message in the place of its class.
+    """
+    kind = class_of(message)
+    if isinstance(kind, Message):
+        name = type(kind).__name__
+        raise TypeError(f"what is requested is a class: {name}, not {name}(...)")
+    return spoken(link, "telemetry", kind)
+
+
+def sent(link: Link[N], message: SpokenBy[N]) -> int:
+    """The id of a telecommand, or of a setting.
+
+    Raises `UnknownIdError`, and `TypeError` for a class in the place of a message of it.
+    """
+    one = message_of(message)
+    if isinstance(one, type):
+        raise TypeError(
+            f"what is sent is a message: {one.__name__}(...), not the class"
+        )
+    return spoken(link, "telecommand", type(one))
+
+
+def spoken(link: Link[N], direction: Direction, kind: type[Message]) -> int:
+    """The id of a message in that direction. Raises `UnknownIdError`."""
+    ways = {"telecommand": link.TELECOMMANDS, "telemetry": link.TELEMETRY}
+    for id in kind.IDS:
+        if id in ways[direction] and kind in ways[direction].of(id):
+            return id
+    why = f"it is a message of {kind.NODE}" if kind.NODE != link.node else ""
+    uses = {
+        "telecommand": "a telecommand: send it",
+        "telemetry": "telemetry: request it",
+    }
+    for way, known in ways.items():
+        if any(id in known and kind in known.of(id) for id in kind.IDS):
+            why = f"it is {uses[way]}"
+    raise UnknownIdError(link.node, direction, kind.NAME, why)
