@@ -418,8 +418,7 @@ static void dispatcher(run_t *run, const icdgen_selftest_dispatcher_t *one)
         run->vector = i;
         check(run, one->length(id, &length) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID), "dispatcher", "id");
         check(run, !known || length == (size_t)one->ids[i].length, "dispatcher", "length");
-        check(
-            run, one->decode(id, run->node->buffer, one->ids[i].least) == one->ids[i].status, "dispatcher", "decode");
+        check(run, one->decode(id, run->node->buffer, one->ids[i].least) == one->ids[i].status, "dispatcher", "decode");
         check(
             run, !known || one->decode(id, run->node->buffer, length + 1u) == ICD_ERROR_LENGTH, "dispatcher",
             "wrong length");
