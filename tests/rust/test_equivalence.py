@@ -25,11 +25,11 @@ def test_constants_and_encoding_of_raw_and_physical_values(subject, testee):
 
 
 def test_every_physical_value_of_every_scale(subject, testee):
-    """All raw values of each scaled field of up to 16 bits, one field for each scale, width and sign."""
+    """All raw values of each scaled field of up to 12 bits, one field for each scale, width and sign."""
     fields = {}
     for node, message, kind, id in harness.routes(subject.icd):
         for field in message.fields:
-            if field.scale is not None and field.bits <= 16:
+            if field.scale is not None and field.bits <= 12:
                 fields.setdefault((field.scale, field.bits, field.type), (node, kind, id, field))
     assert fields
     requests = [
