@@ -10,6 +10,8 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
@@ -33,15 +35,22 @@ def cache_folder() -> Path:
     return Path(os.environ.get("ICDGEN_BUILD") or ROOT / ".icdgen-build")
 
 
+@contextmanager
+def kept(folder: Path) -> Iterator[Path]:
+    """A folder of what is built once; other workers wait."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / "lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield folder
+
+
 def build(language: Language, icd: Icd, folder: Path | None = None) -> list[str]:
     """The command line that starts the language's testee for these ICDs. Raises `BuildError`."""
     files = generated(language, icd)
     known = json.dumps(plan(icd)).encode()
     folder = (folder or cache_folder()) / f"{language.name}-{_key(language, {**files, 'plan.json': known})}"
-    folder.mkdir(parents=True, exist_ok=True)
     done = folder / "command.json"
-    with open(folder / "lock", "w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+    with kept(folder):
         if not done.exists():
             source, out = folder / "source", folder / "out"
             for old in (source, out):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import os
 import shutil
@@ -10,7 +9,7 @@ import subprocess
 from functools import cache
 from pathlib import Path
 
-from tests.conformance.build import cache_folder
+from tests.conformance.build import cache_folder, kept
 
 OLDEST = "1.63"
 MERGING = "2024"
@@ -98,10 +97,7 @@ class Toolchain:
         digest = hashlib.sha256("\0".join([*command, *map(str, self.version)]).encode())
         for source in sorted(file.parent.rglob("*.rs")):
             digest.update(f"\0{source.relative_to(file.parent)}\0".encode() + source.read_bytes())
-        out = cache_folder() / f"library-{digest.hexdigest()[:16]}"
-        out.mkdir(parents=True, exist_ok=True)
-        with open(out / "lock", "w") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
+        with kept(cache_folder() / f"library-{digest.hexdigest()[:16]}") as out:
             if not (out / "libicd.rlib").exists():
                 made = out / "made"
                 run(*command, "--out-dir", made, file)

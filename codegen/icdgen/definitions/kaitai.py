@@ -12,12 +12,11 @@ from icdgen.definitions.kaitai_types import Type, declared, mapping
 from icdgen.definitions.kaitai_yaml import parse
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld
 from icdgen.definitions.wording import line, node_name, summary
+from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
 
 MOST_MESSAGES = 256
 _META = re.compile(r"^meta:[ \t]*(?:#.*)?\r?\n(?:[ \t]*(?:#.*)?\r?\n)*[ \t]+\w", re.MULTILINE)
 _BODY = re.compile(r"^(?:seq|types|instances|enums|doc):", re.MULTILINE)
-_MOST_BYTES = 65_535
-_MOST_ELEMENTS = 1024
 _LONGEST_NAME = 40  # beyond that identifiers of it may be too long
 _ID, _ID_BITS = 1, 8  # no frame of Kaitai has an id but in its data
 
@@ -110,13 +109,13 @@ def _names(name: str, layouts: list[Layout]) -> list[str]:
 def _fields(layout: Layout, order: str) -> list[Item]:
     """The parts as fields; bits on which something depends become fields of their own, and the whole a view."""
     fields: list[Item] = []
-    room = _MOST_BYTES - -(-layout.at // 8)
+    room = MOST_BYTES - -(-layout.at // 8)
     for part, name in zip(layout.parts, shortest([one.path for one in layout.parts]), strict=True):
         item = part.item
         if not part.bits:
             element = part.piece.bits // 8 or 1
             size: Item = {} if "count" in item else {"size": "rest"}
-            most = min(room // element, _MOST_ELEMENTS) if "count" in item else room
+            most = min(room // element, MOST_ELEMENTS) if "count" in item else room
             fields.append({"at": part.at, "name": name, **item, **size, "up_to": most})
         elif "struct" in item:
             fields.append({"at": part.at, "name": name, **item})

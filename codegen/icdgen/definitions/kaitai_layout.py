@@ -12,11 +12,10 @@ from icdgen.definitions.kaitai_yaml import integer
 from icdgen.definitions.model import Item, NotHeld
 from icdgen.definitions.wording import line, summary, unit
 from icdgen.icd.located import Map
+from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
 
 RAW_ONLY, AS_BYTES = "IMP078", "IMP081"
 MOST_FIELDS = 5000
-_MOST_BITS = 8 * 65_535
-_MOST_ELEMENTS = 1024
 _DEEPEST = 50  # types that hold each other
 _WORD = 8  # bytes of the largest number
 
@@ -45,8 +44,8 @@ class Layout:
         """The attributes of a type, and what is computed from them."""
         for index, one in enumerate(type_.seq):
             self.file.step()
-            if len(self.parts) > MOST_FIELDS or self.at > _MOST_BITS:
-                raise NotHeld(f"it has more than {MOST_FIELDS} fields or {_MOST_BITS // 8} bytes")
+            if len(self.parts) > MOST_FIELDS or self.at > 8 * MOST_BYTES:
+                raise NotHeld(f"it has more than {MOST_FIELDS} fields or {MOST_BYTES} bytes")
             name = str(one.get("id") or f"unnamed{index}")
             where = (*path, name)
             known = False
@@ -132,7 +131,7 @@ class Layout:
         count = integer(said) if isinstance(said, str) else said
         if repeat != "expr" or not isinstance(count, int):
             raise NotHeld(f"it is repeated as often as `{line(str(said or one.get('repeat-until')), 80)}` says")
-        if not 1 <= count <= _MOST_ELEMENTS:
+        if not 1 <= count <= MOST_ELEMENTS:
             raise NotHeld(f"it is repeated {count} times")
         return count
 

@@ -12,13 +12,13 @@ from icdgen.definitions.kaitai_yaml import integer
 from icdgen.definitions.model import Definitions, Item, NotHeld
 from icdgen.definitions.wording import line
 from icdgen.icd.located import Map, Seq
+from icdgen.icd.tails import MOST_BYTES
 
 _NUMBER = re.compile(r"([usf])([1248])(le|be)?\Z")
 _BITS = re.compile(r"b([1-9][0-9]?)(le|be)?\Z")
 _KINDS = {"u": "uint", "s": "int", "f": "float"}
 _ORDERS = {"le": LITTLE, "be": BIG}
 _PLAIN = frozenset({"ASCII", "US-ASCII", "UTF-8", "ISO-8859-1"})
-_MOST_BYTES = 65_535
 _DEEPEST = 40
 
 
@@ -142,7 +142,7 @@ def sized(attribute: Map) -> int | None:
     size = integer(said.strip()) if isinstance(said, str) else said
     if not isinstance(size, int) or isinstance(size, bool):
         return None
-    if not 1 <= size <= _MOST_BYTES:
+    if not 1 <= size <= MOST_BYTES:
         raise NotHeld(f"its size is {size}")
     return size
 
@@ -162,7 +162,7 @@ def contents(attribute: Map) -> bytes | None:
             made += one.encode()
         else:
             raise NotHeld(f"its contents are `{line(str(one), 60)}`")
-    if not 1 <= len(made) <= _MOST_BYTES:
+    if not 1 <= len(made) <= MOST_BYTES:
         raise NotHeld(f"its contents are {len(made)} bytes")
     return made
 

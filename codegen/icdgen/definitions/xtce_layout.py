@@ -12,6 +12,7 @@ from icdgen.definitions.wording import line
 from icdgen.definitions.xtce_calibration import fixed, number
 from icdgen.definitions.xtce_names import Names
 from icdgen.definitions.xtce_types import Piece, Types, described, repeated
+from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 OPEN = "IMP080"
 MOST_FIELDS = 5000  # of a message
 MOST_PLACED = 500  # of one whose fields say where they stand
-_MOST_BYTES = 65_535  # of a message
 _DEEPEST = 50  # containers that inherit or include each other
 _REFERENCES = {"ParameterRefEntry": "parameterRef", "ArgumentRefEntry": "argumentRef",
                "ArrayParameterRefEntry": "parameterRef", "ArrayArgumentRefEntry": "argumentRef"}  # fmt: skip
@@ -237,7 +237,7 @@ class Layout:
                 if any(other.item["name"] == one.piece.size.rsplit("/", 1)[-1] for other in parts):
                     text = f"message `{message['name']}`: `{one.item['name']}` is as long as `{one.piece.size}` says"
                     to.warn(OPEN, text, "it is held up to the end of the frame")
-                room = _MOST_BYTES - message["length"]
+                room = MOST_BYTES - message["length"]
                 fields.append({"at": end, **one.item, "up_to": min(room, one.item["up_to"])})
         return {**message, "fields": fields} if fields else message
 
@@ -262,6 +262,6 @@ def _count(entry: Element) -> int:
     count = fixed(repeat.find("Count"))
     if count is None or repeat.find("Offset") is not None:
         raise NotHeld(f"how often `{_named(entry)}` is there, or with what between, is not a number")
-    if not 0 <= count <= 1024:
+    if not 0 <= count <= MOST_ELEMENTS:
         raise NotHeld(f"`{_named(entry)}` is there {count} times")
     return count

@@ -14,6 +14,7 @@ from icdgen.definitions.model import Definitions, Item, NotHeld
 from icdgen.definitions.wording import line, summary, unit
 from icdgen.definitions.xtce_calibration import NUMBER, calibration, decimal, fixed, formula, number
 from icdgen.definitions.xtce_names import Names
+from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -215,7 +216,7 @@ def repeated(piece: Piece, count: int, where: str) -> Piece:
         return piece
     if piece.members or piece.item["type"] in ("bytes", "text") or "count" in piece.item or not piece.bits:
         raise NotHeld(f"{where} is an array of what is no number")
-    if not 1 <= count <= 1024:
+    if not 1 <= count <= MOST_ELEMENTS:
         raise NotHeld(f"{where} is an array of {count} elements")
     piece.item |= {"bits": piece.bits, "count": count}
     return Piece(piece.item, piece.bits * count, piece.order, values=piece.values)
@@ -300,7 +301,7 @@ def _open(type_: str, of: Element) -> Piece:
     reference = of.find("DynamicValue/ParameterInstanceRef")
     if reference is None:
         raise NotHeld("its size is neither a number nor that of a parameter")
-    return Piece({"type": type_, "size": "rest", "up_to": 65535}, 0, size=reference.get("parameterRef", ""))
+    return Piece({"type": type_, "size": "rest", "up_to": MOST_BYTES}, 0, size=reference.get("parameterRef", ""))
 
 
 def _unit(chain: list[Element]) -> dict[str, str]:

@@ -317,6 +317,11 @@ class Composite(Named[Fielded]):
         return None
 
     @property
+    def fewest(self) -> int:
+        """Elements of the open end that every frame has."""
+        return self.tail.fewest if self.tail is not None else 0
+
+    @property
     def sent(self) -> tuple[FieldDescription, ...]:
         """Members that have bits in the frame: without the count that only the length of the frame tells."""
         return self.members if self.tail is None else tuple(one for one in self.members if not one.model.implied)

@@ -59,8 +59,8 @@ def initial(message: Composite[Any]) -> list[str]:
 
 def _is_always_there(field: FieldDescription) -> bool:
     """Whether every frame has an element of an open end, or what stands in it."""
-    tail, path = field.message.tail, field.model.path
-    return tail is not None and bool(path) and (path[0].index or 0) < tail.fewest
+    path = field.model.path
+    return bool(path) and (path[0].index or 0) < field.message.fewest
 
 
 def of_enum(enum: EnumDescription) -> tuple[bool, Callable[[int], str]]:

@@ -38,17 +38,11 @@ def _annotation(field: FieldDescription) -> str:
 def default(field: FieldDescription) -> str:
     """The raw value in a new message."""
     if field.is_open:
-        few = _fewest(field)
+        few = field.message.fewest
         if not few:
             return "()" if field.count else 'b""'
         return f"({_default(field)},) * {few}" if field.count else f"bytes({few})"
     return f"({_default(field)},) * {field.count}" if field.count else _default(field)
-
-
-def _fewest(field: FieldDescription) -> int:
-    """How many elements of an open end every frame has."""
-    tail = field.message.tail
-    return tail.fewest if tail is not None else 0
 
 
 def _default(field: FieldDescription) -> str:
@@ -68,7 +62,7 @@ def _told(field: FieldDescription) -> list[str]:
         items.append(f"elements={field.count}")
     if field.is_open:
         items.append("is_open=True")
-        items += [f"fewest={few}"] if (few := _fewest(field)) else []
+        items += [f"fewest={few}"] if (few := field.message.fewest) else []
     if field.is_open and field.enum is not None:
         items.append(f"enum={class_name(field.enum)}")
     if field.needs:
@@ -144,7 +138,7 @@ def scaled(field: FieldDescription) -> str:
     curve, steps = field.curve, field.steps
     first = repr(curve.double(field.fresh) if curve is not None else steps.double(field.fresh) if steps else 0.0)
     if field.is_open:
-        few = _fewest(field)
+        few = field.message.fewest
         first, note = f"({first},) * {few}" if few else "()", "tuple[float, ...]"
     elif field.count:
         first, note = f"({first},) * {field.count}", "tuple[float, ...]"
@@ -159,8 +153,8 @@ def scaled(field: FieldDescription) -> str:
 
 def text(field: FieldDescription) -> str:
     """``version_text: str = _base.text(...)``: a field of characters as what it says."""
-    first = f'("",) * {_fewest(field) if field.is_open else field.count}' if field.count else '""'
-    first = "()" if field.is_open and field.count and not _fewest(field) else first
+    first = f'("",) * {field.message.fewest if field.is_open else field.count}' if field.count else '""'
+    first = "()" if field.is_open and field.count and not field.message.fewest else first
     return _statement(field.physical_name, "tuple[str, ...]" if field.count else "str", "text", [f"default={first}"])
 
 

@@ -105,7 +105,7 @@ def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]
     fields = one.members
     is_there = any(field.model.name in field.message.model.fresh for field in fields if field.model.when)
     has_default = not is_there and all(
-        (field.fresh == 0 or (field.is_open and not _fewest(field)) or field.model.when) and not _is_long(field)
+        (field.fresh == 0 or (field.is_open and not field.message.fewest) or field.model.when) and not _is_long(field)
         for field in fields
     )
     has_default = has_default and not any(
@@ -167,17 +167,12 @@ def _is_long(field: FieldDescription) -> bool:
     return field.model.is_bytes and field.model.bits > DERIVES_DEFAULT * 8
 
 
-def _fewest(field: FieldDescription) -> int:
-    """How many elements of an open end every frame has."""
-    return field.message.tail.fewest if field.message.tail is not None else 0
-
-
 def _fresh(field: FieldDescription) -> str:
     if field.is_open and field.count:
         length = field.struct.model.length if field.struct is not None else 0
         absent = f"Self::read_element(&[0; {length}])" if length else _zero(field)
         return (
-            f"first({_fewest(field)}, {_one_fresh(field)}, {absent})"
+            f"first({field.message.fewest}, {_one_fresh(field)}, {absent})"
             if _has_first(field)
             else f"[{absent}; {field.count}]"
         )
@@ -190,7 +185,7 @@ def _fresh(field: FieldDescription) -> str:
 def _has_first(field: FieldDescription) -> bool:
     """Whether a new message has elements of an open end that are not 0."""
     fields = field.struct.fields if field.struct is not None else (field,)
-    return field.is_open and _fewest(field) > 0 and any(one.fresh for one in fields)
+    return field.is_open and field.message.fewest > 0 and any(one.fresh for one in fields)
 
 
 def _one_fresh(field: FieldDescription) -> str:
