@@ -8,6 +8,7 @@ import struct
 
 from . import _lazy
 from ._errors import RangeError
+from ._scales import span_of
 
 
 def on_curve(coefficients: tuple[float, ...], raw: float) -> float:
@@ -23,7 +24,7 @@ def on_curve(coefficients: tuple[float, ...], raw: float) -> float:
 
 
 def from_curve(value: _lazy.Any, info: _lazy.FieldInfo, field: str) -> _lazy.Any:
-    """The nearest raw value, of two the even one. Raises `RangeError`."""
+    """The nearest raw value, of two the even one. Raises `RangeError` that names ``field``, the attribute that is set."""
     try:
         top, bottom = value.as_integer_ratio()
         wanted = value if isinstance(value, float) else top / bottom
@@ -31,7 +32,9 @@ def from_curve(value: _lazy.Any, info: _lazy.FieldInfo, field: str) -> _lazy.Any
         raise RangeError(field, "a finite number", value) from None
     if not info.leads_back:
         raise RangeError(
-            field, "raw values only: its formula does not lead back", value
+            field,
+            f"no value, for its formula does not lead back: set {info.attribute}",
+            value,
         )
     if info.type == "float":
         return _number(wanted, info, field)
@@ -57,7 +60,7 @@ def _nearest(value: float, info: _lazy.FieldInfo, field: str) -> int:
     rises = first < last
     least, most = (first, last) if rises else (last, first)
     if not least <= value <= most:
-        raise RangeError(field, f"{least!r} to {most!r}", value)
+        raise RangeError(field, span_of(least, most, info.unit), value)
     while high - low > 1:
         middle = (low + high) // 2
         here = on_curve(info.curve, middle)

@@ -160,10 +160,14 @@ impl AdcsTemperatures {
 }
 
 const MAGNETOMETER_TEMPERATURE: Scale =
-    Scale::new("Magnetometer Temperature", (-32_768, 32_767), (1, 0, 10));
+    Scale::new("Magnetometer Temperature", "-3276.8 to 3276.7 C", (-32_768, 32_767), (1, 0, 10));
 
-const REDUNDANT_MAG_TEMPERATURE: Scale =
-    Scale::new("Redundant Magnetometer Temperature", (-32_768, 32_767), (1, 0, 10));
+const REDUNDANT_MAG_TEMPERATURE: Scale = Scale::new(
+    "Redundant Magnetometer Temperature",
+    "-3276.8 to 3276.7 C",
+    (-32_768, 32_767),
+    (1, 0, 10),
+);
 
 message!(AdcsTemperatures {
     mcu_temperature: ("MCU Temperature", 0, 16).unit("C"),

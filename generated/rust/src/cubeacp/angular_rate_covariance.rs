@@ -184,13 +184,13 @@ impl AngularRateCovariance {
 }
 
 const X_ANGULAR_RATE_COVARIANCE: Scale =
-    Scale::new("X Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("X Angular Rate Covariance", "-32.768 to 32.767", (-32_768, 32_767), (1, 0, 1_000));
 
 const Y_ANGULAR_RATE_COVARIANCE: Scale =
-    Scale::new("Y Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("Y Angular Rate Covariance", "-32.768 to 32.767", (-32_768, 32_767), (1, 0, 1_000));
 
 const Z_ANGULAR_RATE_COVARIANCE: Scale =
-    Scale::new("Z Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("Z Angular Rate Covariance", "-32.768 to 32.767", (-32_768, 32_767), (1, 0, 1_000));
 
 message!(AngularRateCovariance {
     x_angular_rate_covariance: ("X Angular Rate Covariance", 0, 16)

@@ -179,11 +179,14 @@ impl CoarseSunVector {
     }
 }
 
-const COARSE_SUN_X: Scale = Scale::new("Coarse Sun X", (-32_768, 32_767), (1, 0, 10_000));
+const COARSE_SUN_X: Scale =
+    Scale::new("Coarse Sun X", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const COARSE_SUN_Y: Scale = Scale::new("Coarse Sun Y", (-32_768, 32_767), (1, 0, 10_000));
+const COARSE_SUN_Y: Scale =
+    Scale::new("Coarse Sun Y", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const COARSE_SUN_Z: Scale = Scale::new("Coarse Sun Z", (-32_768, 32_767), (1, 0, 10_000));
+const COARSE_SUN_Z: Scale =
+    Scale::new("Coarse Sun Z", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(CoarseSunVector {
     coarse_sun_x: ("Coarse Sun X", 0, 16).scale(&COARSE_SUN_X),

@@ -186,11 +186,14 @@ impl CubestarEstimatedRates {
     }
 }
 
-const X_AXIS_RATE: Scale = Scale::new("x-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
+const X_AXIS_RATE: Scale =
+    Scale::new("x-Axis rate", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const Y_AXIS_RATE: Scale = Scale::new("y-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
+const Y_AXIS_RATE: Scale =
+    Scale::new("y-Axis rate", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const Z_AXIS_RATE: Scale = Scale::new("z-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
+const Z_AXIS_RATE: Scale =
+    Scale::new("z-Axis rate", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(CubestarEstimatedRates {
     x_axis_rate: ("x-Axis rate", 0, 16).scale(&X_AXIS_RATE),

@@ -178,14 +178,26 @@ impl EstimatedGyroBias {
     }
 }
 
-const ESTIMATED_X_GYRO_BIAS: Scale =
-    Scale::new("Estimated X-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_X_GYRO_BIAS: Scale = Scale::new(
+    "Estimated X-gyro Bias",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const ESTIMATED_Y_GYRO_BIAS: Scale =
-    Scale::new("Estimated Y-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_Y_GYRO_BIAS: Scale = Scale::new(
+    "Estimated Y-gyro Bias",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const ESTIMATED_Z_GYRO_BIAS: Scale =
-    Scale::new("Estimated Z-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_Z_GYRO_BIAS: Scale = Scale::new(
+    "Estimated Z-gyro Bias",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
 message!(EstimatedGyroBias {
     estimated_x_gyro_bias: ("Estimated X-gyro Bias", 0, 16)

@@ -184,13 +184,13 @@ impl EstimationInnovationVector {
 }
 
 const INNOVATION_VECTOR_X: Scale =
-    Scale::new("Innovation Vector X", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Innovation Vector X", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const INNOVATION_VECTOR_Y: Scale =
-    Scale::new("Innovation Vector Y", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Innovation Vector Y", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const INNOVATION_VECTOR_Z: Scale =
-    Scale::new("Innovation Vector Z", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Innovation Vector Z", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(EstimationInnovationVector {
     innovation_vector_x: ("Innovation Vector X", 0, 16).scale(&INNOVATION_VECTOR_X),

@@ -193,14 +193,26 @@ impl FineAngularRates {
     }
 }
 
-const ESTIMATED_X_ANGULAR_RATE: Scale =
-    Scale::new("Estimated X Angular Rate", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_X_ANGULAR_RATE: Scale = Scale::new(
+    "Estimated X Angular Rate",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const ESTIMATED_Y_ANGULAR_RATE: Scale =
-    Scale::new("Estimated Y Angular Rate", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_Y_ANGULAR_RATE: Scale = Scale::new(
+    "Estimated Y Angular Rate",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const ESTIMATED_Z_ANGULAR_RATE: Scale =
-    Scale::new("Estimated Z Angular Rate", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_Z_ANGULAR_RATE: Scale = Scale::new(
+    "Estimated Z Angular Rate",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
 message!(FineAngularRates {
     estimated_x_angular_rate: ("Estimated X Angular Rate", 0, 16)

@@ -178,11 +178,26 @@ impl IgrfModelledMagneticFieldVector {
     }
 }
 
-const FIELD_X: Scale = Scale::new("IGRF Modelled Magnetic Field X", (-32_768, 32_767), (1, 0, 100));
+const FIELD_X: Scale = Scale::new(
+    "IGRF Modelled Magnetic Field X",
+    "-327.68 to 327.67 uT",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const FIELD_Y: Scale = Scale::new("IGRF Modelled Magnetic Field Y", (-32_768, 32_767), (1, 0, 100));
+const FIELD_Y: Scale = Scale::new(
+    "IGRF Modelled Magnetic Field Y",
+    "-327.68 to 327.67 uT",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const FIELD_Z: Scale = Scale::new("IGRF Modelled Magnetic Field Z", (-32_768, 32_767), (1, 0, 100));
+const FIELD_Z: Scale = Scale::new(
+    "IGRF Modelled Magnetic Field Z",
+    "-327.68 to 327.67 uT",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
 message!(IgrfModelledMagneticFieldVector {
     field_x: ("IGRF Modelled Magnetic Field X", 0, 16).unit("uT").scale(&FIELD_X),

@@ -179,11 +179,14 @@ impl NadirVector {
     }
 }
 
-const NADIR_X: Scale = Scale::new("Nadir X", (-32_768, 32_767), (1, 0, 10_000));
+const NADIR_X: Scale =
+    Scale::new("Nadir X", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const NADIR_Y: Scale = Scale::new("Nadir Y", (-32_768, 32_767), (1, 0, 10_000));
+const NADIR_Y: Scale =
+    Scale::new("Nadir Y", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const NADIR_Z: Scale = Scale::new("Nadir Z", (-32_768, 32_767), (1, 0, 10_000));
+const NADIR_Z: Scale =
+    Scale::new("Nadir Z", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(NadirVector {
     nadir_x: ("Nadir X", 0, 16).scale(&NADIR_X),

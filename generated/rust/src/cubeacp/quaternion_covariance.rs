@@ -184,14 +184,26 @@ impl QuaternionCovariance {
     }
 }
 
-const Q1_RMS: Scale =
-    Scale::new("Quaternion Covariance - Q1 RMS", (-32_768, 32_767), (1, 0, 1_000));
+const Q1_RMS: Scale = Scale::new(
+    "Quaternion Covariance - Q1 RMS",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const Q2_RMS: Scale =
-    Scale::new("Quaternion Covariance - Q2 RMS", (-32_768, 32_767), (1, 0, 1_000));
+const Q2_RMS: Scale = Scale::new(
+    "Quaternion Covariance - Q2 RMS",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const Q3_RMS: Scale =
-    Scale::new("Quaternion Covariance - Q3 RMS", (-32_768, 32_767), (1, 0, 1_000));
+const Q3_RMS: Scale = Scale::new(
+    "Quaternion Covariance - Q3 RMS",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
 message!(QuaternionCovariance {
     q1_rms: ("Quaternion Covariance - Q1 RMS", 0, 16).scale(&Q1_RMS),

@@ -180,13 +180,13 @@ impl QuaternionErrorVector {
 }
 
 const QUATERNION_ERROR_Q1: Scale =
-    Scale::new("Quaternion Error - Q1", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Quaternion Error - Q1", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const QUATERNION_ERROR_Q2: Scale =
-    Scale::new("Quaternion Error - Q2", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Quaternion Error - Q2", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const QUATERNION_ERROR_Q3: Scale =
-    Scale::new("Quaternion Error - Q3", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Quaternion Error - Q3", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(QuaternionErrorVector {
     quaternion_error_q1: ("Quaternion Error - Q1", 0, 16).scale(&QUATERNION_ERROR_Q1),

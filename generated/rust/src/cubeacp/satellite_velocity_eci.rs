@@ -173,11 +173,14 @@ impl SatelliteVelocityEci {
     }
 }
 
-const X_VELOCITY: Scale = Scale::new("X Velocity", (-32_768, 32_767), (1, 0, 4));
+const X_VELOCITY: Scale =
+    Scale::new("X Velocity", "-8192 to 8191.75 m/s", (-32_768, 32_767), (1, 0, 4));
 
-const Y_VELOCITY: Scale = Scale::new("Y Velocity", (-32_768, 32_767), (1, 0, 4));
+const Y_VELOCITY: Scale =
+    Scale::new("Y Velocity", "-8192 to 8191.75 m/s", (-32_768, 32_767), (1, 0, 4));
 
-const Z_VELOCITY: Scale = Scale::new("Z Velocity", (-32_768, 32_767), (1, 0, 4));
+const Z_VELOCITY: Scale =
+    Scale::new("Z Velocity", "-8192 to 8191.75 m/s", (-32_768, 32_767), (1, 0, 4));
 
 message!(SatelliteVelocityEci {
     x_velocity: ("X Velocity", 0, 16).unit("m/s").scale(&X_VELOCITY),

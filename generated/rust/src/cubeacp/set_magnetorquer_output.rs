@@ -193,14 +193,26 @@ impl SetMagnetorquerOutput {
     }
 }
 
-const X_DUTY_CYCLE: Scale =
-    Scale::new("Commanded X Magnetorquer duty cycle", (-32_768, 32_767), (1, 0, 1_000));
+const X_DUTY_CYCLE: Scale = Scale::new(
+    "Commanded X Magnetorquer duty cycle",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const Y_DUTY_CYCLE: Scale =
-    Scale::new("Commanded Y Magnetorquer duty cycle", (-32_768, 32_767), (1, 0, 1_000));
+const Y_DUTY_CYCLE: Scale = Scale::new(
+    "Commanded Y Magnetorquer duty cycle",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const Z_DUTY_CYCLE: Scale =
-    Scale::new("Commanded Z Magnetorquer duty cycle", (-32_768, 32_767), (1, 0, 1_000));
+const Z_DUTY_CYCLE: Scale = Scale::new(
+    "Commanded Z Magnetorquer duty cycle",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
 message!(SetMagnetorquerOutput {
     x_duty_cycle: ("Commanded X Magnetorquer duty cycle", 0, 16).scale(&X_DUTY_CYCLE),

@@ -186,11 +186,14 @@ impl Star1BodyVector {
     }
 }
 
-const STAR1_BODY_X: Scale = Scale::new("Star1BX", (-32_768, 32_767), (1, 0, 10_000));
+const STAR1_BODY_X: Scale =
+    Scale::new("Star1BX", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_BODY_Y: Scale = Scale::new("Star1BY", (-32_768, 32_767), (1, 0, 10_000));
+const STAR1_BODY_Y: Scale =
+    Scale::new("Star1BY", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_BODY_Z: Scale = Scale::new("Star1BZ", (-32_768, 32_767), (1, 0, 10_000));
+const STAR1_BODY_Z: Scale =
+    Scale::new("Star1BZ", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(Star1BodyVector {
     star1_body_x: ("Star1BX", 0, 16).scale(&STAR1_BODY_X),

@@ -186,11 +186,14 @@ impl Star2BodyVector {
     }
 }
 
-const STAR2_BODY_X: Scale = Scale::new("Star2BX", (-32_768, 32_767), (1, 0, 10_000));
+const STAR2_BODY_X: Scale =
+    Scale::new("Star2BX", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_BODY_Y: Scale = Scale::new("Star2BY", (-32_768, 32_767), (1, 0, 10_000));
+const STAR2_BODY_Y: Scale =
+    Scale::new("Star2BY", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_BODY_Z: Scale = Scale::new("Star2BZ", (-32_768, 32_767), (1, 0, 10_000));
+const STAR2_BODY_Z: Scale =
+    Scale::new("Star2BZ", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(Star2BodyVector {
     star2_body_x: ("Star2BX", 0, 16).scale(&STAR2_BODY_X),
