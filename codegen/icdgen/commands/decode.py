@@ -42,8 +42,14 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
     icd = load_or_exit(icds).icd
     node, message, frame = _taken_apart(icd, list(arguments), kind)
     found = recognize.recognize(icd, frame, node, message, kind)
+    if node is not None and message is None and arguments[0].lower() == node and arguments[1].isdecimal():
+        found = [one if one.id is not None else one.noted(_no_id(arguments[1], node)) for one in found]
     {"text": _print_text, "json": _print_json, "csv": _print_csv}[form](found)
     sys.exit(1 if any(one.has_wrong_constant for one in found) else 0)
+
+
+def _no_id(word: str, node: str) -> str:
+    return f"{node} has no message {word}: it is taken for the first byte of the frame"
 
 
 def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | None, str | None, str | bytes]:
@@ -65,9 +71,13 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
     if node is not None and len(words) > 1:
         try:
             find_message(icd, node, words[0], kind)
-        except NotFound:
+        except NotFound as error:
             if not _is_frame(words):
                 raise
+            if _is_id(words):
+                raise NotFound(
+                    str(error), f"{error.help}; a byte of the frame has two digits, as those after it"
+                ) from None
         except Ambiguous:
             if not find_sharing(icd, node, words[0], kind):
                 raise
@@ -75,6 +85,11 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
         else:
             message = words.pop(0)
     return node, message, _content(words)
+
+
+def _is_id(words: list[str]) -> bool:
+    """Whether the first word is a number that is no byte of the frame which the others are: those are not single bytes."""
+    return words[0].isdecimal() and (len(words[0]) != 2 or any(len(word) != 2 for word in words[1:]))
 
 
 def _is_frame(words: list[str]) -> bool:
