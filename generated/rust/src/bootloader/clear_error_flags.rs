@@ -66,7 +66,7 @@ impl ClearErrorFlags {
         Self {}
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

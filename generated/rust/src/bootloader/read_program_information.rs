@@ -56,7 +56,7 @@ impl ReadProgramInformation {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -60,7 +60,7 @@ impl SetBootIndex {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

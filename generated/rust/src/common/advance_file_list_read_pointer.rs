@@ -51,7 +51,7 @@ impl AdvanceFileListReadPointer {
         Self {}
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

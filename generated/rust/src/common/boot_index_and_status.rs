@@ -64,7 +64,7 @@ impl BootIndexAndStatus {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

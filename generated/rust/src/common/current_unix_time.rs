@@ -68,7 +68,7 @@ impl CurrentUnixTime {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -85,7 +85,7 @@ impl FileDownloadBufferWithFileContents {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

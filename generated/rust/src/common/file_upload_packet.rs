@@ -81,7 +81,7 @@ impl FileUploadPacket {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

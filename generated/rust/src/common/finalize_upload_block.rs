@@ -77,7 +77,7 @@ impl FinalizeUploadBlock {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -74,7 +74,7 @@ impl HoleMap4 {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -74,7 +74,7 @@ impl HoleMap5 {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

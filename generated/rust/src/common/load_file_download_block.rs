@@ -90,7 +90,7 @@ impl LoadFileDownloadBlock {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

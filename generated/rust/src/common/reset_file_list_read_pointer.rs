@@ -48,7 +48,7 @@ impl ResetFileListReadPointer {
         Self {}
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -55,7 +55,7 @@ impl ResetLogPointer {
         Self {}
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -56,7 +56,7 @@ impl ResetUploadBlock {
         Self {}
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -101,7 +101,7 @@ impl ActuatorCommands {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -210,7 +210,7 @@ impl AdcsMeasurements {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -76,7 +76,7 @@ impl AdcsMiscCurrents {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -60,7 +60,7 @@ impl Asgp4RunMode {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -186,7 +186,7 @@ impl AugmentedSgp4Parameters {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

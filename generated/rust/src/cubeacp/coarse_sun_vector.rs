@@ -68,7 +68,7 @@ impl CoarseSunVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -69,7 +69,7 @@ impl CommandedAttitudeAngles {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

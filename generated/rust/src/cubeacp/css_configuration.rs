@@ -124,7 +124,7 @@ impl CssConfiguration {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

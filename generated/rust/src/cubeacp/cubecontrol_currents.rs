@@ -65,7 +65,7 @@ impl CubecontrolCurrents {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

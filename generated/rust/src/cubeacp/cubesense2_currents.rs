@@ -67,7 +67,7 @@ impl Cubesense2Currents {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

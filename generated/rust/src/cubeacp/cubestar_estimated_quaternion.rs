@@ -79,7 +79,7 @@ impl CubestarEstimatedQuaternion {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -75,7 +75,7 @@ impl CubestarEstimatedRates {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

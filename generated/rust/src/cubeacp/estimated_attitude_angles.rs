@@ -68,7 +68,7 @@ impl EstimatedAttitudeAngles {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

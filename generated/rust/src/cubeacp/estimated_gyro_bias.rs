@@ -67,7 +67,7 @@ impl EstimatedGyroBias {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

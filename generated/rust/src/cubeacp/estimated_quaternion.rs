@@ -73,7 +73,7 @@ impl EstimatedQuaternion {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

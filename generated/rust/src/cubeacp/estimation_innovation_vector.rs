@@ -72,7 +72,7 @@ impl EstimationInnovationVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -82,7 +82,7 @@ impl FineAngularRates {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -83,7 +83,7 @@ impl MagnetorquerCommand {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

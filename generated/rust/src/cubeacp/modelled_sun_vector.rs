@@ -67,7 +67,7 @@ impl ModelledSunVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -71,7 +71,7 @@ impl RateSensorRates {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

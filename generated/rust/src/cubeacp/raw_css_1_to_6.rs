@@ -97,7 +97,7 @@ impl RawCss1To6 {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

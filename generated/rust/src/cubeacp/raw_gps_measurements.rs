@@ -156,7 +156,7 @@ impl RawGpsMeasurements {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -84,7 +84,7 @@ impl RawGpsStatus {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -63,7 +63,7 @@ impl RawGpsTime {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -198,7 +198,7 @@ impl RawSensorMeasurements {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

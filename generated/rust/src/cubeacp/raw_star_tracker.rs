@@ -254,7 +254,7 @@ impl RawStarTracker {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -132,7 +132,7 @@ impl RedundantMagConfiguration {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

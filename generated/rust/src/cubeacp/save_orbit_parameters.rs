@@ -52,7 +52,7 @@ impl SaveOrbitParameters {
         Self {}
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -88,7 +88,7 @@ impl SdLog1Configuration {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

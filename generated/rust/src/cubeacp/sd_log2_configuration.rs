@@ -88,7 +88,7 @@ impl SdLog2Configuration {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -61,7 +61,7 @@ impl SetAdcsRunMode {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -54,7 +54,7 @@ impl SetAttitudeEstimationMode {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

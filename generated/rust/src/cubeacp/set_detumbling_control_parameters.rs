@@ -93,7 +93,7 @@ impl SetDetumblingControlParameters {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -82,7 +82,7 @@ impl SetMagnetorquerOutput {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

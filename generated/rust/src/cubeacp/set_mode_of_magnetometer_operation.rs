@@ -62,7 +62,7 @@ impl SetModeOfMagnetometerOperation {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

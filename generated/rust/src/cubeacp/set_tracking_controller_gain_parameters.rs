@@ -92,7 +92,7 @@ impl SetTrackingControllerGainParameters {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -86,7 +86,7 @@ impl SetWheelConfiguration {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

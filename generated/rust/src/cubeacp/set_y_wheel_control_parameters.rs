@@ -106,7 +106,7 @@ impl SetYWheelControlParameters {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -88,7 +88,7 @@ impl Sgp4OrbitParameters {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -75,7 +75,7 @@ impl Star1OrbitVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -77,7 +77,7 @@ impl StarMagnitude {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -94,7 +94,7 @@ impl StarPerformance1 {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -109,7 +109,7 @@ impl StarPerformance2 {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

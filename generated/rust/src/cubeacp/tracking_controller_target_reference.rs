@@ -76,7 +76,7 @@ impl TrackingControllerTargetReference {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -445,7 +445,7 @@ impl TriggerSimulatedLoop {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -66,7 +66,7 @@ impl UserCodedControllerAndEstimatorParameters {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -80,7 +80,7 @@ impl WheelCurrents {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -70,7 +70,7 @@ impl WheelSpeedCommands {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

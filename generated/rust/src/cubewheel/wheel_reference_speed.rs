@@ -78,7 +78,7 @@ impl WheelReferenceSpeed {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

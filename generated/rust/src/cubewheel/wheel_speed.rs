@@ -76,7 +76,7 @@ impl WheelSpeed {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
