@@ -85,7 +85,7 @@ impl FileUploadPacket {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 22], Error> {
         let mut bytes = [0; 22];

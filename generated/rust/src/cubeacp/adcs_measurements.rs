@@ -214,7 +214,7 @@ impl AdcsMeasurements {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 72], Error> {
         let mut bytes = [0; 72];

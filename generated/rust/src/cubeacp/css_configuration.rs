@@ -128,7 +128,7 @@ impl CssConfiguration {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 21], Error> {
         let mut bytes = [0; 21];

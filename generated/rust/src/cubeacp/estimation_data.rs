@@ -169,7 +169,7 @@ impl EstimationData {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 42], Error> {
         let mut bytes = [0; 42];

@@ -202,7 +202,7 @@ impl RawSensorMeasurements {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 34], Error> {
         let mut bytes = [0; 34];

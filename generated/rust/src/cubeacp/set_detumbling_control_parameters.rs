@@ -97,7 +97,7 @@ impl SetDetumblingControlParameters {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 14], Error> {
         let mut bytes = [0; 14];

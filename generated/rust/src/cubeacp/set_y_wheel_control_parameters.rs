@@ -110,7 +110,7 @@ impl SetYWheelControlParameters {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 20], Error> {
         let mut bytes = [0; 20];

@@ -92,7 +92,7 @@ impl Sgp4OrbitParameters {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 64], Error> {
         let mut bytes = [0; 64];

@@ -80,7 +80,7 @@ impl TrackingControllerTargetReference {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 12], Error> {
         let mut bytes = [0; 12];

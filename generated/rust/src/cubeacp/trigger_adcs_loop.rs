@@ -52,7 +52,7 @@ impl TriggerAdcsLoop {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 0], Error> {
         Ok([0; 0])

@@ -449,7 +449,7 @@ impl TriggerSimulatedLoop {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 127], Error> {
         let mut bytes = [0; 127];
