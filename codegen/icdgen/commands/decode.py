@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from icdgen.recognize import Reading
 
 _KINDS = click.Choice(["telecommand", "telemetry", "configuration"])
+_LONGEST_ID, _OF_BYTE = 10, (1, 2, 3)  # digits: of an id of 32 bits; of a byte, in decimals or not
 _MOST = 1_000_000  # bytes that are read for frames
 _CSV = ("frame", "node", "message", "direction", "id", "field", "raw", "value", "unit", "remarks")
 
@@ -66,6 +67,8 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
             node = find_node(icd, words.pop(0)).name
         elif only and not _is_bytes(words[0]) and by_name(icd.messages_of(only), words[0], only.vocabulary):
             node = only.name
+        elif only and _is_id(words) and any(int(words[0]) in message.ids for message in icd.messages_of(only)):
+            node = only.name
         elif not _is_frame(words):
             node = only.name if only else find_node(icd, words.pop(0)).name
     if node is not None and len(words) > 1:
@@ -75,9 +78,7 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
             if not _is_frame(words):
                 raise
             if _is_id(words):
-                raise NotFound(
-                    str(error), f"{error.help}; a byte of the frame has two digits, as those after it"
-                ) from None
+                raise NotFound(str(error), f"{error.help}; a frame that begins so is given as one word") from None
         except Ambiguous:
             if not find_sharing(icd, node, words[0], kind):
                 raise
@@ -88,8 +89,13 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
 
 
 def _is_id(words: list[str]) -> bool:
-    """Whether the first word is a number that is no byte of the frame which the others are: those are not single bytes."""
-    return words[0].isdecimal() and (len(words[0]) != 2 or any(len(word) != 2 for word in words[1:]))
+    """Whether the first word is a number as ids are, and no part of the frame, for the others are no single bytes."""
+    first, *others = words
+    return (
+        first.isdecimal()
+        and len(first) <= _LONGEST_ID
+        and any(len(one) not in (len(first), *_OF_BYTE) for one in others)
+    )
 
 
 def _is_frame(words: list[str]) -> bool:
