@@ -125,6 +125,9 @@ class TestDecode:
             (["demo", "146", "@nowhere"], "cannot read nowhere"),
             (["demo", "99", "2efb01"], "demo has no message `99`"),
             (["demo", "9", "2e", "fb"], "demo has no message `9`"),
+            (["demo", "146"], "there is no frame for Estimated Roll of demo"),
+            (["demo", "Estimated Roll"], "there is no frame for Estimated Roll of demo"),
+            (["demo", "Estimatd Roll?"], "demo has no message `Estimatd Roll?`"),
             (["demo", "147", "2e", "fb"], "demo has no message `147`"),
         ],
     )
