@@ -99,7 +99,7 @@ impl BootAndRunningProgramStatus {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -134,7 +134,7 @@ impl Asgp4Tles {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -384,7 +384,7 @@ impl CubesenseConfiguration {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 112], Error> {
         let mut bytes = [0; 112];

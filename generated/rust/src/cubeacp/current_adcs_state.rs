@@ -247,7 +247,7 @@ impl CurrentAdcsState {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

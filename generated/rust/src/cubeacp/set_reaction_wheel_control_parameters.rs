@@ -103,7 +103,7 @@ impl SetReactionWheelControlParameters {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///

@@ -223,7 +223,7 @@ impl SetStarTrackerConfiguration {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 53], Error> {
         let mut bytes = [0; 53];
