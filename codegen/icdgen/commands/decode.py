@@ -16,10 +16,11 @@ from icdgen.commands.common import icd_option, load_or_exit, say
 from icdgen.errors import UserError
 
 if TYPE_CHECKING:
-    from icdgen.icd.model import Icd
+    from icdgen.icd.model import Icd, Message
     from icdgen.recognize import Reading
 
 _KINDS = click.Choice(["telecommand", "telemetry", "configuration"])
+_LONGEST_ID, _OF_BYTE = 10, (1, 2, 3)  # digits: of an id of 32 bits; of a byte, in decimals or not
 _MOST = 1_000_000  # bytes that are read for frames
 _CSV = ("frame", "node", "message", "direction", "id", "field", "raw", "value", "unit", "remarks")
 
@@ -55,7 +56,7 @@ def _no_id(word: str, node: str) -> str:
 def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | None, str | None, str | bytes]:
     """Node, message and frame: a word is the node or the message if there is one of that name."""
     from icdgen.values.errors import Ambiguous, NotFound
-    from icdgen.values.find import by_name, find_message, find_node, find_sharing, only_node
+    from icdgen.values.find import find_message, find_node, find_sharing, only_node
 
     node = message = None
     only = only_node(icd)
@@ -64,10 +65,12 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
     if len(words) > 1:
         if words[0].lower() in {n.name for n in icd.nodes}:
             node = find_node(icd, words.pop(0)).name
-        elif only and not _is_bytes(words[0]) and by_name(icd.messages_of(only), words[0], only.vocabulary):
+        elif only and _is_message(icd.messages_of(only), words, only.vocabulary):
             node = only.name
         elif not _is_frame(words):
             node = only.name if only else find_node(icd, words.pop(0)).name
+    if node is not None and len(words) == 1 and not _is_bytes(words[0]):
+        _refuse_lack(icd, node, words, kind)
     if node is not None and len(words) > 1:
         try:
             find_message(icd, node, words[0], kind)
@@ -75,9 +78,7 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
             if not _is_frame(words):
                 raise
             if _is_id(words):
-                raise NotFound(
-                    str(error), f"{error.help}; a byte of the frame has two digits, as those after it"
-                ) from None
+                raise NotFound(str(error), f"{error.help}; a frame that begins so is given as one word") from None
         except Ambiguous:
             if not find_sharing(icd, node, words[0], kind):
                 raise
@@ -87,9 +88,38 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
     return node, message, _content(words)
 
 
+def _is_message(messages: Sequence[Message], words: list[str], vocabulary: tuple[str, ...]) -> bool:
+    """Whether the first word is the name of a message or its id, and no part of the frame."""
+    from icdgen.values.find import by_name
+
+    if not _is_bytes(words[0]) and by_name(messages, words[0], vocabulary):
+        return True
+    return _is_id(words) and any(int(words[0]) in message.ids for message in messages)
+
+
+def _refuse_lack(icd: Icd, node: str, words: list[str], kind: str | None) -> None:
+    """A last word that names a message, or is no frame, is one for which a frame is lacking. Raises `UserError`."""
+    from icdgen.values.errors import NotFound
+    from icdgen.values.find import find_message
+
+    try:
+        message = find_message(icd, node, words[0], kind)
+    except NotFound:
+        if _is_frame(words):
+            return
+        raise
+    what = f"there is no frame for {message.name} of {node}"
+    raise UserError(what, "give it after the message, or - for standard input")
+
+
 def _is_id(words: list[str]) -> bool:
-    """Whether the first word is a number that is no byte of the frame which the others are: those are not single bytes."""
-    return words[0].isdecimal() and (len(words[0]) != 2 or any(len(word) != 2 for word in words[1:]))
+    """Whether the first word is a number as ids are, and no part of the frame, for the others are no single bytes."""
+    first, *others = words
+    return (
+        first.isdecimal()
+        and len(first) <= _LONGEST_ID
+        and any(len(one) not in (len(first), *_OF_BYTE) for one in others)
+    )
 
 
 def _is_frame(words: list[str]) -> bool:
