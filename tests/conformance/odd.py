@@ -194,7 +194,7 @@ structs:
       - {at: 0, name: Match, struct: Odd, count: 2}
       - {at: 147, bits: 32, name: Across, type: float, special: [{value: nan, meaning: none}, {value: -1.5, meaning: left}]}
       - {at: 184, bits: 32, name: Whole Float, type: float, byte_order: big, formula: raw*57.29578}
-      - {at: 216, bits: 64, name: Longest, type: int, special: [{value: -1, meaning: none}]}
+      - {at: 216, bits: 64, name: Longest, type: int, special: [{value: -9223372036854775808, meaning: none}]}
       - {at: 282, bits: 3, count: 3, name: Crossing, type: uint, byte_order: big, formula: raw^3 - 9*raw}
       - {at: 296, bits: 8, count: 2, name: Turns, type: enum, enum: Turn}
   - name: Row

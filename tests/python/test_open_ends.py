@@ -88,9 +88,9 @@ def test_texts_may_be_an_array(package, messages):
     assert again == rows and again.words_text == ("a", "", "four", "12345678")
     assert messages.Rows.from_json(rows.to_json()) == rows
     error = package.module("_errors").RangeError
-    with pytest.raises(error, match=r"words\[1\] takes up to 8 ASCII"):
+    with pytest.raises(error, match=r"words_text\[1\] takes up to 8 ASCII"):
         rows.words_text = ("", "123456789", "", "")
-    with pytest.raises(error, match="words takes 4 values"):
+    with pytest.raises(error, match="words_text takes 4 values"):
         rows.words_text = ("", "")
     with pytest.raises(error, match=r"pairs\[2\] takes 2 bytes"):
         messages.Rows(pairs=(b"ab", b"cd", b"e")).to_bytes()

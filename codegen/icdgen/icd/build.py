@@ -194,6 +194,8 @@ class Builder:
         struct = self.scope.structs.get(item.get("struct", ""))
         end = self.field(item, orders(message)) if struct is None else self.standing(item, struct, orders(message))
         end = replace(end, bits=8 * most) if "size" in item else replace(end, count=most)
+        if not end.elements:
+            return None, ()  # nothing of the struct can be read
         if counter is not None:
             return tail, end.elements
         implied = implied_count(end, message["length"] + most * tail.step)

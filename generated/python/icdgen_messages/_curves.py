@@ -14,6 +14,7 @@ from functools import lru_cache
 
 from . import _lazy
 from ._errors import RangeError
+from ._scales import span_of
 
 
 def on_curve(curve: _lazy.Curve, raw: float) -> float:
@@ -61,14 +62,18 @@ def columns_on_curve(numpy: _lazy.Any, curve: _lazy.Curve, raw: _lazy.Any) -> _l
 
 
 def from_curve(value: _lazy.Any, info: _lazy.FieldInfo, field: str) -> _lazy.Any:
-    """The nearest raw value, of two the even one. Raises `RangeError`."""
+    """The nearest raw value, of two the even one. Raises `RangeError` that names ``field``, the attribute that is set."""
     try:
         top, bottom = value.as_integer_ratio()
         wanted = value if isinstance(value, float) else top / bottom
     except (ArithmeticError, AttributeError, TypeError, ValueError):
         raise RangeError(field, "a finite number", value) from None
     if not info.leads_back:
-        raise RangeError(field, "raw values only: it does not lead back to one", value)
+        raise RangeError(
+            field,
+            f"no value, as it does not lead back: set {info.attribute}",
+            value,
+        )
     if info.type == "float":
         return _number(wanted, info, field)
     return _nearest(wanted, info, field)
@@ -93,7 +98,7 @@ def _nearest(value: float, info: _lazy.FieldInfo, field: str) -> int:
     rises = first < last
     least, most = (first, last) if rises else (last, first)
     if not least <= value <= most:
-        raise RangeError(field, f"{least!r} to {most!r}", value)
+        raise RangeError(field, span_of(least, most, info.unit), value)
     while high - low > 1:
         middle = (low + high) // 2
         here = on_curve(info.curve, middle)

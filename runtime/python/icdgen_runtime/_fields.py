@@ -268,12 +268,12 @@ class Form:
             info.whole = name
         else:
             info.physical, info.scale = name, self.terms
-        return _number_property(info, self)
+        return _number_property(info, self, name)
 
 
-def _number_property(info: FieldInfo, form: Form) -> property:
+def _number_property(info: FieldInfo, form: Form, name: str) -> property:
     if info.elements:
-        return _array_property(info, form)
+        return _array_property(info, form, name)
     attribute, terms = info.attribute, form.terms
     p, c, q = terms
     is_whole = form.kind == "whole"
@@ -287,7 +287,7 @@ def _number_property(info: FieldInfo, form: Form) -> property:
         return value
 
     def set_nearest(self: Any, value: float) -> None:
-        setattr(self, attribute, nearest_raw(value, attribute, terms, info.raw_range))
+        setattr(self, attribute, nearest_raw(value, info, name, terms))
 
     if info.when:
         return _optional(
@@ -311,21 +311,21 @@ def _optional(attribute: str, get: Any, set: Any) -> property:
 def _curve_property(info: FieldInfo) -> property:
     from ._curves import from_curve, on_curve
 
-    attribute, curve = info.attribute, info.curve
+    attribute, curve, name = info.attribute, info.curve, info.physical
 
     def get(self: Any) -> float:
         return on_curve(curve, getattr(self, attribute))
 
     def set(self: Any, value: float) -> None:
-        setattr(self, attribute, from_curve(value, info, attribute))
+        setattr(self, attribute, from_curve(value, info, name))
 
     def get_all(self: Any) -> tuple[float, ...]:
         return tuple(on_curve(curve, raw) for raw in getattr(self, attribute))
 
     def set_all(self: Any, values: Any) -> None:
-        _counted(info, values)
+        _counted(info, name, values)
         each = enumerate(values)
-        found = (from_curve(one, info, f"{attribute}[{place}]") for place, one in each)
+        found = (from_curve(one, info, f"{name}[{place}]") for place, one in each)
         setattr(self, attribute, tuple(found))
 
     if info.when:
@@ -333,15 +333,15 @@ def _curve_property(info: FieldInfo) -> property:
     return property(get_all, set_all) if info.elements else property(get, set)
 
 
-def _counted(info: FieldInfo, values: Any) -> None:
-    """Raises `RangeError` unless there is a value for each element."""
+def _counted(info: FieldInfo, name: str, values: Any) -> None:
+    """Raises `RangeError` that names the attribute unless there is a value for each element."""
     from ._codec import elements_of, has_elements
 
     if not has_elements(info, values):
-        raise RangeError(info.attribute, elements_of(info), values)
+        raise RangeError(name, elements_of(info), values)
 
 
-def _array_property(info: FieldInfo, form: Form) -> property:
+def _array_property(info: FieldInfo, form: Form, name: str) -> property:
     attribute, terms = info.attribute, form.terms
     p, c, q = terms
     is_whole = form.kind == "whole"
@@ -353,9 +353,9 @@ def _array_property(info: FieldInfo, form: Form) -> property:
         return tuple((raw * p + c) / q for raw in getattr(self, attribute))
 
     def set_nearest(self: Any, values: Any) -> None:
-        _counted(info, values)
+        _counted(info, name, values)
         found = (
-            nearest_raw(value, f"{attribute}[{index}]", terms, info.raw_range)
+            nearest_raw(value, info, f"{name}[{index}]", terms)
             for index, value in enumerate(values)
         )
         setattr(self, attribute, tuple(found))

@@ -9,22 +9,25 @@ pub(crate) type Piece = (f64, &'static [f64]);
 #[derive(Debug)]
 pub(crate) struct Curve {
     pub(crate) field: &'static str,
+    pub(crate) allowed: &'static str,
     pub(crate) min: i32,
     pub(crate) max: i32,
     pub(crate) pieces: &'static [Piece],
 }
 
 impl Curve {
-    /// Of `field`, for raw values from `min` to `max`, between which the physical ones rise or fall all along.
+    /// Of `field`, which takes what is `allowed`, for raw values from `min` to `max`, between which the physical ones rise or fall all along.
     ///
     /// Both are 0 where no physical value is set, or that of a float.
     pub(crate) const fn new(
         field: &'static str,
+        allowed: &'static str,
         (min, max): (i32, i32),
         pieces: &'static [Piece],
     ) -> Self {
         Self {
             field,
+            allowed,
             min,
             max,
             pieces,
@@ -32,7 +35,7 @@ impl Curve {
     }
 
     const fn refusal(&self) -> Error {
-        Error::Range { field: self.field }
+        Error::range(self.field, self.allowed)
     }
 
     /// The physical value of a number; one that is none has always the same bits.
