@@ -193,7 +193,7 @@ ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length
     for (size_t i = 0; i < length; ++i) {
         const uint32_t byte = form->reflect_in ? icdgen_reflected(bytes[i], 8) : bytes[i];
 #ifndef ICDGEN_NO_TABLES
-        if (form->table8 != NULL || form->table16 != NULL) {
+        if ((form->table8 != NULL) || (form->table16 != NULL)) {
             const uint32_t row = (((value >> beyond) << missing) ^ byte) & 0xFFu;
             uint32_t entry;
             if (form->table8 != NULL) {

@@ -86,7 +86,7 @@ fn writing() {
     let mut state = CurrentAdcsState::default();
     assert_eq!(state.to_bytes(), Ok([0; 6]));
     state.control_mode = Coded::from_raw(0x1e);
-    assert_eq!(state.to_bytes(), Err(Error::Range { field: "Control Mode", allowed: "0 to 15" }));
+    assert_eq!(state.to_bytes(), Err(Error::Range { field: "Control Mode", allowed: "ConModeSelect, 0 to 15" }));
 }
 
 fn enumerations() {

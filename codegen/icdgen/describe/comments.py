@@ -252,11 +252,13 @@ def span_text(field: Field) -> str:
 
 
 def takes_text(field: Field, is_narrow: bool) -> str:
-    """``0 to 6553.5 m/s``, ``0 to 15``: what a setter takes, or an encoder; also raw where more fits what holds it."""
+    """``0 to 6553.5 m/s``, ``Mode, 0 to 15``: what a setter takes, or an encoder; also raw where more fits what holds it."""
     unit = f" {words(field.unit.symbol)}" if field.unit else ""
     if field.type == "float":
         return f"what {field.bits} bits of a float hold"
     raw, span = f"{field.raw_min} to {field.raw_max}", span_text(field)
+    if field.enum is not None:
+        return f"{words(field.enum.name)}, {raw}"
     return f"{span}{unit}{f', raw {raw}' if is_narrow else ''}" if span else f"{raw}{'' if field.has_formula else unit}"
 
 

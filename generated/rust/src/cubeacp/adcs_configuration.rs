@@ -4150,12 +4150,14 @@ const STAR_TRACKING_SEARCH_WIDTH: Scale =
 const REFERENCE_SPIN_RATE: Scale =
     Scale::new("Reference spin rate", "-32.768 to 32.767 deg/s", (-32_768, 32_767), (1, 0, 1_000));
 
-const SUN_POINTING_FACET: Scale = Scale::new("Sun-pointing Facet", "0 to 127", (0, 127), (1, 0, 1));
+const SUN_POINTING_FACET: Scale =
+    Scale::new("Sun-pointing Facet", "AxisSelect, 0 to 127", (0, 127), (1, 0, 1));
 
-const MAGNETOMETER_MODE: Scale = Scale::new("Magnetometer Mode", "0 to 3", (0, 3), (1, 0, 1));
+const MAGNETOMETER_MODE: Scale =
+    Scale::new("Magnetometer Mode", "MagModeVal, 0 to 3", (0, 3), (1, 0, 1));
 
 const RAW_MAGNETOMETER_SELECTION: Scale =
-    Scale::new("Magnetometer Selection for RAW MTM TLM", "0 to 3", (0, 3), (1, 0, 1));
+    Scale::new("Magnetometer Selection for RAW MTM TLM", "MagModeVal, 0 to 3", (0, 3), (1, 0, 1));
 
 const CAM1_PERIOD: Scale = Scale::new("Cam1 period", "0 to 15 s", (0, 15), (1, 0, 1));
 

@@ -987,16 +987,17 @@ impl AdcsState {
 }
 
 const ATTITUDE_ESTIMATION_MODE: Scale =
-    Scale::new("Attitude Estimation Mode", "0 to 15", (0, 15), (1, 0, 1));
+    Scale::new("Attitude Estimation Mode", "EstimModeSelect, 0 to 15", (0, 15), (1, 0, 1));
 
-const CONTROL_MODE: Scale = Scale::new("Control Mode", "0 to 15", (0, 15), (1, 0, 1));
+const CONTROL_MODE: Scale =
+    Scale::new("Control Mode", "ConModeSelect, 0 to 15", (0, 15), (1, 0, 1));
 
-const ADCS_RUN_MODE: Scale = Scale::new("ADCS Run Mode", "0 to 3", (0, 3), (1, 0, 1));
+const ADCS_RUN_MODE: Scale = Scale::new("ADCS Run Mode", "AdcsRunMode, 0 to 3", (0, 3), (1, 0, 1));
 
-const ASGP4_MODE: Scale = Scale::new("ASGP4 Mode", "0 to 3", (0, 3), (1, 0, 1));
+const ASGP4_MODE: Scale = Scale::new("ASGP4 Mode", "Asgp4ModeSelect, 0 to 3", (0, 3), (1, 0, 1));
 
 const CURRENT_MAGNETOMETER_SAMPLING_MODE: Scale =
-    Scale::new("Current Magnetometer Sampling Mode", "0 to 3", (0, 3), (1, 0, 1));
+    Scale::new("Current Magnetometer Sampling Mode", "MagModeVal, 0 to 3", (0, 3), (1, 0, 1));
 
 const ESTIMATED_ROLL_ANGLE: Scale =
     Scale::new("Estimated Roll Angle", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
