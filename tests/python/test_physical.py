@@ -92,6 +92,13 @@ def test_what_is_no_number_is_refused(shipped):
             angles.estimated_roll_angle_deg = value
 
 
+def test_a_physical_value_in_a_raw_attribute_is_told_where_it_belongs(shipped):
+    angles = shipped.module("cubeacp").EstimatedAttitudeAngles(estimated_roll_angle=12.5)
+    said = r"^estimated_roll_angle takes integers .* \(estimated_roll_angle_deg takes physical values\), not 12\.5$"
+    with pytest.raises(shipped.module().RangeError, match=said):
+        angles.to_bytes()
+
+
 def physical_name(info) -> str:
     return info.physical or info.attribute
 

@@ -223,7 +223,9 @@ def seen(message: _lazy.Message, attribute: str, kind: _lazy.Any) -> _lazy.Any:
 def _fits_integer(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
     low, high = info.raw_range
     named = "" if info.enum is None else f"members of {info.enum.__name__} or "
-    return f"{named}integers from {low} to {high}", _is_within(value, low, high)
+    meant = info.physical if isinstance(value, float) and info.leads_back else ""
+    hint = f" ({meant} takes physical values)" if meant else ""
+    return f"{named}integers from {low} to {high}{hint}", _is_within(value, low, high)
 
 
 def _fits_bool(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
