@@ -2,9 +2,9 @@
 
     pip install pymavlink && python bench/stream_decoders.py [--messages 2000] [--noise 0.1]
 
-Both are made of the same XML and are given the same bytes; each must find all messages. Counted in instructions (valgrind) and timed,
-taking turns, as the least of many rounds. Ours also tells of gaps and of what it drops; theirs does not look for a frame within bytes
-that turned out to be none.
+Both are made of the same XML and are given the same bytes; each must find all messages. Counted in instructions (valgrind) and
+timed, taking turns, as the least of many rounds. Ours also tells of gaps and of what it drops; theirs does not look for a
+frame within bytes that turned out to be none.
 """
 
 from __future__ import annotations
