@@ -681,7 +681,7 @@ messages:
       - {at: 304, bits: 240, name: Longer, type: text, count: 2}
       - {at: 784, bits: 8, name: Data, type: bytes, count: 1}
       - {at: 792, bits: 1, name: Flag, type: bool, count: 3}
-  - name: Open Rows
+  - name: Rows to the end
     id: 151
     kind: telemetry
     length: 1
