@@ -18,6 +18,7 @@ from icdgen.describe.numbers import (
     exact_text,
     length_text,
     octets_text,
+    points_text,
     special_text,
     value_text,
 )
@@ -238,7 +239,10 @@ def _meaning(field: Field) -> str:
     if not field.has_formula:
         return f"{text}, in {unit}" if unit else text
     range = span_text(field)
-    what = f"; physical `{words(field.formula)}`{', in doubles' if field.curve is not None else ''}"
+    how = f"`{words(field.formula)}`"
+    if field.curve is not None:
+        how = f"by points {points_text(field.curve, 6)}" if field.curve.points else f"{how}, in doubles"
+    what = f"; physical {how}"
     return f"{text}{what}{f', {range}' if range else ', in' if unit else ''}{f' {unit}' if unit else ''}"
 
 

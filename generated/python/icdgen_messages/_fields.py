@@ -22,7 +22,7 @@ class FieldInfo:
     __slots__ = (
         "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
         "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
-        "elements", "is_open", "fewest", "struct", "curve", "leads_back", "when",
+        "elements", "is_open", "fewest", "struct", "curve", "ends", "leads_back", "when",
     )  # fmt: skip
 
     def __init__(
@@ -50,7 +50,8 @@ class FieldInfo:
         is_open: bool = False,
         fewest: int = 0,
         struct: _lazy.Optional[type[_lazy.Struct]] = None,
-        curve: tuple[float, ...] = (),
+        curve: _lazy.Curve = (),
+        ends: tuple[int, ...] = (),
         leads_back: bool = True,
         when: tuple[tuple[str, tuple[int, ...]], ...] = (),
     ) -> None:
@@ -103,10 +104,13 @@ class FieldInfo:
         self.struct = struct
         """The class of what stands here, where that is a struct; the offsets in it begin at 0."""
         self.curve = curve
-        """Of a polynomial its coefficients, the constant first, and no scale.
+        """How it is computed in doubles, and no scale: from a raw value on, the terms of
+        a polynomial in what is above that, the constant first.
 
-        The physical value is computed from them in doubles, by Horner's rule.
+        A table of points has several such pieces; without terms there is no number.
         """
+        self.ends = ends
+        """The raw values between which a physical one leads back, where not all do."""
         self.leads_back = leads_back
         """Whether the physical value can be set."""
         self.when = when
@@ -241,15 +245,16 @@ class Tail:
 class Form:
     """Another attribute of the field that is declared before it: its value in another form."""
 
-    __slots__ = ("kind", "terms", "curve")
+    __slots__ = ("kind", "terms", "curve", "ends")
 
     def __init__(
         self,
         kind: str,
         terms: tuple[int, int, int] = (1, 0, 1),
-        curve: tuple[float, ...] = (),
+        curve: _lazy.Curve = (),
+        ends: tuple[int, ...] = (),
     ) -> None:
-        self.kind, self.terms, self.curve = kind, terms, curve
+        self.kind, self.terms, self.curve, self.ends = kind, terms, curve, ends
 
     def property_of(self, info: FieldInfo, name: str) -> property:
         """What the class has as ``name``, which the field is told of."""
@@ -257,7 +262,7 @@ class Form:
             info.physical = name
             return _text_property(info)
         if self.curve:
-            info.physical, info.curve = name, self.curve
+            info.physical, info.curve, info.ends = name, self.curve, self.ends
             info.leads_back = self.kind == "curve"
             return _curve_property(info)
         if self.kind == "whole":
@@ -410,23 +415,26 @@ def scaled(p: int, c: int, q: int, *, default: _lazy.Any) -> _lazy.Any:
     return Form("scaled", (p, c, q))
 
 
-def curve(coefficients: tuple[float, ...], *, default: _lazy.Any) -> _lazy.Any:
-    """The physical value by a polynomial in the field above, the constant first.
+def curve(
+    *pieces: tuple[float, tuple[float, ...]],
+    default: _lazy.Any,
+    ends: tuple[int, ...] = (),
+) -> _lazy.Any:
+    """The physical value of the field above by a curve: see `FieldInfo.curve`.
 
-    It is computed in doubles, by Horner's rule. Setting it takes the nearest raw value,
-    of two the even one. Raises `RangeError`.
+    Setting it takes the nearest raw value, of two the even one, between ``ends`` where
+    these are told. Raises `RangeError`.
     """
-    return Form("curve", curve=coefficients)
+    return Form("curve", curve=pieces, ends=ends)
 
 
 def curve_only(
-    coefficients: tuple[float, ...],
-    *,
+    *pieces: tuple[float, tuple[float, ...]],
     default: _lazy.Any,
     init: _lazy.Literal[False] = False,
 ) -> _lazy.Any:
     """The same where it does not lead back to a raw value: it is only read."""
-    return Form("curve_only", curve=coefficients)
+    return Form("curve_only", curve=pieces)
 
 
 def whole(p: int, c: int, *, init: _lazy.Literal[False] = False) -> _lazy.Any:
