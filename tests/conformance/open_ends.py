@@ -36,5 +36,5 @@ def _counted(draw, key: str, counter: dict | None, most: int) -> dict:
 
 def _counts(field: dict) -> bool:
     """Whether a field can say how many elements there are."""
-    others = ("formula", "const", "count", "view", "bitfields")
+    others = ("formula", "points", "const", "count", "view", "bitfields")
     return field.get("type") == "uint" and not any(key in field for key in others)

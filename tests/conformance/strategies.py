@@ -292,7 +292,7 @@ def _listed(when: dict) -> list[list[int]]:
 
 def _decides(field: dict) -> bool:
     """Whether other fields may depend on its value."""
-    others = ("formula", "const", "count", "view", "bitfields", "struct", "special")
+    others = ("formula", "points", "const", "count", "view", "bitfields", "struct", "special")
     return field.get("type") in ("uint", "bool", "enum") and not any(key in field for key in others)
 
 
