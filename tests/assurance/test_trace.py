@@ -138,7 +138,12 @@ def hold(pack: Pack, change: dict[str, str], folder: Path) -> None:
             if pack.fields(message, node) != pack.fields(message, node, changed):
                 continue  # parts that no longer make up their field, or elements: all frames are decoded to other names
             others = pack.vectors.of_message(node, message)
-            rest = [(number, cases) for number, cases in others if is_row(cases) and number not in listed.get(node, ())]
+            # a value that does not come back from its physical one is asked in another frame than that of the row
+            rest = [
+                (number, [one for one in cases if one.answer.get("bytes") is not ...])
+                for number, cases in others
+                if is_row(cases) and number not in listed.get(node, ())
+            ]
             assert judge.failing(rest) == set(), change
 
 
