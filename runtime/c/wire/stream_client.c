@@ -18,7 +18,8 @@ static inline size_t icdgen_request_bytes(const icd_stream_form_t *form)
 
 ICDGEN_API size_t icd_stream_client_bytes(const icd_link_t *link, size_t requests)
 {
-    return link->stream != NULL ? link->longest + (requests * icdgen_request_bytes(link->stream)) : 0u;
+    const icd_stream_form_t *const form = link->stream;
+    return form != NULL ? ICDGEN_SIZE(link->longest) + (requests * icdgen_request_bytes(form)) : 0u;
 }
 
 ICDGEN_API icd_status_t icd_stream_client_init(
