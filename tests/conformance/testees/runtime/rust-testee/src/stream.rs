@@ -1,8 +1,8 @@
 //! Requests about messages in an envelope.
 
 use crate::line::{hex, Answer, Words};
-use crate::wire::explained;
 use crate::nodes::LONGEST;
+use crate::wire::explained;
 use icd::wire::link::{EnvelopeRole, Link, Stream};
 use icd::wire::stream::{encode, Client, Decoder, Event, NodeEvent, Request, Values};
 use icd::wire::{Direction, Error, Settings, Started};
@@ -117,15 +117,14 @@ fn scripted<const R: usize>(link: &'static Link, words: &mut Words) -> Answer {
     let client = Client::<(), LONGEST, SEQUENCES, R>::new(link)?;
     let mut client = client.with_settings(settings);
     let mut answer = String::new();
-    let mut line = vec![0; 2 * LONGEST + 8];
+    let mut room = vec![0; 2 * LONGEST + 8];
     while words.more() {
         let (now, takes) = (words.number(), words.flag());
         answer += " step";
         happen(&mut client, form, now, words, &mut answer);
-        while takes {
-            match client.output(&mut line)? {
-                Some(bytes) => answer += &format!(" stream bytes={}", hex(bytes)),
-                None => break,
+        if takes {
+            while let Some(bytes) = client.output(&mut room)? {
+                let _ = write!(answer, " stream bytes={}", hex(bytes));
             }
         }
         if let Some(deadline) = client.deadline() {
