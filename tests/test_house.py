@@ -98,3 +98,5 @@ def test_a_wheel_holds_templates_runtimes_icds_and_schemas_and_works_alone(tmp_p
     assert (tmp_path / "out" / "cubeacp.h").is_file()
     assert Path(site, "icdgen", "icd", "schema.json").is_file()
     assert [path for path in site.rglob("*") if "testee" in path.name] == []
+    result = subprocess.run([*command[:3], "--examples-dir"], cwd=tmp_path, capture_output=True, text=True)
+    assert result.stdout.strip().startswith(str(site)) and Path(result.stdout.strip(), "port.h").is_file()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import sys
+from collections.abc import Callable
 from importlib import import_module
 from keyword import iskeyword
 
@@ -21,6 +22,10 @@ _COMMANDS = (
     "monitor", "send",
 )  # fmt: skip
 _DEFAULT = "generate"
+_FOLDERS = {  # option -> what lies there, and the function of `icdgen.shipped` that says where
+    "--cmake-dir": ("the CMake module, for CMAKE_MODULE_PATH", "cmake"),
+    "--examples-dir": ("the example programs and ICDs", "examples"),
+}
 _WHOLE = 10_000  # characters of a sentence
 
 
@@ -38,7 +43,7 @@ class _Commands(click.Group):
         return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        if args and args[0] not in (*_COMMANDS, "--help", "-h", "--version", "--cmake-dir"):
+        if args and args[0] not in (*_COMMANDS, "--help", "-h", "--version", *_FOLDERS):
             _refuse_mistyped(args[0])
             args = [_DEFAULT, *args]
         return super().parse_args(ctx, args)
@@ -60,6 +65,10 @@ class _Commands(click.Group):
     def invoke(self, ctx: click.Context) -> object:
         try:
             return super().invoke(ctx)
+        except UserError as error:
+            from icdgen.commands.common import beside_shipped
+
+            raise beside_shipped(error, ctx) from None
         except BrokenPipeError:  # click would say 1, which means findings
             ctx.exit(141)
 
@@ -73,12 +82,19 @@ def _refuse_mistyped(word: str) -> None:
     raise UserError(f"there is no command `{word}`, and no file of that name", meant or "`icdgen --help` lists them")
 
 
-def _show_cmake_dir(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
+def _show_folder(ctx: click.Context, option: click.Parameter, wanted: bool) -> None:
     if wanted:
         from icdgen import shipped
 
-        click.echo(shipped.cmake().as_posix())  # as CMake takes paths everywhere
+        _, place = _FOLDERS[option.opts[0]]
+        click.echo(getattr(shipped, place)().as_posix())  # as CMake takes paths everywhere
         ctx.exit()
+
+
+def _folder(name: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """The option that says where what is shipped lies."""
+    help = f"Show the folder of {_FOLDERS[name][0]}, and exit."
+    return click.option(name, is_flag=True, expose_value=False, is_eager=True, callback=_show_folder, help=help)
 
 
 @click.group(
@@ -88,14 +104,8 @@ def _show_cmake_dir(ctx: click.Context, _: click.Parameter, wanted: bool) -> Non
     epilog="`icdgen --lang c` is short for `icdgen generate --lang c`. Exit status: 0 clean, 1 findings, 2 misuse.",
 )
 @click.version_option(__version__, prog_name="icdgen")
-@click.option(
-    "--cmake-dir",
-    is_flag=True,
-    expose_value=False,
-    is_eager=True,
-    callback=_show_cmake_dir,
-    help="Show the folder of the CMake module, for CMAKE_MODULE_PATH, and exit.",
-)
+@_folder("--cmake-dir")
+@_folder("--examples-dir")
 @click.pass_context
 def icdgen(ctx: click.Context) -> None:
     """Code, golden vectors and documentation from validated device ICDs."""

@@ -196,15 +196,15 @@ def raw_from_physical(field: Field, value: Fraction | int | float) -> int:
 
 def _raw_on_curve(field: Field, curve: Curve, value: float) -> int:
     if not field.leads_back:
-        raise CodecError(f"the formula of {field.name!r} does not lead back to a raw value")
+        raise CodecError(f"the physical value of {field.name!r} does not lead back to a raw value")
     if field.type == "float":
         inverse = curve.inverse(value)
         if not math.isfinite(inverse):
             raise CodecError(f"{field.name!r} cannot hold {value:g}")
         return float_bits(field, inverse)
-    raw = curve.nearest(value, field.raw_min, field.raw_max)
+    raw = curve.nearest(value, *field.ends)
     if raw is None:
-        low, high = sorted((curve.double(field.raw_min), curve.double(field.raw_max)))
+        low, high = sorted(map(curve.double, field.ends))
         raise CodecError(f"{field.name!r} takes {low:g} to {high:g}, not {value:g}")
     return raw
 

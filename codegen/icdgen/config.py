@@ -20,8 +20,9 @@ _KEYS = {"icds": list, "lang": list, "out": str, "templates": str}
 
 @dataclass(eq=False, repr=False)
 class Config:
-    """What the file says; ``looked_at`` names every place where it was or might have been."""
+    """What the file at ``path`` says; ``looked_at`` names every place where it was or might have been."""
 
+    path: Path | None = None
     icds: list[Path] = field(default_factory=list)
     lang: list[str] = field(default_factory=list)
     out: Path | None = None
@@ -71,6 +72,7 @@ def _read(path: Path) -> Config:
             )
     base = path.parent
     return Config(
+        path,
         icds=[base / item for item in data.get("icds", [])],
         lang=data.get("lang", []),
         out=base / data["out"] if "out" in data else None,

@@ -36,6 +36,11 @@ def cmake() -> Path:
     return _root() / "cmake"
 
 
+def examples() -> Path:
+    """Folder of the small programs and of the ICDs to begin with."""
+    return _root() / "examples"
+
+
 def docs() -> Path:
     """Folder of the manual, in Markdown."""
     return _root() / "docs"

@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // [valid]
     let error = setup.to_bytes().unwrap_err();
     // []
-    assert_eq!(error, icd::Error::Range { field: "Timeout" });
+    assert_eq!(error.to_string(), "`Timeout` takes 0 to 4095 s");
     setup.timeout = 0;
     // [name]
     let text = State::NAME;

@@ -179,6 +179,14 @@ static inline uint32_t icdgen_reflected(uint32_t value, unsigned width)
     return reflected;
 }
 
+/* A byte with its bits the other way round: halves change places, then quarters, then bits. */
+static inline uint32_t icdgen_reflected_byte(uint32_t byte)
+{
+    const uint32_t halves = ((byte & 0x0Fu) << 4) | (byte >> 4);
+    const uint32_t quarters = ((halves & 0x33u) << 2) | ((halves >> 2) & 0x33u);
+    return ((quarters & 0x55u) << 1) | ((quarters >> 1) & 0x55u);
+}
+
 ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length)
 {
     const icd_crc_form_t *const form = crc->form;
@@ -191,10 +199,17 @@ ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length
 #endif
     uint32_t value = crc->value;
     for (size_t i = 0; i < length; ++i) {
-        const uint32_t byte = form->reflect_in ? icdgen_reflected(bytes[i], 8) : bytes[i];
+        const uint32_t byte = form->reflect_in ? icdgen_reflected_byte(bytes[i]) : bytes[i];
 #ifndef ICDGEN_NO_TABLES
-        if (form->table != NULL) {
-            value = ((value << 8) ^ form->table[(((value >> beyond) << missing) ^ byte) & 0xFFu]) & mask;
+        if ((form->table8 != NULL) || (form->table16 != NULL)) {
+            const uint32_t row = (((value >> beyond) << missing) ^ byte) & 0xFFu;
+            uint32_t entry;
+            if (form->table8 != NULL) {
+                entry = form->table8[row];
+            } else {
+                entry = form->table16[row];
+            }
+            value = ((value << 8) ^ entry) & mask;
             continue;
         }
 #endif
@@ -966,6 +981,20 @@ static inline bool icdgen_stream_constants(
     return true;
 }
 
+/* Bytes of a header of which `left` came with which more can be said of it: those up to the next constant, or all. */
+static inline size_t icdgen_stream_next(const icd_stream_form_t *form, size_t left)
+{
+    size_t next = form->header_bytes;
+    for (size_t i = 0; i < form->field_count; ++i) {
+        const icd_envelope_field_t *const field = &form->fields[i];
+        const size_t end = ICDGEN_SIZE(field->at) + field->size;
+        if (field->role == ICD_ENVELOPE_CONSTANT && !field->in_trailer && end > left && end < next) {
+            next = end;
+        }
+    }
+    return next;
+}
+
 /* What the field of the length says that the data have; negative if that is none. */
 static inline int64_t icdgen_stream_length(
     const icd_stream_form_t *form, const icd_envelope_field_t *field, const uint8_t *frame, const uint8_t *trailer)
@@ -1040,6 +1069,7 @@ static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t a
         return 1;
     }
     if (left < form->header_bytes || field == NULL) {
+        decoder->needed = icdgen_stream_next(form, left);
         return 0;
     }
     const int64_t length = icdgen_stream_length(form, field, frame, frame);
@@ -1052,6 +1082,7 @@ static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t a
     }
     const size_t whole = ICDGEN_SIZE(size);
     if (left < whole) {
+        decoder->needed = whole;
         return 0;
     }
     const icdgen_verdict_t verdict = icdgen_stream_judge(decoder, frame, whole, listener);
@@ -1060,22 +1091,32 @@ static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t a
     return taken;
 }
 
-/* A byte where a field of the length delimits messages. There is room: a whole buffer is always decided. */
-static inline void icdgen_stream_append(icd_stream_decoder_t *decoder, uint8_t byte, const icdgen_listener_t *listener)
+/* Bytes where a field of the length delimits messages. There is room: a whole buffer is always decided. */
+static inline void icdgen_stream_append(
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
 {
-    size_t at = 0;
-    size_t count;
-    decoder->buffer[decoder->length] = byte;
-    decoder->length++;
-    do {
-        count = icdgen_stream_front(decoder, at, listener);
-        at += count;
-    } while (count != 0u);
-    if (at != 0u) {
-        decoder->length -= at;
-        (void)memmove(decoder->buffer, decoder->buffer + at, decoder->length);
+    size_t taken = 0;
+    while (taken < count) {
+        const size_t wanted = decoder->needed > decoder->length ? decoder->needed - decoder->length : 1u;
+        const size_t piece = wanted < (count - taken) ? wanted : (count - taken);
+        (void)memcpy(decoder->buffer + decoder->length, bytes + taken, piece);
+        decoder->length += piece;
+        taken += piece;
+        if (decoder->length >= decoder->needed) {
+            size_t at = 0;
+            size_t over;
+            do {
+                decoder->needed = 0;
+                over = icdgen_stream_front(decoder, at, listener);
+                at += over;
+            } while (over != 0u);
+            if (at != 0u) {
+                decoder->length -= at;
+                (void)memmove(decoder->buffer, decoder->buffer + at, decoder->length);
+            }
+        }
+        decoder->pending = decoder->length;
     }
-    decoder->pending = decoder->length;
 }
 
 static inline void icdgen_stream_fail(icd_stream_decoder_t *decoder, icd_stream_kind_t fault)
@@ -1167,11 +1208,11 @@ ICDGEN_API void icd_stream_feed(
     const uint32_t end = delimiter == ICD_DELIMITED_BY_SLIP ? ICDGEN_SLIP_END
         : delimiter == ICD_DELIMITED_BY_HDLC                ? ICDGEN_HDLC_FLAG
                                                             : 0u;
+    if (delimiter == ICD_DELIMITED_BY_LENGTH) {
+        icdgen_stream_append(decoder, bytes, count, &listener);
+        return;
+    }
     for (size_t i = 0; i < count; ++i) {
-        if (delimiter == ICD_DELIMITED_BY_LENGTH) {
-            icdgen_stream_append(decoder, bytes[i], &listener);
-            continue;
-        }
         decoder->pending++;
         if (bytes[i] == end) {
             icdgen_stream_end(decoder, &listener);

@@ -124,7 +124,8 @@ typedef struct {
     bool has_empty;
     /** Checksum of no bytes at all, where it is not what the algorithm gives. */
     uint32_t empty;
-    const uint16_t *table; /**< NULL: it is computed without. */
+    const uint8_t *table8;   /**< Of a width of up to 8 bits. */
+    const uint16_t *table16; /**< Of a greater one; both NULL: it is computed without. */
 } icd_crc_form_t;
 
 /** The optional checksum of telecommands and frames. */
@@ -829,6 +830,7 @@ typedef struct {
     uint8_t *buffer;
     size_t capacity;
     size_t length; /**< Bytes in the buffer. */
+    size_t needed; /* bytes in the buffer with which the next thing is decided, where a field tells the length */
     uint32_t *sequences;
     size_t sequence_count;
     size_t pending;     /**< Bytes of the stream about which nothing is decided yet. */

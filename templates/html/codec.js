@@ -144,22 +144,35 @@ const icdgenCodec = (() => {
     return [raw * p + c, q];
   }
 
-  /** A polynomial in doubles by Horner's rule; the constant stands first. NaN has always the same bits. */
-  function onCurve(coefficients, raw) {
-    const value = coefficients.reduceRight((sum, coefficient) => sum * raw + coefficient);
+  /**
+   * A curve in doubles: from each start on, the terms of a polynomial in what is above that, by Horner's rule; the constant
+   * stands first, and without terms there is no number. NaN has always the same bits.
+   */
+  function onCurve(pieces, raw) {
+    let [first, end] = [0, pieces.length];
+    while (end - first > 1) {
+      const middle = Math.floor((first + end) / 2);
+      if (pieces[middle][0] <= raw) first = middle;
+      else end = middle;
+    }
+    const [start, terms] = pieces[first];
+    if (!terms.length || Number.isNaN(raw)) return NaN;
+    const above = raw - start;
+    const value = terms.reduceRight((sum, term) => sum * above + term);
     return Number.isNaN(value) ? NaN : value;
   }
 
   /** Raw value nearest to a physical one of a curve, ties to even. */
   function rawFromCurve(field, value) {
-    if (field.oneWay) throw unfit(field, "takes raw values only, as its formula does not lead back");
+    if (field.oneWay) throw unfit(field, "takes raw values only, as its physical value does not lead back to one");
     if (field.type === "float") {
-      const inverse = (value - field.curve[0]) / field.curve[1];
+      const [[, [constant, slope]]] = field.curve;
+      const inverse = (value - constant) / slope;
       const narrow = field.bits === 32 ? Math.fround(inverse) : inverse;
       if (!Number.isFinite(narrow)) throw unfit(field, `cannot hold ${value}`);
       return floatBits(field, narrow);
     }
-    let [low, high] = range(field).map(Number);
+    let [low, high] = (field.ends ?? range(field)).map(Number);
     const at = (raw) => onCurve(field.curve, raw);
     const ends = [at(low), at(high)];
     const rises = ends[0] < ends[1];

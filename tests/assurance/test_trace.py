@@ -54,8 +54,8 @@ class Pack:
         text = path.read_text("utf-8")
         before = sum(len(one) + 1 for one in text.split("\n")[: int(change["line"]) - 1]) + int(change["column"]) - 1
         rest = text[before:]
-        if rest.startswith("["):  # an id as the numbers that are sent
-            end = rest.index("]") + 1
+        if rest.startswith("["):  # an id as the numbers that are sent, or points
+            end = next(end for end in range(1, len(rest)) if rest[:end].count("[") == rest[:end].count("]"))
         else:
             end = next(end for end in range(1, len(rest) + 1) if _value(rest[:end]) == change["says"])
         now = json.dumps(change["changed to"]) if change["kind"] == "formula" else change["changed to"]

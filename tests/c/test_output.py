@@ -9,10 +9,13 @@ import subprocess
 
 import pytest
 
+from icdgen import layout
 from icdgen.backends.c import CBackend
 from icdgen.backends.c.declared_names import FILE
 from icdgen.backends.c.text import comment, literal, plain
+from icdgen.describe import describe
 from icdgen.icd.model import Icd
+from icdgen.loading import load
 from tests.c import harness, odd
 
 
@@ -152,3 +155,41 @@ def test_string_literals_hold_the_text(tmp_path, text):
     )
     program = harness.compile(source, "-std=c99", "-Wall", "-Werror", "-Wno-trigraphs", output=tmp_path / "text")
     assert subprocess.run([program], capture_output=True).stdout.decode() == text
+
+
+def test_reserved_bits_are_spoken_of_where_there_are_some(shipped):
+    found = set()
+    for node in harness.shipped().nodes:
+        for message in describe(harness.shipped()).node(node).messages:
+            has_some = bool(layout.gaps(message.model, node))
+            text = shipped[f"{node.name}/{message.name}.h"]
+            assert ("reserved bits 0" in text) == has_some, message.model.name
+            found.add(has_some)
+    assert found == {True, False}
+
+
+STUTTER = """\
+icdgen: 1
+node: {name: pump, title: Pump, byte_order: little, bit_order: lsb0}
+enums:
+  - {name: PumpState, members: [{value: 0, name: Idle}, {value: 1, name: Running}]}
+messages:
+  - {name: Pump Status, id: 1, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: State, type: enum, enum: PumpState}]}
+  - {name: Pump, id: 2, kind: telecommand, length: 1, fields: [{at: 0, bits: 8, name: Level, type: uint, unit: V, formula: raw*2}]}
+  - {name: PumpedVolume, id: 3, kind: telemetry, length: 0}
+"""
+
+
+def test_the_name_of_the_node_stands_once(tmp_path):
+    (tmp_path / "pump.yaml").write_text(STUTTER, encoding="utf-8")
+    icd = harness.read(tmp_path / "pump.yaml")
+    texts = files(icd)
+    enums, status = texts["pump/enums.h"], texts["pump/pump_status.h"]
+    assert "typedef uint8_t pump_state_t;" in enums and "PUMP_STATE_RUNNING = 1" in enums
+    assert "pump_status_decode(" in status and "PUMP_STATUS_ID" in status and "pump_state_t state;" in status
+    assert "pump_pump_set_level_v(" in texts["pump/pump.h"] and "pump_pumped_volume_t" in texts["pump/pumped_volume.h"]
+    assert not [path for path, text in texts.items() if re.search("pump_pump_st", text, re.IGNORECASE)]
+    harness.compile_all(icd, harness.generate(icd, tmp_path / "c"), "gcc", "c99")
+    (tmp_path / "pump.yaml").write_text(STUTTER + "  - {name: Status, id: 4, kind: telemetry, length: 0}\n")
+    (clash,) = load([tmp_path / "pump.yaml"]).findings
+    assert clash.code == "ICD071" and "`PUMP_STATUS_" in clash.message and clash.message.endswith("in c")

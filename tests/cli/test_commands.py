@@ -123,6 +123,12 @@ class TestDecode:
             (["demi", "146", "2efb01"], "demi"),
             (["demo", "146", "2exb01"], "x"),
             (["demo", "146", "@nowhere"], "cannot read nowhere"),
+            (["demo", "99", "2efb01"], "demo has no message `99`"),
+            (["demo", "9", "2e", "fb"], "demo has no message `9`"),
+            (["demo", "146"], "there is no frame for Estimated Roll of demo"),
+            (["demo", "Estimated Roll"], "there is no frame for Estimated Roll of demo"),
+            (["demo", "Estimatd Roll?"], "demo has no message `Estimatd Roll?`"),
+            (["demo", "147", "2e", "fb"], "demo has no message `147`"),
         ],
     )
     def test_a_mistake_is_said_in_words(self, icdgen, demo, arguments, words):
@@ -135,6 +141,21 @@ class TestDecode:
             for arguments in (["demo", "146", "2e", "fb", "01"], ["demo", "146", "2efb01"], ["demo", "0x2efb01"])
         }
         assert all("-12.34" in out for out in outs) and any("found by its length" in out for out in outs)
+
+    def test_the_only_node_need_not_be_named_before_an_id(self, icdgen, demo):
+        named = icdgen("decode", "demo", "146", "2efb 01", "--icd", demo).out
+        assert icdgen("decode", "146", "2efb 01", "--icd", demo).out == named
+        assert "has 3 bytes, 2 given" in icdgen("decode", "146", "2efb", "--icd", demo).err
+
+    def test_a_frame_in_words_of_decimal_digits_is_no_id(self, icdgen, demo):
+        assert "22 33 01" in icdgen("decode", "demo", "22", "33", "01", "--icd", demo).out
+        assert "1122 3344" not in icdgen("decode", "demo", "1122", "3344", "--icd", demo).err
+        assert "read as decimal numbers" in icdgen("decode", "demo", "146", "46", "251", "1", "--icd", demo).out
+
+    def test_a_number_that_may_be_a_byte_and_is_no_id_is_said_to_be_taken_for_a_byte(self, icdgen, demo):
+        out = icdgen("decode", "demo", "21", "fb", "01", "--icd", demo).out
+        assert "21 fb 01" in out and "demo has no message 21: it is taken for the first byte of the frame" in out
+        assert "taken for" not in icdgen("decode", "demo", "2e", "fb", "01", "--icd", demo).out
 
     def test_a_file_needs_no_sign_and_holds_any_number_of_frames(self, icdgen, demo, tmp_path):
         (tmp_path / "frames.txt").write_text("92 2efb01\n92 000000\n")

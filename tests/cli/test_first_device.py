@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -20,6 +21,34 @@ def test_the_first_icd_is_clean_formatted_and_generates_every_language(icdgen, t
     assert icdgen("fmt", "--check").status == 0
     assert icdgen(*"--lang c --lang python --lang rust --lang vectors --lang html".split()).status == 0
     assert (tmp_path / "generated" / "c" / "battery.h").is_file()
+
+
+def test_nothing_that_waits_to_be_filled_in_reaches_what_is_generated(icdgen, tmp_path):
+    icdgen("init", "battery")
+    icdgen(*"--lang c --lang python --lang rust --lang html".split())
+    node = json.loads(icdgen("show", "--format", "json").out)["nodes"][0]
+    assert not node.get("summary") and not node.get("source")
+    for path in (tmp_path / "generated").rglob("*.*"):
+        assert b"Name of the manual" not in path.read_bytes(), path
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("decode", "cubeacp", "146", "2efb0a000000"),
+        ("show", "cubeacp"),
+        ("encode", "cubeacp", "Set Wheel Speed", "x=1"),
+        ("sim", "--node", "CubeACP"),
+    ],
+)
+def test_a_shipped_node_is_said_to_be_none_of_the_project_and_how_it_is_reached(icdgen, arguments):
+    icdgen("init", "battery")
+    result = icdgen(*arguments)
+    assert result.status == 2 and "the nodes here are those that icdgen.toml names" in result.err, result
+    folder = re.search(r"give `--icd (.*?)`", result.err)[1]
+    if arguments[0] == "decode":
+        assert "-12.34" in icdgen(*arguments, "--icd", folder).out
+    assert "comes with" not in icdgen("show", "batery").err
 
 
 @pytest.mark.pty

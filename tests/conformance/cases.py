@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from icdgen import codec
-from icdgen.icd.curve import Curve
+from icdgen.icd.curve import Curve, of_plain
 from icdgen.icd.model import Field
 from icdgen.vectors.ids import worth_asking
 from icdgen.vectors.write import raw_json
@@ -53,7 +53,7 @@ class MessageCases:
         self.node, self.message, self.enums, self.never_set = node, message, enums, never_set
         self.fields: list[dict] = message["fields"]
         self.views = {field["name"] for field in self.fields if "view" in field}
-        self.scaled = [field for field in self.fields if "factor" in field or "coefficients" in field]
+        self.scaled = [field for field in self.fields if field.keys() & {"factor", "coefficients", "points"}]
         self.one_way = {field["name"] for field in self.scaled if "set" not in field}  # and views
         self.texts = [field for field in self.fields if field["type"] == "text"]
         self.id = message.get("id", message.get("set_id"))
@@ -311,8 +311,8 @@ def nearest_double(exact: str) -> str:
 
 def nearest(field: dict, bits: str) -> int | str | None:
     """The raw value nearest to a physical one, ties to even; None if it does not fit."""
-    if "coefficients" in field:
-        return _on_curve(field, bits)
+    if (curve := of_plain(field)) is not None:
+        return _on_curve(field, curve, bits)
     value = Fraction(struct.unpack(">d", bytes.fromhex(bits))[0])
     raw = round((value - Fraction(field["offset"])) / Fraction(field["factor"]))
     width, signed = field["bits"], field["type"] == "int"
@@ -320,8 +320,8 @@ def nearest(field: dict, bits: str) -> int | str | None:
     return raw if low <= raw <= high else None
 
 
-def _on_curve(field: dict, bits: str) -> int | str | None:
-    one = Field("", 0, field["bits"], field["type"], curve=Curve(tuple(field["coefficients"])))
+def _on_curve(field: dict, curve: Curve, bits: str) -> int | str | None:
+    one = Field("", 0, field["bits"], field["type"], curve=curve)
     try:
         raw = codec.raw_from_physical(one, struct.unpack(">d", bytes.fromhex(bits))[0])
     except codec.CodecError:

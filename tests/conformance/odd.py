@@ -97,6 +97,37 @@ messages:
       - {at: 407, bits: 1, name: One, type: uint, formula: 3*raw^2 + 1}
       - {at: 408, bits: 32, name: Inverse, type: float, formula: raw = value*1000}
       - {at: 440, bits: 16, name: Constant, type: uint, formula: 0.5*raw^2 + raw, const: 8}
+  - name: Tables
+    set_id: 21
+    get_id: 31
+    kind: configuration
+    length: 82
+    fields:
+      - {at: 0, bits: 10, name: Thermistor, type: uint, unit: C, points: [[0, -40], [512, 20.5], [1023, 125]], min: 0}
+      - {at: 11, bits: 12, name: Falling, type: int, unit: V, points: [[-2000, 5.1], [-1, 0.3], [7, 0.1], [1800, -3]],
+         outside: clamp, byte_order: big}
+      - {at: 24, bits: 16, name: Within, type: uint, unit: V, points: [[10.5, "-1e-3"], [2000, 1.0e+2], [60000.25, 7000.1]],
+         outside: refuse}
+      - {at: 40, bits: 16, name: Beyond, type: int, points: [["-1e3", -0.7], [0.3, 1], [10, 1.1]], outside: extrapolate}
+      - {at: 56, bits: 8, name: Wave, type: uint, points: [[3, 1], [10, 0], [20.5, 5]], outside: clamp}
+      - {at: 64, bits: 32, name: Wide, type: uint, unit: V, points: [[100, 1], [4000000000, 3]], outside: refuse}
+      - {at: 96, bits: 64, name: Widest, type: int, points: [["-9e18", 1], [0, 0.1], [4503599627370497, 5]], outside: extrapolate}
+      - {at: 163, bits: 32, name: Flow, type: float, unit: V, points: [[-1.5, 3], [0, 4], [0.1, -7.3]], outside: clamp, max: 5}
+      - {at: 200, bits: 64, name: Refused, type: float, points: [["-1e300", 0], [0.1, 4], ["1e300", -7]], outside: refuse}
+      - {at: 264, bits: 64, name: Steep, type: float, points: [[0, 0], ["1e-300", 1], [1, "1e300"]], outside: extrapolate}
+      - {at: 328, bits: 8, name: Levels, type: uint, count: 4, unit: V, points: [[0, 0], [100, 2.5], [255, 9]]}
+      - {at: 360, bits: 32, name: Flows, type: float, count: 3, unit: V, points: [[0, 1], [1, 3]], outside: refuse, byte_order: big}
+      - {at: 456, bits: 8, name: Depths, type: int, count: 5, unit: V, points: [[-100, 7], [0, 0.1], [50, -9.3]], outside: clamp}
+      - {at: 0, bits: 8, name: Low, type: uint, unit: V, points: [[1, 1], [250, 3.3]], outside: refuse, view: true}
+      - {at: 496, bits: 7, name: Named, type: int, points: [[-64, 0], [-1, 0.5], [63, 0.25]],
+         special: [{value: -64, meaning: Not known}]}
+      - {at: 503, bits: 1, name: One, type: uint, points: [[0, 3], [1, 1]]}
+      - {at: 504, bits: 16, name: Constant, type: uint, points: [[0, 3], [8, 1.5]], outside: clamp, const: 8}
+      - {at: 520, bits: 16, name: Edges, type: int, points: [[-32768, 0], [32767, 1]]}
+      - {at: 536, bits: 16, name: Outer, type: uint, points: [[-10, 1], [70000, 2]], outside: refuse}
+      - {at: 552, bits: 8, name: Elsewhere, type: uint, points: [[300, 1], [400, 2]], outside: clamp}
+      - {at: 560, bits: 32, name: Sent Float, type: float, points: [[-1, 1], [1, 1.5], ["2e38", 4]], outside: extrapolate}
+      - {at: 592, bits: 64, name: All, type: uint, points: [[0, 0.1], ["18446744073709551615", 7]]}
   - name: Mixed
     id: 7
     kind: telecommand
@@ -163,7 +194,7 @@ structs:
       - {at: 0, name: Match, struct: Odd, count: 2}
       - {at: 147, bits: 32, name: Across, type: float, special: [{value: nan, meaning: none}, {value: -1.5, meaning: left}]}
       - {at: 184, bits: 32, name: Whole Float, type: float, byte_order: big, formula: raw*57.29578}
-      - {at: 216, bits: 64, name: Longest, type: int, special: [{value: -1, meaning: none}]}
+      - {at: 216, bits: 64, name: Longest, type: int, special: [{value: -9223372036854775808, meaning: none}]}
       - {at: 282, bits: 3, count: 3, name: Crossing, type: uint, byte_order: big, formula: raw^3 - 9*raw}
       - {at: 296, bits: 8, count: 2, name: Turns, type: enum, enum: Turn}
   - name: Row
@@ -681,7 +712,7 @@ messages:
       - {at: 304, bits: 240, name: Longer, type: text, count: 2}
       - {at: 784, bits: 8, name: Data, type: bytes, count: 1}
       - {at: 792, bits: 1, name: Flag, type: bool, count: 3}
-  - name: Open Rows
+  - name: Wide Rows
     id: 151
     kind: telemetry
     length: 1

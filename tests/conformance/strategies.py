@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
@@ -9,6 +10,7 @@ from itertools import pairwise
 from hypothesis import strategies as st
 
 from icdgen.icd import exact, formula
+from icdgen.icd.curve import OUTSIDE
 from tests.conformance.open_ends import open_end
 from tests.conformance.sharing import sharing
 
@@ -344,7 +346,7 @@ def _field(draw, enums: list[dict]) -> dict:
     if kind == "bool":
         return {"bits": 1, "type": kind, **array}
     if kind == "float":
-        formula = {"formula": draw(_curve())} if draw(st.booleans()) else {}
+        formula = draw(st.sampled_from(({"formula": draw(_curve())}, draw(_table(-9.9, 9.9)), {})))
         values = draw(st.lists(st.sampled_from(("nan", "inf", "-inf", -99.9, 0, 4.0e15)), max_size=2, unique=True))
         named = {"special": [_meaning(one, index) for index, one in enumerate(values)]} if values else {}
         return {"bits": draw(st.sampled_from((32, 64))), "type": kind, **array, **formula, **named}
@@ -354,7 +356,10 @@ def _field(draw, enums: list[dict]) -> dict:
     bits = draw(st.integers(1, 64) | st.sampled_from((1, 7, 8, 9, 15, 16, 17, 24, 31, 32, 33, 53, 54, 63, 64)))
     field: dict = {"bits": bits, "type": kind, **array}
     if draw(st.booleans()):
-        field["formula"] = draw(_curve() if draw(st.integers(0, 3)) == 0 else _formula())
+        ends = (-(1 << bits - 1), 1 << bits - 1) if kind == "int" else (0, 1 << bits)
+        chosen = draw(st.integers(0, 7))
+        said = {"formula": draw(_curve() if chosen == 2 else _formula())}
+        field |= said if chosen > 1 else draw(_table(*ends))
     if draw(st.booleans()):
         field["unit"] = draw(st.sampled_from(("deg", "m/s^2", "%", "V")))
     low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if kind == "int" else (0, (1 << bits) - 1)
@@ -364,7 +369,7 @@ def _field(draw, enums: list[dict]) -> dict:
     elif draw(st.integers(0, 5)) == 0:
         values = draw(st.lists(raw, min_size=1, max_size=2, unique=True))
         field["special"] = [_meaning(value, index) for index, value in enumerate(values)]
-    elif draw(st.integers(0, 5)) == 0 and "formula" not in field:
+    elif draw(st.integers(0, 5)) == 0 and field.keys().isdisjoint(("formula", "points")):
         values = draw(st.lists(raw, min_size=2, max_size=2, unique=True))
         low_key, high_key = draw(st.sampled_from((("min", "max"), ("above", "max"), ("min", "below"))))
         field |= {low_key: min(values), high_key: max(values)}
@@ -411,6 +416,23 @@ def _curve(draw) -> str:
     terms = [f"{draw(number)}*raw^{power}" for power in powers]
     text = " + ".join([*terms, f"{draw(number)} + raw^{max(powers)}"])
     return draw(st.sampled_from((text, *simple)))
+
+
+@st.composite
+def _table(draw, low: float, high: float) -> dict:
+    """Points within and beyond the raw values, many of whose physical values rise or fall all along."""
+    raw = st.integers(math.floor(low), math.ceil(high)) | st.floats(1.5 * low - 9, 1.5 * high + 9).map(_spelled)
+    raws = sorted(draw(st.lists(raw, min_size=2, max_size=6, unique_by=float)), key=float)
+    values = draw(st.lists(st.integers(-(10**6), 10**6), min_size=len(raws), max_size=len(raws), unique=True))
+    values = draw(st.sampled_from((values, sorted(values), sorted(values, reverse=True))))
+    size = draw(st.sampled_from((1, 10, 1000, 10**7)))
+    points = [[raw, _spelled(value / size)] for raw, value in zip(raws, values, strict=True)]
+    return {"points": points, "outside": draw(st.sampled_from(OUTSIDE))}
+
+
+def _spelled(number: float) -> float | str:
+    """A text where it has an exponent, as readers of YAML differ about numbers with one."""
+    return repr(number) if "e" in repr(number) else number
 
 
 @st.composite

@@ -114,6 +114,28 @@ def test_limits_of_raw_values_are_not_those_of_a_formula_and_what_is_computed_is
     assert read.definitions.troubles == []
 
 
+@pytest.mark.parametrize(
+    ("attribute", "held"),
+    [
+        ("{id: b, size: a}", {"type": "bytes", "size": "a", "up_to": 255}),
+        ("{id: b, type: str, encoding: ASCII, size: a + 2}",
+         {"type": "text", "size": {"field": "a", "plus": 2}, "up_to": 257}),
+        ("{id: b, type: u2be, repeat: expr, repeat-expr: a - 1}",
+         {"type": "uint", "bits": 16, "count": {"field": "a", "plus": -1}, "up_to": 254}),
+        ("{id: b, type: t, repeat: expr, repeat-expr: a}", {"struct": "t", "count": "a", "up_to": 255}),
+    ],
+)  # fmt: skip
+def test_what_goes_on_as_long_as_a_field_says_is_an_open_end(attribute, held, tmp_path):
+    more = "types:\n  t:\n    seq: [{id: c, type: u1}]\ninstances:\n  d: {value: a * 0.5}\n"
+    (tmp_path / "bad.ksy").write_text(ksy(attribute, "{id: z, type: u1}", more=more))
+    read = run.read(tmp_path / "bad.ksy", kinds.get("ksy"))
+    assert field(read, "bad", "b") == {"at": 8, "name": "b", **held} and "formula" not in field(read, "bad", "a")
+    assert [one.message for one in read.definitions.troubles] == [
+        "`z` is not held: it stands behind a part whose size is not fixed",
+        "`d`: `a * 0.5` is no line over one field",
+    ]
+
+
 BYTE = "{id: a, type: u1}"
 
 
@@ -134,7 +156,11 @@ BROAD = "types:\n" + "".join(
         ("{id: b, type: t}", "types:\n  t:\n    seq: [{id: c, type: u}]\n  u:\n    seq: [{id: d, type: t}]\n",
          "`b c d` is not held: types hold each other in a circle: bad -> t -> u -> t"),
         ("{id: b, type: bad}", "", "`b` is not held: types hold each other in a circle: bad -> bad"),
-        ("{id: b, size: a}", "", "`b` is not held: its size is `a`"),
+        ("{id: b, size: a - 255}", "", "`b` is not held: its size is `a - 255`, which is never more than nothing"),
+        ("{id: b, size: a * 2}", "", "`b` is not held: its size is `a * 2`"),
+        ("{id: b, size: c}", "", "`b` is not held: `c` is no number in front of it"),
+        ("{id: t, size: 4, type: t}", "types:\n  t:\n    seq: [{id: n, type: u1}, {id: b, size: n}]\n",
+         "`t b` is not held: its size is `n`, within a part that has a size of its own"),
         ("{id: b, size: 0}", "", "`b` is not held: its size is 0"),
         ("{id: b, size: 99999}", "", "`b` is not held: its size is 99999"),
         ("{id: b, type: str}", "", "`b` is not held: nothing says its size"),
@@ -143,7 +169,7 @@ BROAD = "types:\n" + "".join(
         ("{id: b, type: b65}", "", "`b` is not held: an integer has 65 bits"),
         ("{id: b, type: f2be}", "", "`b` is not held: there is no type `f2be`"),
         ("{id: b, type: u1, enum: e}", "", "`b` is not held: there is no enumeration `e`"),
-        ("{id: b, type: u1, repeat: expr, repeat-expr: a}", "", "`b` is not held: it is repeated as often as `a` says"),
+        ("{id: b, type: u1, repeat: expr, repeat-expr: a % 3}", "", "`b` is not held: it is repeated as often as `a % 3` says"),
         ("{id: b, type: u1, repeat: expr, repeat-expr: 9999}", "", "`b` is not held: it is repeated 9999 times"),
         ("{id: b, type: u1, repeat: until, repeat-until: _ == 0}", "",
          "`b` is not held: it is repeated as often as `_ == 0` says"),

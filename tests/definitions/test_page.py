@@ -54,3 +54,10 @@ def test_the_format_of_kaitai_becomes_what_the_page_shows(tmp_path):
     (tree,) = read.trees.values()
     assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[2])
     assert read.definitions.troubles == []
+
+
+def test_the_model_of_sunspec_becomes_what_the_page_shows(tmp_path):
+    (tmp_path / "meter.json").write_text(blocks("json")[0])
+    read = run.read(tmp_path / "meter.json", kinds.of(tmp_path / "meter.json"))
+    (tree,) = read.trees.values()
+    assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[3])

@@ -57,15 +57,36 @@ def test_what_inherits_has_the_fields_of_its_base_and_the_value_that_tells_it(pr
     assert field(probe, "Safe", "Mode")["enum"] == "Mode" and field(probe, "Safe", "Key")["at"] == 176
 
 
-def test_calibrations_are_formulas_and_what_is_none_is_held_raw_and_said(probe):
+def test_calibrations_are_formulas_or_tables(probe):
     said = {name: field(probe, "Safe", name) for name in ("Temperature", "Pressure", "Level", "Curve", "Rate")}
     assert said["Temperature"]["formula"] == "raw*0.0125 - 40.5" and said["Temperature"]["below"] == 85.5
     assert said["Pressure"]["formula"] == "raw^2*0.0002 - raw*0.5 + 3"
     assert said["Level"]["formula"] == "raw*5/12 - 5/2" and said["Rate"]["unit"] == "deg/s"
-    assert "formula" not in said["Curve"] and "unit" not in said["Curve"]
-    assert [(one.code, one.message) for one in probe.definitions.troubles] == [
-        ("IMP078", "`Curve`: it is calibrated by a table of 3 points")
-    ]
+    assert said["Curve"]["points"] == [[0.5, "-1e-9"], [10, 5], [90, 6]] and said["Curve"]["unit"] == "V"
+    assert said["Curve"]["outside"] == "refuse" and probe.definitions.troubles == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ('order="1">', 'order="0">', "it is calibrated by a table of 3 points that are not joined by lines"),
+        (
+            'raw="0.5"',
+            'raw="90"',
+            "it is calibrated by a table that cannot be used: raw value 90 is there twice: points are",
+        ),
+        ('calibrated="-1e-9"', 'calibrated="much"', "a coefficient is `much`"),
+    ],
+)
+def test_what_no_formula_and_no_table_says_is_held_raw_and_said(tmp_path, old, new, why):
+    text = (FILES / "probe.xml").read_text()
+    assert text.count(old) == 1
+    (tmp_path / "probe.xml").write_text(text.replace(old, new))
+    read = run.read(tmp_path / "probe.xml", xtce.Xtce())
+    held = field(read, "Safe", "Curve")
+    assert held.keys().isdisjoint(("points", "outside", "formula", "unit"))
+    (trouble,) = read.definitions.troubles
+    assert trouble.code == "IMP078" and trouble.message.startswith(f"`Curve`: {why}")
 
 
 def test_bytes_of_a_size_that_is_sent_go_to_the_end_of_the_packet(probe):

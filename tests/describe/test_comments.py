@@ -8,6 +8,7 @@ from icdgen.describe import describe
 from icdgen.describe.wholes import part_of_unit
 from icdgen.icd.model import Field
 from icdgen.icd.units import STANDARD, Unit
+from icdgen.loading import load
 from tests.conformance.icds import shipped
 
 
@@ -65,3 +66,19 @@ def test_a_part_of_a_unit_is_called_what_people_call_it(symbol, per, name, words
 def test_a_unit_of_the_icd_itself_is_not_taken_apart():
     field = Field(name="One", at=0, bits=8, type="uint", unit=Unit("klick", "km", "length"))
     assert part_of_unit(field, 1000) == ("m", "thousandths of klick")
+
+
+def test_an_enumeration_says_which_fields_hold_it(tmp_path):
+    fields = "".join(f"      - {{at: {at * 2}, bits: 2, name: F{at}, type: enum, enum: Mode}}\n" for at in range(4))
+    one = "fields: [{{at: 0, bits: 2, name: F0, type: enum, enum: Mode}}]"
+    heads = f"  - {{{{name: {{0}}, id: {{1}}, kind: telemetry, length: 1, {one}}}}}\n"
+    (tmp_path / "demo.yaml").write_text(
+        "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}\nenums:\n"
+        "  - {name: Mode, members: [{value: 0, name: Idle}]}\n  - {name: Other, members: [{value: 0, name: Idle}]}\n"
+        "messages:\n" + "".join(heads.format(f"M{id}", id) for id in range(1, 8))
+        + f"  - name: Last\n    id: 9\n    kind: telemetry\n    length: 1\n    fields:\n{fields}",
+        encoding="utf-8",
+    )  # fmt: skip
+    mode, other = describe(load([tmp_path / "demo.yaml"]).icd).node("demo").enums
+    assert mode.comment.rest == ("Held by F0 in M1, M2, M3, M4, M5 and 3 others; F1 in Last; F2 in Last; F3 in Last.",)
+    assert other.comment.paragraphs == ("Other: an enumeration.",)

@@ -12,6 +12,7 @@ PROTOCOLS = {
         Protocol("ubx", "pyubx2", ubx.tables),
         Protocol("sbp", "sbp", sbp.tables),
         Protocol("mavlink", "pymavlink", mavlink.dialects),
+        Protocol("mavlink1", "pymavlink", mavlink.dialects_of_version_1),
         Protocol("cygnss", "ccsdspy", cygnss.packets),
         Protocol("sunspec", "pysunspec2", sunspec.models),
         Protocol("xtce", "space-packet-parser", xtce.packets),

@@ -29,7 +29,8 @@ LANGUAGES = ["python", *(["c"] if shutil.which("gcc") else [])]
 
 @pytest.mark.parametrize("name", PROTOCOLS)
 def test_values_of_messages_that_are_held_are_those_of_the_library(name: str, tmp_path: Path) -> None:
-    row = measure(name, LANGUAGES, tmp_path, frames=6, sample=25, nodes=3)
+    nodes = 1 if name.startswith("mavlink") else 3  # each dialect includes most of the others
+    row = measure(name, LANGUAGES, tmp_path, frames=6, sample=25, nodes=nodes)
     assert row.held
     for agreement in row.by_language.values():
         assert agreement.messages == row.held and agreement.values > row.held

@@ -97,6 +97,15 @@ def c_wire_seeds(icd: Icd) -> Iterator[bytes]:
                     yield bytes((index, 2, 5)) + bytes.fromhex(file)
 
 
+def c_stream_seeds(icd: Icd) -> Iterator[bytes]:
+    """An input for every stream in envelopes of the golden vectors of the protocol, for the harness `c_stream`."""
+    for index, node in enumerate(icd.nodes):
+        for case in protocol.cases(icd, node) if node in protocol.nodes(icd) else ():
+            if case.request["op"] == "stream_events":
+                head = bytes((index, case.request["direction"] == "telemetry", 0, 7))
+                yield head + bytes.fromhex("".join(case.request["chunks"]))[:LONGEST]
+
+
 def _packet(one: dict) -> bytes:
     id, data = one["id"], bytes.fromhex(one["bytes"])
     return bytes((id >> 24 & 31, id >> 16 & 255, (id >> 8 & 3) | (id & 3) << 2)) + data.ljust(8, b"\0") + b"\0"
@@ -129,6 +138,11 @@ def c(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
 def c_wire(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
     """The same on the stream decoders and step machines of the wire layer."""
     return _c(icd, folder, "c_wire_target.c")
+
+
+def c_stream(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
+    """The same on the decoders of envelopes."""
+    return _c(icd, folder, "c_stream_target.c")
 
 
 def _c(icd: Icd, folder: Path, target: str) -> tuple[list[str], dict[str, str]]:
@@ -215,10 +229,11 @@ def atheris(icd: Icd, folder: Path, target: str) -> tuple[list[str], dict[str, s
     return command, {"PYTHONPATH": str(package.parent)}
 
 
-SEEDS = {"c-wire": c_wire_seeds, "rust-wire": rust_wire_seeds, "python-wire": stream_seeds}
+SEEDS = {"c-wire": c_wire_seeds, "c-stream": c_stream_seeds, "rust-wire": rust_wire_seeds, "python-wire": stream_seeds}
 HARNESSES = {
     "c": c,
     "c-wire": c_wire,
+    "c-stream": c_stream,
     "rust": rust,
     "rust-wire": rust_wire,
     "python": python,

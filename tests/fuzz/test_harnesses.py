@@ -13,7 +13,8 @@ from tests.conformance import odd
 from tests.conformance.build import execute
 from tests.conformance.icds import icd_of
 from tests.conformance.languages import Language
-from tests.fuzz.__main__ import HERE, c_wire_seeds, seeds, sources, stream_seeds
+from tests.conftest import ROOT
+from tests.fuzz.__main__ import HERE, c_stream_seeds, c_wire_seeds, seeds, sources, stream_seeds
 from tests.fuzz.python_dispatch import Dispatch
 from tests.fuzz.python_streams import Streams
 
@@ -48,8 +49,30 @@ def wire_inputs(icd):
     return found
 
 
+@pytest.fixture(scope="module")
+def linked():
+    """Links of other protocols, as envelopes."""
+    return icd_of([ROOT / "examples" / "links"])
+
+
+@pytest.fixture(scope="module")
+def stream_inputs(linked):
+    source = random.Random(3)
+    found = list(c_stream_seeds(linked))
+    for seed in found[:]:
+        spoilt = bytearray(seed[:2] + source.randbytes(2) + seed[4:] + seed[4:])
+        spoilt[source.randrange(2, len(spoilt))] = source.randrange(256)
+        found.append(bytes(spoilt))
+    return found
+
+
 @pytest.mark.parametrize(
-    ("target", "icds", "kind"), [("c_target.c", "odd_icd", "inputs"), ("c_wire_target.c", "icd", "wire_inputs")]
+    ("target", "icds", "kind"),
+    [
+        ("c_target.c", "odd_icd", "inputs"),
+        ("c_wire_target.c", "icd", "wire_inputs"),
+        ("c_stream_target.c", "linked", "stream_inputs"),
+    ],
 )
 def test_the_c_harnesses_find_nothing(target, icds, kind, request, tmp_path):
     inputs, icd = request.getfixturevalue(kind), request.getfixturevalue(icds)

@@ -6,6 +6,7 @@ import math
 import struct
 from fractions import Fraction
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -15,8 +16,21 @@ from icdgen import codec
 from icdgen.icd import curve, formula
 from icdgen.icd.curve import Curve
 from icdgen.icd.model import Field
+from icdgen.loading import load
 
-COEFFICIENTS = st.lists(st.floats(-1e9, 1e9, allow_subnormal=False), min_size=2, max_size=6).map(tuple).map(Curve)
+COEFFICIENTS = st.lists(st.floats(-1e9, 1e9, allow_subnormal=False), min_size=2, max_size=6).map(curve.polynomial)
+
+_NUMBERS = st.integers(-300, 600) | st.floats(-1e9, 1e9, allow_subnormal=False)
+_RAWS = st.lists(_NUMBERS, min_size=2, max_size=8, unique_by=float).map(lambda raws: sorted(map(float, raws)))
+
+
+@st.composite
+def tables(draw: st.DrawFn) -> Curve:
+    """Any tables, and such that rise or fall all along."""
+    raws = draw(_RAWS)
+    values = draw(st.lists(_NUMBERS.map(float), min_size=len(raws), max_size=len(raws)))
+    values = draw(st.sampled_from((values, sorted(values), sorted(values, reverse=True))))
+    return curve.table(list(zip(raws, values, strict=True)), draw(st.sampled_from(curve.OUTSIDE)))
 
 
 @pytest.mark.parametrize(
@@ -53,13 +67,87 @@ def test_every_step_is_rounded_by_itself(one, raw):
     assert one.double(raw) == float(exact)
 
 
-@given(COEFFICIENTS, st.integers(1, 9), st.booleans(), st.floats(-1e12, 1e12))
+def _rounded(exact: Fraction) -> Fraction:
+    return Fraction(codec.to_double(exact))
+
+
+def _between(one: Curve, raw: float) -> float:
+    """What the documents say of a table: on the line between two points every step is rounded by itself."""
+    points = one.points
+    is_beyond = not points[0][0] <= raw <= points[-1][0]
+    if is_beyond and one.outside == "refuse":
+        return math.nan
+    if is_beyond and one.outside == "clamp":
+        return points[0][1] if raw < points[0][0] else points[-1][1]
+    at = max([index for index, (start, _) in enumerate(points) if start <= raw], default=0)
+    (x0, y0), (x1, y1) = points[min(at, len(points) - 2)], points[min(at, len(points) - 2) + 1]
+    slope = _rounded((Fraction(y1) - Fraction(y0)) / (Fraction(x1) - Fraction(x0)))
+    start, value = map(Fraction, points[at])
+    above = _rounded(Fraction(raw) - start)
+    return float(_rounded(_rounded(above * slope) + value))
+
+
+@given(tables(), st.integers(-(2**63), 2**64 - 1) | st.integers(-400, 700) | st.floats(-1e300, 1e300))
+def test_a_table_is_what_its_definition_says_to_the_last_bit(one, raw):
+    found, wanted = one.double(raw), _between(one, float(raw))
+    assert struct.pack(">d", found) == struct.pack(">d", wanted)
+
+
+@given(tables())
+def test_at_its_points_a_table_has_their_values(one):
+    assert [one.double(raw) for raw, _ in one.points] == [value for _, value in one.points]
+
+
+@given(tables())
+def test_beyond_its_points_a_table_is_as_it_says(one):
+    (first, low), (last, high) = one.points[0], one.points[-1]
+    for number in (math.nextafter(first, -math.inf), -math.inf, math.nextafter(last, math.inf), math.inf):
+        value = one.double(number)
+        if one.outside == "clamp":
+            assert value == (low if number < first else high)
+        elif one.outside == "refuse":
+            assert struct.pack(">d", value).hex() == "7ff8000000000000"
+    assert math.isnan(one.double(math.nan))
+
+
+@pytest.mark.parametrize(
+    ("points", "why"),
+    [
+        ([[0, 1]], "at least two"),
+        ([[1, 1], [0, 2]], "0 stands behind 1"),
+        ([[0, 1], [0, 2]], "raw value 0 is there twice"),
+        ([[2**53, 1], [2**53 + 1, 2]], "is there twice"),
+        ([[0, "1e400"], [1, 2]], "too large"),
+        ([[10**400, 1], [1, 2]], "too large"),
+        ([[0, "-1e308"], [0.5, "1e308"]], "too steep"),
+    ],
+)
+def test_points_that_are_no_table_are_refused(points, why):
+    with pytest.raises(formula.FormulaError, match=why):
+        curve.table(curve.doubles(points), "clamp")
+
+
+def test_points_are_numbers_however_they_are_written(tmp_path: Path):
+    points = '[[-1, "1e-3"], [0.5, 1.0e-3], ["2", 2.5e+2], [1.0e+3, "-3.5E+2"]]'
+    (tmp_path / "demo.yaml").write_text(
+        "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}\nmessages:\n"
+        "  - {name: A, id: 1, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: B, type: uint, "
+        f"points: {points}, outside: clamp}}]}}\n"
+    )
+    loaded = load([tmp_path])
+    assert not loaded.findings
+    (field,) = loaded.icd.nodes[0].messages[0].fields
+    assert field.curve is not None
+    assert field.curve.points == ((-1.0, 0.001), (0.5, 0.001), (2.0, 250.0), (1000.0, -350.0))
+
+
+@given(COEFFICIENTS | tables(), st.integers(1, 9), st.booleans(), st.floats(-1e12, 1e12))
 def test_the_way_back_gives_the_nearest_of_all_raw_values(one, bits, is_signed, value):
     field = Field("any", 0, bits, "int" if is_signed else "uint", curve=one)
-    raws = range(field.raw_min, field.raw_max + 1)
+    raws = range(field.ends[0], field.ends[1] + 1)
     values = [one.double(raw) for raw in raws]
     pairs = list(pairwise(values))
-    assert field.leads_back == (all(a < b for a, b in pairs) or all(a > b for a, b in pairs))
+    assert field.leads_back == (bool(pairs) and (all(a < b for a, b in pairs) or all(a > b for a, b in pairs)))
     if not field.leads_back:
         with pytest.raises(codec.CodecError):
             codec.raw_from_physical(field, value)
@@ -72,6 +160,20 @@ def test_the_way_back_gives_the_nearest_of_all_raw_values(one, bits, is_signed, 
     else:
         with pytest.raises(codec.CodecError):
             codec.raw_from_physical(field, value)
+
+
+def test_a_table_leads_back_to_raw_values_between_its_points():
+    points = ((10.0, 1.0), (20.5, 4.0), (70000.0, 5.0))
+    ends = {outside: Field("any", 0, 16, "uint", curve=curve.table(points, outside)).ends for outside in curve.OUTSIDE}
+    assert ends == {"clamp": (10, 65535), "refuse": (10, 65535), "extrapolate": (0, 65535)}
+    for outside, raw in (("clamp", None), ("refuse", None), ("extrapolate", 9)):
+        field = Field("any", 0, 16, "uint", curve=curve.table(points, outside))
+        assert codec.raw_from_physical(field, 1.1) == 10
+        if raw is None:
+            with pytest.raises(codec.CodecError, match="takes 1 to 4"):
+                codec.raw_from_physical(field, 0.8)
+        else:
+            assert codec.raw_from_physical(field, 0.8) == raw
 
 
 def test_wider_fields_and_powers_of_floats_are_only_read():

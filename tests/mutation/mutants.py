@@ -10,15 +10,18 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import product
 
-from icdgen.backends.assurance.changes import OTHER_TYPES, formulas
+from icdgen.backends.assurance.changes import OTHER_TYPES, formulas, tables
 from icdgen.icd.build import plain
+from icdgen.icd.curve import OUTSIDE
 from icdgen.icd.model import Enum, Field, Icd, Message, Node
 from icdgen.icd.tails import is_open, key_of
 
 Change = Callable[[dict], object]
 
 _HEAD = ("title", "byte_order", "bit_order", "id_bits", "node_type", "interface_version")
-_NUMBER_KEYS = ("formula", "formula_for", "unit", "special", "min", "max", "above", "below", "const")
+_NUMBER_KEYS = (
+    "formula", "formula_for", "points", "outside", "unit", "special", "min", "max", "above", "below", "const",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -228,6 +231,7 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
         for text in formulas(field["formula"]):
             yield "formula", f"{field['formula']} -> {text}", lambda f, t=text: f.update(formula=t)
         yield "formula", f"{field['formula']} -> none", lambda f: f.pop("formula")
+    yield from _points(field) if "points" in field else ()
     if "const" in field:
         for step in (-1, 1):
             yield _number("const", field, "const", step)
@@ -240,6 +244,15 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
         for value in named or (special["value"] - 1, special["value"] + 1):
             about = f"special {special['value']} -> {value}"
             yield "special", about, lambda f, i=index, v=value: f["special"][i].update(value=v)
+
+
+def _points(field: dict) -> Iterator[tuple[str, str, Change]]:
+    """Each number of a table one more and one less, and what is so outside of it."""
+    for points in tables(field["points"]):
+        yield "points", f"{field['points']} -> {points}", lambda f, p=points: f.update(points=p)
+    for outside in OUTSIDE:
+        if outside != field.get("outside"):
+            yield "outside", f"outside {outside}", lambda f, o=outside: f.update(outside=o)
 
 
 def _number(kind: str, field: dict, key: str, step: int) -> tuple[str, str, Change]:

@@ -74,7 +74,7 @@ def test_physical_values_of_an_array_are_read_and_set_together(everything):
         ("levels", (1, 4096), "levels[1] takes integers from 0 to 4095, not 4096"),
         ("levels", (1, 2, 3), "levels takes 2 values, not (1, 2, 3)"),
         ("flags", (True,) * 7, "flags takes 8 values"),
-        ("modes", (0, 1, 2, 4), "modes[3] takes integers from 0 to 3, not 4"),
+        ("modes", (0, 1, 2, 4), "modes[3] takes members of Mode or integers from 0 to 3, not 4"),
         ("floats", (1e39, 0.0), "floats[0] takes 32-bit floats, not 1e+39"),
         ("octets", [1, 2, 3, 4, 5, 6, 7, -1], "octets[7] takes integers from 0 to 255, not -1"),
     ],
@@ -88,7 +88,7 @@ def test_what_an_array_cannot_hold_is_refused_and_the_element_is_named(package, 
 
 
 @pytest.mark.parametrize(
-    ("value", "field"), [((1, 2), "temperatures"), (5, "temperatures"), ((0, 1e6, 0), "temperatures[1]")]
+    ("value", "field"), [((1, 2), "temperatures_c"), (5, "temperatures_c"), ((0, 1e6, 0), "temperatures_c[1]")]
 )
 def test_a_physical_value_that_does_not_fit_leaves_the_array_as_it_was(package, everything, value, field):
     message = everything(temperatures=(1, 2, 3))

@@ -88,16 +88,16 @@ def test_texts_may_be_an_array(package, messages):
     assert again == rows and again.words_text == ("a", "", "four", "12345678")
     assert messages.Rows.from_json(rows.to_json()) == rows
     error = package.module("_errors").RangeError
-    with pytest.raises(error, match=r"words\[1\] takes up to 8 ASCII"):
+    with pytest.raises(error, match=r"words_text\[1\] takes up to 8 ASCII"):
         rows.words_text = ("", "123456789", "", "")
-    with pytest.raises(error, match="words takes 4 values"):
+    with pytest.raises(error, match="words_text takes 4 values"):
         rows.words_text = ("", "")
     with pytest.raises(error, match=r"pairs\[2\] takes 2 bytes"):
         messages.Rows(pairs=(b"ab", b"cd", b"e")).to_bytes()
-    opened = messages.OpenRows.from_bytes(b"\1" + b"one".ljust(40, b"\0") + b"two".ljust(40, b"\0"))
+    opened = messages.WideRows.from_bytes(b"\1" + b"one".ljust(40, b"\0") + b"two".ljust(40, b"\0"))
     assert opened.extensions_text == ("one", "two") and len(opened.extensions) == 2
     with pytest.raises(error, match=r"extensions\[0\] takes 40 bytes"):
-        messages.OpenRows(extensions=(b"one",)).to_bytes()
+        messages.WideRows(extensions=(b"one",)).to_bytes()
 
 
 def test_columns_hold_arrays_of_texts(messages):
@@ -112,8 +112,8 @@ def test_columns_hold_arrays_of_texts(messages):
     assert table["pairs"].to_pylist() == [[b"ab", b"cd", b"ef"], [b"\0\0"] * 3]
     assert messages.Rows.decode_table(frames, physical=False)["words"].to_pylist()[0][2] == b"four\0\0\0\0"
     opened = [b"\1" + b"one".ljust(40, b"\0"), b"\2"]
-    assert messages.OpenRows.decode_table(opened)["extensions_text"].to_pylist() == [["one"], []]
-    raw = messages.OpenRows.decode_table(opened, physical=False)["extensions"].to_pylist()
+    assert messages.WideRows.decode_table(opened)["extensions_text"].to_pylist() == [["one"], []]
+    raw = messages.WideRows.decode_table(opened, physical=False)["extensions"].to_pylist()
     assert raw == [[b"one".ljust(40, b"\0")], []]
 
 

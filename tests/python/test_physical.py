@@ -53,7 +53,7 @@ def test_any_double_finds_the_raw_value_that_the_reference_finds(name, request):
             except codec.CodecError:
                 with pytest.raises(range_error) as caught:
                     setattr(message, info.physical, value)
-                assert caught.value.field == info.attribute
+                assert caught.value.field == info.physical
             else:
                 setattr(message, info.physical, value)
                 assert getattr(message, info.attribute) == expected, (case.message.name, field.name, value)
@@ -90,6 +90,13 @@ def test_what_is_no_number_is_refused(shipped):
     for value in ("1", None, b"", 1j, [], 10**400):
         with pytest.raises(shipped.module().RangeError):
             angles.estimated_roll_angle_deg = value
+
+
+def test_a_physical_value_in_a_raw_attribute_is_told_where_it_belongs(shipped):
+    angles = shipped.module("cubeacp").EstimatedAttitudeAngles(estimated_roll_angle=12.5)
+    said = r"^estimated_roll_angle takes integers .* \(estimated_roll_angle_deg takes physical values\), not 12\.5$"
+    with pytest.raises(shipped.module().RangeError, match=said):
+        angles.to_bytes()
 
 
 def physical_name(info) -> str:
@@ -131,5 +138,7 @@ def test_whole_numbers_are_set_to_the_nearest_raw_value(shipped):
         angles.estimated_roll_angle_mdeg = value
         assert angles.estimated_roll_angle == raw
     for value in (-327686, 327675, "1", None):
-        with pytest.raises(shipped.module().RangeError, match=r"takes -327680\.0 to 327670\.0"):
+        with pytest.raises(
+            shipped.module().RangeError, match=r"_mdeg takes -327680 to 327670 \(-327\.68 to 327\.67 deg\), not"
+        ):
             angles.estimated_roll_angle_mdeg = value

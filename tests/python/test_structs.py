@@ -73,7 +73,7 @@ def test_what_takes_dataclasses_takes_structs(demo):
         (lambda v: setattr(v.pairs[0].both[1], "signals", (1, 256)), "pairs[0].both[1].signals[1] takes integers"),
         (lambda v: setattr(v.pairs[0].both[1], "signals", (1,)), "pairs[0].both[1].signals takes 2 values"),
         (lambda v: setattr(v, "pairs", ()), "pairs takes 1 values, not ()"),
-        (lambda v: setattr(v, "best", None), "best.system takes integers from 0 to 15, not None"),
+        (lambda v: setattr(v, "best", None), "best.system takes members of System or integers from 0 to 15, not None"),
         (lambda v: setattr(v, "pairs", 3), "pairs takes 1 values, not 3"),
     ],
 )

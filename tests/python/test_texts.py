@@ -40,7 +40,7 @@ def test_what_is_no_such_text_is_refused_and_nothing_set(odd, texts, text):
     message = texts(software=b"y" * 30)
     with pytest.raises(odd.module().RangeError) as caught:
         message.software_text = text
-    assert caught.value.field == "software"
+    assert caught.value.field == "software_text"
     assert message.software == b"y" * 30
 
 

@@ -39,6 +39,10 @@ def wire(shipped):
     return shipped.module("wire")
 
 
+def test_a_link_is_shown_in_a_line(shipped):
+    assert repr(link(shipped)) == "Link(node='cubeacp', ...)"
+
+
 @given(form=CRCS, data=st.binary(max_size=40), places=st.lists(st.integers(0, 40), max_size=4), table=st.booleans())
 def test_crcs_of_all_kinds_with_and_without_a_table_in_pieces(shipped, wire, form, data, places, table):
     made = shipped.module("wire.link").CrcForm(*(getattr(form, name) for name in form.__dataclass_fields__))

@@ -7,7 +7,8 @@
 int main(int argc, char **argv)
 {
     static const uint8_t digits[] = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
-    static uint16_t table[256];
+    static uint8_t table8[256];
+    static uint16_t table16[256];
     icd_crc_form_t form = {0};
     icd_crc_form_t zero = {0};
     icd_crc_t crc;
@@ -30,9 +31,11 @@ int main(int argc, char **argv)
     zero.polynomial = form.polynomial;
     for (unsigned i = 0; i < 256u; ++i) {
         const uint8_t byte = (uint8_t)i;
-        table[i] = (uint16_t)icd_crc(&zero, &byte, 1);
+        table8[i] = (uint8_t)icd_crc(&zero, &byte, 1);
+        table16[i] = (uint16_t)icd_crc(&zero, &byte, 1);
     }
-    form.table = form.width <= 16u ? table : NULL; /* its rows have 16 bits */
+    form.table8 = form.width <= 8u ? table8 : NULL;
+    form.table16 = form.width > 8u && form.width <= 16u ? table16 : NULL;
     if (icd_crc_result(&crc) != icd_crc(&form, digits, sizeof digits)) {
         return 1;
     }

@@ -67,6 +67,9 @@ fn failing() {
     let failure = session.get::<EstimatedAttitudeAngles>().unwrap_err();
     let source = std::error::Error::source(&failure).unwrap();
     assert_eq!(source.downcast_ref::<io::Error>().unwrap().kind(), ErrorKind::BrokenPipe);
+    assert_eq!(failure.to_string(), "the port failed: broken pipe");
+    let failure = Failure::from(icd::Error::Range { field: "Flow", allowed: "0 to 6553.5 m/s" });
+    assert_eq!(failure.to_string(), "`Flow` takes 0 to 6553.5 m/s");
     line.fails.set(false);
     line.answer.borrow_mut().clear();
     session.get::<Identification>().unwrap();

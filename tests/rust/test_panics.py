@@ -35,6 +35,12 @@ SCALED = """\
 #[no_mangle] pub fn get_{name}(message: &{type}) -> {value} {{ message.{getter}() }}
 #[no_mangle] pub fn set_{name}(message: &mut {type}, to: f64) -> Result<(), icd::Error> {{ message.{setter}(to) }}
 """
+READ = """\
+#[no_mangle] pub fn get_{name}(message: &{type}) -> {value} {{ message.{getter}() }}
+"""
+READ_ELEMENT = """\
+#[no_mangle] pub fn get_{name}(message: &{type}, at: usize) -> Option<f64> {{ message.{getter}(at) }}
+"""
 ELEMENT = """\
 #[no_mangle] pub fn get_{name}(message: &{type}, at: usize) -> Option<f64> {{ message.{getter}(at) }}
 #[no_mangle] pub fn set_{name}(message: &mut {type}, at: usize, to: f64) -> Result<(), icd::Error> {{ message.{setter}(at, to) }}
@@ -57,8 +63,9 @@ def everything(icd: Icd) -> Iterator[str]:
         for message in node.messages:
             name, type_ = f"{node.name}_{message.name}", f"icd::{node.name}::{type_name(message)}"
             yield MESSAGE.format(name=name, type=type_)
-            for field in (field for field in message.members if field.steps):
-                one, template = field.physical_name, ELEMENT if field.count else SCALED
+            for field in (field for field in message.all_members if field.is_scaled):
+                one, templates = field.physical_name, (ELEMENT, READ_ELEMENT) if field.count else (SCALED, READ)
+                template = templates[not field.is_set]
                 value = "Option<f64>" if field.model.when else "f64"
                 yield template.format(name=f"{name}_{one}", type=type_, getter=one, setter=f"set_{one}", value=value)
         for way, messages in (("telecommand", node.telecommands), ("telemetry", node.telemetry)):

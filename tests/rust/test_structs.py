@@ -30,7 +30,7 @@ fn main() {
     view.best.set_azimuth_deg(-2.0).unwrap();
     assert_eq!(view.best.azimuth, -4);
     view.pairs[0].both[1].quality = 16;
-    assert_eq!(view.to_bytes(), Err(Error::Range { field: "Quality" }));
+    assert_eq!(view.to_bytes(), Err(Error::Range { field: "Quality", allowed: "0 to 15" }));
     assert_eq!(View::default().pairs, [Pair::default()]);
     assert_eq!(Pair::default().version, Pair::VERSION_CONST);
     assert_eq!(Satellite::default(), View::default().best);

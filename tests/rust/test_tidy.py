@@ -54,6 +54,17 @@ def test_a_crate_that_needs_next_to_nothing_is_tidy_too(toolchain, tmp_path):
     toolchain.linted(crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd")
 
 
+def test_a_message_may_be_called_as_its_node_is(toolchain, tmp_path):
+    (tmp_path / "pump.yaml").write_text(
+        "icdgen: 1\nnode: {name: pump, title: Pump, byte_order: little, bit_order: lsb0}\nmessages:\n"
+        "  - {name: Pump, id: 1, kind: telemetry, length: 1, fields: [{at: 0, bits: 8, name: Pump, type: uint}]}\n",
+        encoding="utf-8",
+    )
+    crate = harness.generate(harness.read(tmp_path / "pump.yaml"), tmp_path)
+    toolchain.formatted(crate)
+    toolchain.linted(crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd")
+
+
 def test_the_tools_would_complain(toolchain, tmp_path):
     bad = tmp_path / "bad.rs"
     bad.write_text("//! [nothing]\npub fn f(x:u64)->u32{ x as u32 }\n")

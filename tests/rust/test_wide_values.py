@@ -14,7 +14,11 @@ from tests.rust.tools import Toolchain, run
 CASE = """\
     let mut message = icd::{node}::{type}::from_array(&[0; {length}]);
     message.{field} = {widest};
-    assert_eq!(message.to_bytes(), Err(icd::Error::Range {{ field: {title} }}));
+    let told = matches!(
+        message.to_bytes(),
+        Err(icd::Error::Range {{ field, allowed }}) if field == {title} && allowed.contains("{least} to {largest_raw}")
+    );
+    assert!(told, "{{}}", {title});
     message.{field} = {largest};
     assert_eq!(message.to_bytes(), Ok({bytes}), "{{}}", {title});
 """
@@ -39,6 +43,8 @@ def cases(icd: Icd) -> Iterator[str]:
                     widest=coded.format(f"{kind}::MAX"),
                     largest=coded.format(f"{field.raw_max}_{kind}"),
                     title=string(field.name),
+                    least=field.raw_min,
+                    largest_raw=field.raw_max,
                 )
 
 

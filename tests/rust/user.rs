@@ -30,14 +30,15 @@ fn reading() {
     assert_eq!(angles.estimated_yaw_angle, 3, "0.025 is a little more than the tie, too");
     for refused in [f64::NAN, f64::INFINITY, -f64::INFINITY, 327.68, -327.69, f64::MAX] {
         let error = angles.set_estimated_yaw_angle_deg(refused).unwrap_err();
-        assert_eq!(error, Error::Range { field: "Estimated Yaw Angle" });
+        assert_eq!(error, Error::Range { field: "Estimated Yaw Angle", allowed: "-327.68 to 327.67 deg" });
+        assert_eq!(error.to_string(), "`Estimated Yaw Angle` takes -327.68 to 327.67 deg");
         assert_eq!(angles.estimated_yaw_angle, 3);
     }
     assert_eq!(angles.estimated_roll_angle_mdeg(), -12_340);
     assert_eq!(angles.estimated_roll_angle_deg_f32(), -12.34_f32);
     assert_eq!(angles.set_estimated_roll_angle_mdeg(12_345), Ok(()));
     assert_eq!(angles.estimated_roll_angle, 1234, "a tie goes to the even one");
-    assert_eq!(angles.set_estimated_roll_angle_mdeg(327_676), Err(Error::Range { field: "Estimated Roll Angle" }));
+    assert_eq!(angles.set_estimated_roll_angle_mdeg(327_676), Err(Error::Range { field: "Estimated Roll Angle", allowed: "-327.68 to 327.67 deg" }));
     assert_eq!(angles.set_estimated_roll_angle_mdeg(-327_685), Ok(()), "a tie again");
     assert_eq!(angles.estimated_roll_angle, -32_768);
     for length in [0, 5, 7, 512] {
@@ -85,7 +86,7 @@ fn writing() {
     let mut state = CurrentAdcsState::default();
     assert_eq!(state.to_bytes(), Ok([0; 6]));
     state.control_mode = Coded::from_raw(0x1e);
-    assert_eq!(state.to_bytes(), Err(Error::Range { field: "Control Mode" }));
+    assert_eq!(state.to_bytes(), Err(Error::Range { field: "Control Mode", allowed: "ConModeSelect, 0 to 15" }));
 }
 
 fn enumerations() {

@@ -91,6 +91,7 @@ def test_what_cannot_be_opened_is_said(name):
 @pytest.mark.parametrize(
     ("name", "words"),
     [
+        ("4000", "did you mean tcp://localhost:4000?"),
         ("127.0.0.1:4000", "did you mean tcp://127.0.0.1:4000?"),
         ("my-bench.local:80", "did you mean tcp://my-bench.local:80?"),
         ("[::1]:4000", "did you mean tcp://[::1]:4000?"),

@@ -28,6 +28,7 @@ class _Path(click.Path):
         return super().convert(value, param, ctx)
 
 
+_CONFIGURED = "icdgen.configured"  # of a click context: the icdgen.toml whose ICDs are meant
 PATH = _Path(path_type=Path)
 
 
@@ -81,7 +82,26 @@ def chosen(icds: tuple[Path, ...]) -> tuple[list[Path], config.Config]:
     except FileNotFoundError:
         raise UserError("the current folder is no longer there", "change to another one") from None
     paths = list(icds) or found.icds or [shipped.icds()]
+    context = click.get_current_context(silent=True)
+    if context is not None and found.icds and not icds:
+        context.meta[_CONFIGURED] = found.path
     return [_short(path) for path in paths], found
+
+
+def beside_shipped(error: UserError, context: click.Context) -> UserError:
+    """The error; if it is about a node that is shipped, but not among those of ``icdgen.toml``, one that says so."""
+    from icdgen.values.errors import NotFound
+
+    path = context.meta.get(_CONFIGURED)
+    if path is None or not isinstance(error, NotFound):
+        return error
+    for file in sorted(shipped.icds().glob("*.yaml")):
+        if f"`{file.stem}`" in str(error).lower():
+            return NotFound(
+                f"{error}: it is a node that comes with icdgen, and the nodes here are those that {_short(path)} names",
+                f"give `--icd {shipped.icds()}`, or add that folder to `icds` in {_short(path)}",
+            )
+    return error
 
 
 def _short(path: Path) -> Path:

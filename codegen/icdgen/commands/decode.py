@@ -16,10 +16,11 @@ from icdgen.commands.common import icd_option, load_or_exit, say
 from icdgen.errors import UserError
 
 if TYPE_CHECKING:
-    from icdgen.icd.model import Icd
+    from icdgen.icd.model import Icd, Message
     from icdgen.recognize import Reading
 
 _KINDS = click.Choice(["telecommand", "telemetry", "configuration"])
+_LONGEST_ID, _OF_BYTE = 10, (1, 2, 3)  # digits: of an id of 32 bits; of a byte, in decimals or not
 _MOST = 1_000_000  # bytes that are read for frames
 _CSV = ("frame", "node", "message", "direction", "id", "field", "raw", "value", "unit", "remarks")
 
@@ -42,14 +43,20 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
     icd = load_or_exit(icds).icd
     node, message, frame = _taken_apart(icd, list(arguments), kind)
     found = recognize.recognize(icd, frame, node, message, kind)
+    if node is not None and message is None and arguments[0].lower() == node and arguments[1].isdecimal():
+        found = [one if one.id is not None else one.noted(_no_id(arguments[1], node)) for one in found]
     {"text": _print_text, "json": _print_json, "csv": _print_csv}[form](found)
     sys.exit(1 if any(one.has_wrong_constant for one in found) else 0)
+
+
+def _no_id(word: str, node: str) -> str:
+    return f"{node} has no message {word}: it is taken for the first byte of the frame"
 
 
 def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | None, str | None, str | bytes]:
     """Node, message and frame: a word is the node or the message if there is one of that name."""
     from icdgen.values.errors import Ambiguous, NotFound
-    from icdgen.values.find import by_name, find_message, find_node, find_sharing, only_node
+    from icdgen.values.find import find_message, find_node, find_sharing, only_node
 
     node = message = None
     only = only_node(icd)
@@ -58,16 +65,20 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
     if len(words) > 1:
         if words[0].lower() in {n.name for n in icd.nodes}:
             node = find_node(icd, words.pop(0)).name
-        elif only and not _is_bytes(words[0]) and by_name(icd.messages_of(only), words[0], only.vocabulary):
+        elif only and _is_message(icd.messages_of(only), words, only.vocabulary):
             node = only.name
         elif not _is_frame(words):
             node = only.name if only else find_node(icd, words.pop(0)).name
+    if node is not None and len(words) == 1 and not _is_bytes(words[0]):
+        _refuse_lack(icd, node, words, kind)
     if node is not None and len(words) > 1:
         try:
             find_message(icd, node, words[0], kind)
-        except NotFound:
+        except NotFound as error:
             if not _is_frame(words):
                 raise
+            if _is_id(words):
+                raise NotFound(str(error), f"{error.help}; a frame that begins so is given as one word") from None
         except Ambiguous:
             if not find_sharing(icd, node, words[0], kind):
                 raise
@@ -75,6 +86,40 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
         else:
             message = words.pop(0)
     return node, message, _content(words)
+
+
+def _is_message(messages: Sequence[Message], words: list[str], vocabulary: tuple[str, ...]) -> bool:
+    """Whether the first word is the name of a message or its id, and no part of the frame."""
+    from icdgen.values.find import by_name
+
+    if not _is_bytes(words[0]) and by_name(messages, words[0], vocabulary):
+        return True
+    return _is_id(words) and any(int(words[0]) in message.ids for message in messages)
+
+
+def _refuse_lack(icd: Icd, node: str, words: list[str], kind: str | None) -> None:
+    """A last word that names a message, or is no frame, is one for which a frame is lacking. Raises `UserError`."""
+    from icdgen.values.errors import NotFound
+    from icdgen.values.find import find_message
+
+    try:
+        message = find_message(icd, node, words[0], kind)
+    except NotFound:
+        if _is_frame(words):
+            return
+        raise
+    what = f"there is no frame for {message.name} of {node}"
+    raise UserError(what, "give it after the message, or - for standard input")
+
+
+def _is_id(words: list[str]) -> bool:
+    """Whether the first word is a number as ids are, and no part of the frame, for the others are no single bytes."""
+    first, *others = words
+    return (
+        first.isdecimal()
+        and len(first) <= _LONGEST_ID
+        and any(len(one) not in (len(first), *_OF_BYTE) for one in others)
+    )
 
 
 def _is_frame(words: list[str]) -> bool:

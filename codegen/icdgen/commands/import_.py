@@ -178,7 +178,8 @@ def _refuse(error: Findings, manual: Path, form: str) -> None:
     for finding in error.findings:
         if finding.code in ABOUT_FILES:
             place = f"{finding.place.file}:{finding.place.line}" if finding.place.line > 1 else finding.place.file
-            say(f"{place}: error[{finding.code}]: {finding.message}\n  = help: {finding.help}", err=True)
+            remedy = f"\n  = help: {finding.help}" if finding.help else ""
+            say(f"{place}: error[{finding.code}]: {finding.message}{remedy}", err=True)
     if about_lines:
         texts = {}
         for name in {finding.place.file for finding in about_lines}:

@@ -12,7 +12,7 @@ from icdgen.definitions.kaitai_types import Type, declared, mapping
 from icdgen.definitions.kaitai_yaml import parse
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld
 from icdgen.definitions.wording import line, node_name, summary
-from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
+from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
 
 MOST_MESSAGES = 256
 _META = re.compile(r"^meta:[ \t]*(?:#.*)?\r?\n(?:[ \t]*(?:#.*)?\r?\n)*[ \t]+\w", re.MULTILINE)
@@ -110,12 +110,19 @@ def _fields(layout: Layout, order: str) -> list[Item]:
     """The parts as fields; bits on which something depends become fields of their own, and the whole a view."""
     fields: list[Item] = []
     room = MOST_BYTES - -(-layout.at // 8)
-    for part, name in zip(layout.parts, shortest([one.path for one in layout.parts]), strict=True):
+    names = shortest([one.path for one in layout.parts])
+    for part, name in zip(layout.parts, names, strict=True):
         item = part.item
         if not part.bits:
-            element = part.piece.bits // 8 or 1
-            size: Item = {} if "count" in item else {"size": "rest"}
-            most = min(room // element, MOST_ELEMENTS) if "count" in item else room
+            counts = "count" in item
+            most = min(room // (part.piece.bits // 8), MOST_ELEMENTS) if counts else room
+            said: str | Item = REST
+            if part.counter is not None:
+                of, plus = part.counter
+                said = next(other for one, other in zip(layout.parts, names, strict=True) if one is of)
+                said = {"field": said, "plus": plus} if plus else said
+                most = min(most, part.counter.most)
+            size = {"count" if counts else "size": said}
             fields.append({"at": part.at, "name": name, **item, **size, "up_to": most})
         elif "struct" in item:
             fields.append({"at": part.at, "name": name, **item})

@@ -99,3 +99,12 @@ def line_of(text: object, is_integer: bool) -> tuple[str, str] | None:
     except FormulaError:
         return None
     return (paths.pop(), plain) if len(terms) == 2 and terms[1] else None
+
+
+def counted(text: object) -> tuple[str, int] | None:
+    """The field that a number is, and what is added to it; None if it is anything else."""
+    found = line_of(text, is_integer=True)
+    if found is None:
+        return None
+    plus, slope = coefficients(found[1])
+    return (found[0], int(plus)) if slope == 1 and plus.denominator == 1 else None

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from icdgen.definitions.kaitai_expressions import Masked, equalities, line_of, masked, number
-from icdgen.definitions.kaitai_parts import Ended, File, Key, Label, Part, Scope, TooMuch, Undecided
+from icdgen.definitions.kaitai_expressions import Masked, counted, equalities, line_of, masked, number
+from icdgen.definitions.kaitai_parts import Counter, Ended, File, Key, Label, Part, Scope, TooMuch, Undecided
 from icdgen.definitions.kaitai_types import Piece, Type, built_in, contents, named, sized
 from icdgen.definitions.kaitai_yaml import integer
 from icdgen.definitions.model import Item, NotHeld
 from icdgen.definitions.wording import line, summary, unit
 from icdgen.icd.located import Map
-from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
+from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
 
 RAW_ONLY, AS_BYTES = "IMP078", "IMP081"
 MOST_FIELDS = 5000
@@ -42,6 +42,14 @@ class Layout:
 
     def type(self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]) -> None:
         """The attributes of a type, and what is computed from them."""
+        try:
+            self._sequence(type_, scope, path, within)
+        except Ended:
+            self._instances(type_, scope, path)
+            raise
+        self._instances(type_, scope, path)
+
+    def _sequence(self, type_: Type, scope: Scope, path: tuple[str, ...], within: tuple[Type, ...]) -> None:
         for index, one in enumerate(type_.seq):
             self.file.step()
             if len(self.parts) > MOST_FIELDS or self.at > 8 * MOST_BYTES:
@@ -60,7 +68,6 @@ class Layout:
                 raise
             except NotHeld as why:
                 self._as_bytes(one, where, why, known)
-        self._instances(type_, scope, path)
 
     def _attribute(self, one: Map, name: str, where: tuple[str, ...], scope: Scope, within: tuple[Type, ...]) -> None:
         if "process" in one:
@@ -75,7 +82,7 @@ class Layout:
                 return
             name_of_type = chosen
         piece = built_in(str(name_of_type or ""), one, scope.type)
-        count = self._count(one)
+        count = self._count(one, scope)
         if piece is not None:
             part = self._place(where, piece, count, one, scope)
             scope.names[name] = part
@@ -118,28 +125,49 @@ class Layout:
             raise NotHeld(f"it has more than the {size} bytes that are there for it")
         self.at = end
 
-    def _count(self, one: Map) -> int | str | None:
-        """How often it is there: a number, or to the end (`rest`)."""
+    def _count(self, one: Map, scope: Scope) -> int | Counter | str | None:
+        """How often it is there: a number, as a field says, or to the end (`rest`)."""
         repeat = one.get("repeat")
         if repeat is None:
             return None
         if repeat == "eos":
             if self.ends:
                 raise NotHeld("it is repeated to the end of what is around it")
-            return "rest"
+            return REST
         said = one.get("repeat-expr")
         count = integer(said) if isinstance(said, str) else said
         if repeat != "expr" or not isinstance(count, int):
-            raise NotHeld(f"it is repeated as often as `{line(str(said or one.get('repeat-until')), 80)}` says")
+            why = f"it is repeated as often as `{line(str(said or one.get('repeat-until')), 80)}` says"
+            return self._counter(said if repeat == "expr" else None, scope, why)
         if not 1 <= count <= MOST_ELEMENTS:
             raise NotHeld(f"it is repeated {count} times")
         return count
 
+    def _counter(self, said: object, scope: Scope, why: str) -> Counter:
+        """What counts, if it is a number in front of it, and ``why`` else. Raises `NotHeld`."""
+        found = counted(said)
+        if found is None:
+            raise NotHeld(why)
+        of = scope.find(found[0])
+        if of.item.get("type") != "uint" or "count" in of.item or of.mask or not any(of is one for one in self.parts):
+            raise NotHeld(f"{why}, which is no number in front of it")
+        made = Counter(of, found[1])
+        if self.ends:
+            raise NotHeld(f"{why}, within a part that has a size of its own")
+        if made.most < 1:
+            raise NotHeld(f"{why}, which is never more than nothing")
+        return made
+
     def _align(self) -> None:
         self.at = -(-self.at // 8) * 8
 
-    def _place(self, where: tuple[str, ...], piece: Piece, count: int | str | None, one: Map, scope: Scope) -> Part:
+    def _place(
+        self, where: tuple[str, ...], piece: Piece, count: int | Counter | str | None, one: Map, scope: Scope
+    ) -> Part:
         """Puts a number, a text or bytes where the last part ended."""
+        counter = count if isinstance(count, Counter) else None
+        if not piece.bits and "size" in one:
+            counter = self._counter(one["size"], scope, f"its size is `{line(str(one['size']), 80)}`")
         if not piece.is_bits:
             self._align()
         elif self.at % 8 and self.parts and self.parts[-1].piece.is_bits and self.parts[-1].piece.order != piece.order:
@@ -154,9 +182,9 @@ class Layout:
         if count is not None:
             if piece.item["type"] == "bytes" or not piece.bits:
                 raise NotHeld("it is an array of what is no number")
-            piece.item |= {"bits": piece.bits, "count": count}
+            piece.item |= {"bits": piece.bits, "count": REST if isinstance(count, Counter) else count}
         piece.item |= summary(str(one.get("doc") or "")) | unit(_unit(one))
-        part = Part(where, piece.item, piece, self.at)
+        part = Part(where, piece.item, piece, self.at, counter=counter)
         self._valid(part, one.get("valid"), scope)
         if self.ends and self.at + part.bits > self.ends[-1]:
             raise NotHeld("it goes beyond the bytes that are there for it")
@@ -197,7 +225,7 @@ class Layout:
             self._add(Part(name, item, Piece(item, bits), self.at, (1 << bits) - 1, int.from_bytes(data, "big")))
 
     def _structs(
-        self, where: tuple[str, ...], inner: Type, count: int | str, one: Map, within: tuple[Type, ...]
+        self, where: tuple[str, ...], inner: Type, count: int | Counter | str, one: Map, within: tuple[Type, ...]
     ) -> None:
         """An array of what a type is. Raises `NotHeld` if that is not always alike."""
         self._align()
@@ -208,11 +236,12 @@ class Layout:
             raise NotHeld(f"what each of them has depends on `{error.key[0][-1]}`") from None
         if layout.open or layout.at % 8 or not layout.at:
             raise NotHeld("they are not of a fixed number of bytes")
-        item: Item = {"struct": inner.name, "count": count, **summary(str(one.get("doc") or ""))}
+        counter = count if isinstance(count, Counter) else None
+        item: Item = {"struct": inner.name, "count": REST if counter else count, **summary(str(one.get("doc") or ""))}
         known = self.file.structs.setdefault(id(inner), {"name": inner.name, "length": layout.at // 8, "parts": layout})
         if known["length"] != layout.at // 8:
             raise NotHeld("they are not as long as elsewhere")
-        part = Part(where, item, Piece(item, layout.at), self.at)
+        part = Part(where, item, Piece(item, layout.at), self.at, counter=counter)
         if self.ends and self.at + part.bits > self.ends[-1]:
             raise NotHeld("it goes beyond the bytes that are there for it")
         self._add(part)
@@ -337,6 +366,8 @@ class Layout:
         item = part.item
         if item.get("type") not in ("uint", "int", "float") or "formula" in item or "view" in item:
             return False
+        if any(one.counter is not None and one.counter.of is part for one in self.parts):
+            return False  # what counts is a plain number
         if item["type"] != "float" and line_of(one["value"], is_integer=True) is None:
             return False
         if found[1] != "raw":

@@ -38,6 +38,17 @@ class Label(NamedTuple):
     value: str
 
 
+class Counter(NamedTuple):
+    """What says how many elements there are, or bytes: a field, and what is added to it."""
+
+    of: Part
+    plus: int
+
+    @property
+    def most(self) -> int:
+        return (1 << self.of.bits) - 1 + self.plus
+
+
 @dataclass
 class Part:
     """A field in its place. Of ``mask`` the bits are known, as ``value`` has them; ``excluded`` are values that it has not."""
@@ -50,6 +61,7 @@ class Part:
     value: int = 0
     excluded: set[tuple[int, int]] = field(default_factory=set)
     is_whole: bool = True  # whether it is what the file defines, and not bytes that stand for it
+    counter: Counter | None = None  # of what goes on as long as a field says
 
     @property
     def bits(self) -> int:

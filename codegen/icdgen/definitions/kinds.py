@@ -23,6 +23,7 @@ _BUILT_IN = {
     "mavlink1": "icdgen.definitions.mavlink:MavLink1",
     "xtce": "icdgen.definitions.xtce:Xtce",
     "ksy": "icdgen.definitions.kaitai:Kaitai",
+    "sunspec": "icdgen.definitions.sunspec:SunSpec",
 }
 
 

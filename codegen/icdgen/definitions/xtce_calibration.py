@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from icdgen.definitions.model import NotHeld
 from icdgen.definitions.wording import line, printed
+from icdgen.icd import curve
+from icdgen.icd.formula import FormulaError
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -18,24 +20,51 @@ _INTEGER = re.compile(r"\s*([-+]?[0-9]{1,40})\s*\Z")
 _MOST_POWER = 15
 
 
-def calibration(encoding: Element) -> str:
-    """The formula; nothing where the raw value is meant. Raises `ValueError`, with the reason, where no formula says it."""
+def calibration(encoding: Element) -> dict[str, Any]:
+    """The keys of a formula, or of a table; none where the raw value is meant.
+
+    Raises `ValueError`, with the reason, where neither says it.
+    """
     if encoding.find("ContextCalibratorList") is not None:
         raise ValueError("its calibration depends on other parameters")
     calibrator = encoding.find("DefaultCalibrator")
     if calibrator is None:
-        return ""
+        return {}
     if terms := calibrator.findall("PolynomialCalibrator/Term"):
-        return polynomial(terms)
+        return _said(polynomial(terms))
     spline = calibrator.find("SplineCalibrator")
     if spline is None:
         raise ValueError("it is calibrated by an algorithm")
     points = spline.findall("SplinePoint")
-    if len(points) != 2 or {one.get("order", "1") for one in (spline, *points)} != {"1"}:
-        raise ValueError(f"it is calibrated by a table of {len(points)} points")
-    if spline.get("extrapolate", "false") != "true":
-        raise ValueError("its calibration ends with the points of its table")
-    return through(points)
+    if {one.get("order", "1") for one in (spline, *points)} != {"1"}:
+        raise ValueError(f"it is calibrated by a table of {len(points)} points that are not joined by lines")
+    goes_on = spline.get("extrapolate", "false") == "true"
+    return _said(through(points)) if len(points) == 2 and goes_on else _table(points, goes_on)
+
+
+def _said(text: str) -> dict[str, Any]:
+    return {"formula": text} if text else {}
+
+
+def _table(points: list[Element], goes_on: bool) -> dict[str, Any]:
+    """The points in the order of their raw values, as that of a definition does not matter."""
+    found = [[decimal(one.get(key, "")) for key in ("raw", "calibrated")] for one in points]
+    found.sort(key=lambda point: Fraction(point[0]))
+    try:
+        curve.table(curve.doubles(found), "")
+    except FormulaError as error:
+        raise ValueError(f"it is calibrated by a table that cannot be used: {error}") from None
+    if len(found) > curve.MOST_POINTS:
+        raise ValueError(f"it is calibrated by a table of {len(found):,} points")
+    return {
+        "points": [[_number(text) for text in point] for point in found],
+        "outside": curve.EXTRAPOLATE if goes_on else curve.REFUSE,
+    }
+
+
+def _number(text: str) -> int | float | str:
+    """As an ICD has it: an exponent makes it a text."""
+    return text if "e" in text.lower() or len(text) > 30 else float(text) if "." in text else int(text)
 
 
 def number(text: str, what: str) -> int:

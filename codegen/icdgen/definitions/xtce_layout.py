@@ -190,7 +190,7 @@ class Layout:
         item, text = part.item, value.strip()
         if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
             raise NotHeld(f"it is told by `{name}`, which is of the type {item['type']}")
-        if "formula" in item and not is_raw:
+        if item.keys() & {"formula", "points"} and not is_raw:
             raise NotHeld(f"it is told by the calibrated value of `{name}`")
         if text in part.piece.values:
             raw = part.piece.values[text]

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from icdgen.definitions.enumerations import Enumerations, members, special
 from icdgen.definitions.frames import BIG, LITTLE
@@ -170,11 +170,11 @@ class Types:
         """Adds the formula. False if there is a calibration that cannot be said, so that the raw value is all that is held."""
         try:
             is_time = kind in ("AbsoluteTime", "RelativeTime")
-            said = _time(item, chain) if is_time else "" if encoding is None else calibration(encoding)
+            said = _time(item, chain) if is_time else {} if encoding is None else calibration(encoding)
         except ValueError as error:
             self._raw_only(where, str(error))
             return False
-        item |= {"formula": said} if said else {}
+        item |= said
         return True
 
     def _raw_only(self, where: str, why: str) -> None:
@@ -198,7 +198,7 @@ class Types:
         of_raw = any(
             one is not None and one.get("validRangeAppliesToCalibrated") == "false" for one in (*ranges, *owners)
         )
-        if len(ranges) != 1 or (of_raw and "formula" in item):
+        if len(ranges) != 1 or (of_raw and item.keys() & {"formula", "points"}):
             return {}
         found: Item = {}
         for said, key in _LIMITS.items():
@@ -231,14 +231,14 @@ def said(element: Element) -> str:
     return " ".join(text if text.endswith((".", "!", "?")) or len(texts) == 1 else f"{text}." for text in texts)
 
 
-def _time(item: Item, chain: list[Element]) -> str:
-    """The formula of seconds, or what the encoding says, since an epoch; adds the unit. Raises `ValueError`."""
+def _time(item: Item, chain: list[Element]) -> dict[str, Any]:
+    """The key of the formula of seconds, or what the encoding says, since an epoch; adds the unit. Raises `ValueError`."""
     of = next((one for type_ in chain for one in type_.iterfind("Encoding")), None)
     if of is None:
-        return ""
+        return {}
     text = formula({1: decimal(of.get("scale", "1")), 0: decimal(of.get("offset", "0"))})
     item |= unit({"seconds": "s"}.get(of.get("units", "seconds"), of.get("units", "")))
-    return text
+    return {"formula": text} if text else {}
 
 
 def described(*elements: Element) -> dict[str, str]:

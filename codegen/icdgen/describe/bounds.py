@@ -56,10 +56,10 @@ def bounds(limits: Limits | None) -> tuple[Bound, ...]:
 
 
 def span(curve: Curve, field: Field) -> tuple[Fraction, Fraction] | None:
-    """The smallest and the largest value of a curve that rises or falls all along; else None."""
+    """The smallest and the largest value that leads back to a raw value; None where none does, and of a float."""
     if field.type == "float" or not field.leads_back:
         return None
-    first, last = (Fraction(curve.double(raw)) for raw in (field.raw_min, field.raw_max))
+    first, last = (Fraction(curve.double(raw)) for raw in field.ends)
     return min(first, last), max(first, last)
 
 

@@ -18,12 +18,15 @@ from icdgen.describe.numbers import (
     exact_text,
     length_text,
     octets_text,
+    points_text,
     special_text,
     value_text,
 )
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.model import CONFIGURATION, Condition, Enum, Field, Member, Message, Struct, Tail
+
+_LISTED = 6  # names in a row
 
 
 class Comment(NamedTuple):
@@ -133,11 +136,25 @@ def struct_comment(struct: Struct) -> Comment:
     return _comment(head, (sentence(struct.summary),), struct.errata, {})
 
 
-def enum_comment(enum: Enum) -> Comment:
-    """Name and table; summary."""
-    return _comment(
-        f"{words(enum.name)}: an enumeration.{_table(enum.table)}", (sentence(enum.summary),), enum.errata, {}
-    )
+def enum_comment(enum: Enum, users: Mapping[str, Sequence[str]]) -> Comment:
+    """Name and table; summary; ``users``: by the names of the fields that hold it, the messages and structs they stand in."""
+    head = f"{words(enum.name)}: an enumeration.{_table(enum.table)}"
+    return _comment(head, (sentence(enum.summary), _used(users)), enum.errata, {})
+
+
+def _used(users: Mapping[str, Sequence[str]]) -> str:
+    """``Held by Mode in Status and Set Mode; Boot Mode in Status.``"""
+    found = [f"{words(field)} in {_listed(list(map(words, owners)))}" for field, owners in users.items()]
+    if len(found) > _LISTED:
+        found[_LISTED - 1 :] = [f"{len(found) - _LISTED + 1} other fields"]
+    return f"Held by {'; '.join(found)}." if found else ""
+
+
+def _listed(names: Sequence[str]) -> str:
+    """``Status, Set Mode and Limits``; of many the first, and how many others there are."""
+    if len(names) > _LISTED:
+        return f"{', '.join(names[: _LISTED - 1])} and {len(names) - _LISTED + 1} others"
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
 def member_comment(member: Member, told: Mapping[str, str]) -> Comment:
@@ -222,7 +239,10 @@ def _meaning(field: Field) -> str:
     if not field.has_formula:
         return f"{text}, in {unit}" if unit else text
     range = span_text(field)
-    what = f"; physical `{words(field.formula)}`{', in doubles' if field.curve is not None else ''}"
+    how = f"`{words(field.formula)}`"
+    if field.curve is not None:
+        how = f"by points {points_text(field.curve, 6)}" if field.curve.points else f"{how}, in doubles"
+    what = f"; physical {how}"
     return f"{text}{what}{f', {range}' if range else ', in' if unit else ''}{f' {unit}' if unit else ''}"
 
 
@@ -233,6 +253,17 @@ def span_text(field: Field) -> str:
         return " to ".join(repr(float(end)) for end in ends) if ends else ""
     scaled = steps(field)
     return _span_text(scaled) if scaled is not None else ""
+
+
+def takes_text(field: Field, is_narrow: bool) -> str:
+    """``0 to 6553.5 m/s``, ``Mode, 0 to 15``: what a setter takes, or an encoder; also raw where more fits what holds it."""
+    unit = f" {words(field.unit.symbol)}" if field.unit else ""
+    if field.type == "float":
+        return f"what {field.bits} bits of a float hold"
+    raw, span = f"{field.raw_min} to {field.raw_max}", span_text(field)
+    if field.enum is not None:
+        return f"{words(field.enum.name)}, {raw}"
+    return f"{span}{unit}{f', raw {raw}' if is_narrow else ''}" if span else f"{raw}{'' if field.has_formula else unit}"
 
 
 @lru_cache(maxsize=4096)

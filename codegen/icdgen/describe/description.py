@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 from icdgen import layout, naming
 from icdgen.describe import steps
 from icdgen.describe.bounds import Bound, bounds
-from icdgen.describe.comments import Comment, field_comment, struct_comment, words
+from icdgen.describe.comments import Comment, field_comment, struct_comment, takes_text, words
 from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription
 from icdgen.describe.errata import Thing, tellers, told_elsewhere
@@ -133,6 +133,11 @@ class FieldDescription(Named[Field]):
     def is_narrow(self) -> bool:
         """Whether `storage` holds raw values that the field can't."""
         return self.model.bits != self.storage.bits and self.model.type in ("uint", "int", "enum")
+
+    @property
+    def takes(self) -> str:
+        """What it takes, in words, for who gave it something else."""
+        return takes_text(self.model, self.is_narrow)
 
     @property
     def fresh(self) -> int:

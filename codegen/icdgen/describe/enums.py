@@ -54,7 +54,19 @@ class EnumDescription(Named[Enum]):
 
     @cached_property
     def comment(self) -> Comment:
-        return enum_comment(self.model)
+        return enum_comment(self.model, self.users)
+
+    @cached_property
+    def users(self) -> dict[str, list[str]]:
+        """By the names of the fields of its node that hold it: the messages and structs in which they stand."""
+        found: dict[str, list[str]] = {}
+        every: tuple[Struct | Message, ...] = (*self.node.structs, *self.node.messages)
+        key = self.model.node, self.model.name
+        for one in every:
+            for field in one.members:
+                if field.enum is not None and (field.enum.node, field.enum.name) == key:
+                    found.setdefault(field.name, []).append(one.name)
+        return found
 
     def member(self, value: int) -> MemberDescription | None:
         """The first member of a value, if one has it."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Protocol
 
+from icdgen import layout
 from icdgen.describe.comments import Comment, message_comment
 from icdgen.describe.description import Composite, FieldDescription, Known, StructDescription, TailDescription
 from icdgen.describe.named import Id
@@ -37,6 +38,11 @@ class MessageDescription(Composite[Message]):
     def __init__(self, description: Whole, message: Message, node: Node) -> None:
         super().__init__(description, message, node, "message")
         self._whole = description
+
+    @property
+    def has_reserved_bits(self) -> bool:
+        """Whether some bits of its frame are those of no field."""
+        return bool(layout.gaps(self.model, self.node))
 
     @cached_property
     def conditional(self) -> tuple[FieldDescription, ...]:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import lru_cache
 
+from icdgen.icd.curve import CLAMP, EXTRAPOLATE, REFUSE, Curve
 from icdgen.icd.model import Message, Special
 
 MOST_DIGITS = 24  # of a decimal that is shown in full
+_OUTSIDE = {"": "", CLAMP: "clamped outside", EXTRAPOLATE: "extrapolated outside", REFUSE: "no number outside"}
 
 
 @lru_cache(maxsize=4096)
@@ -34,6 +36,19 @@ def factor_text(factor: Fraction) -> str:
     """``0.01``; ``5/9`` where the decimal would not end."""
     text = exact_text(factor)
     return text if Fraction(text) == factor else str(factor)
+
+
+def point_text(point: tuple[float, float]) -> str:
+    """``512: 20.5``, a raw value and its physical one."""
+    return ": ".join(repr(number).removesuffix(".0") for number in point)
+
+
+def points_text(curve: Curve, most: int) -> str:
+    """``0: -40, 512: 20.5, 1023: 125, clamped outside``; of many points the first ones and the last, ``most`` altogether."""
+    points = list(map(point_text, curve.points))
+    if len(points) > most:
+        points[most - 1 : -1] = [f"... ({len(points)} points)"]
+    return ", ".join([*points, *filter(None, [_OUTSIDE[curve.outside]])])
 
 
 def value_text(raw: int) -> str:

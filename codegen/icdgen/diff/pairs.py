@@ -16,7 +16,7 @@ from icdgen.layout import Piece, byte_range, pieces
 # What a key of an ICD is called in the output of ``show``.
 _SHOWN = {
     "at": ("offset",),
-    "formula": ("scale", "coefficients"),
+    "formula": ("scale", "coefficients", "points"),
     "table": ("source",),
     "source": ("table",),
     "min": ("limits",),

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import lru_cache
 
-from icdgen.describe.numbers import bit_range, factor_text
+from icdgen.describe.numbers import bit_range, factor_text, points_text
 from icdgen.icd.curve import Curve
 from icdgen.icd.formula import Scale
 from icdgen.icd.model import Field
@@ -44,7 +44,7 @@ def formula(scale: Scale | Curve | None) -> str:
     if scale is None:
         return "raw"
     if isinstance(scale, Curve):
-        return _polynomial(scale)
+        return f"a table ({points_text(scale, 6)})" if scale.points else _polynomial(scale)
     text = "raw" if scale.factor == 1 else f"raw*{number(scale.factor)}"
     if scale.offset:
         text += f" {'+' if scale.offset > 0 else '-'} {number(abs(scale.offset))}"

@@ -194,6 +194,8 @@ class Builder:
         struct = self.scope.structs.get(item.get("struct", ""))
         end = self.field(item, orders(message)) if struct is None else self.standing(item, struct, orders(message))
         end = replace(end, bits=8 * most) if "size" in item else replace(end, count=most)
+        if not end.elements:
+            return None, ()  # nothing of the struct can be read
         if counter is not None:
             return tail, end.elements
         implied = implied_count(end, message["length"] + most * tail.step)
@@ -250,7 +252,7 @@ class Builder:
         get = item.get
         kind = get("type", "uint")  # which parts of a field need not say
         byte_order, bit_order = orders(item, around)
-        scale, polynomial = calibration(get("formula"), kind)
+        scale, line = calibration(get("formula"), kind) if "points" not in item else (None, table(item, kind))
         return model.Field(
             name=item["name"],
             at=item["at"],
@@ -261,7 +263,7 @@ class Builder:
             unit=self.scope.units.get(get("unit", "")),
             formula=get("formula", ""),
             scale=scale,
-            curve=polynomial,
+            curve=line,
             const=get("const"),
             special=self.special(item, kind) if "special" in item else (),
             limits=limits(item),
@@ -309,6 +311,15 @@ def calibration(text: str | None, kind: str) -> tuple[formula.Scale | None, curv
     with suppress(formula.FormulaError):
         return None, curve.parse_cached(text)
     return None, None
+
+
+def table(item: Map, kind: str) -> curve.Curve | None:
+    """The table of points of a field of a type; nothing where it is bad. Without ``outside``, nothing is."""
+    if kind not in ("uint", "int", "float"):
+        return None
+    with suppress(formula.FormulaError):
+        return curve.table(curve.doubles(item["points"]), item.get("outside", ""))
+    return None
 
 
 def special(kind: str, bits: int, value: int | float | str, meaning: str) -> model.Special | None:

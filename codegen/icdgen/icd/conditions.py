@@ -127,6 +127,7 @@ def _odd(field: Map) -> str:
         ("size", "is open"),
         ("bitfields", "is divided"),
         ("formula", "is scaled"),
+        ("points", "is scaled"),
     ):
         if key in field:
             return words

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from icdgen.icd.located import Map
 
-OF_A_WHOLE = ("unit", "formula", "const", "special", "min", "max", "above", "below")
+OF_A_WHOLE = ("unit", "formula", "points", "outside", "const", "special", "min", "max", "above", "below")
 """Keys that say what a value means: of a divided field its parts say so."""
 
 

@@ -70,9 +70,9 @@ class Field:
     identifier: str | None = None
     enum: Enum | None = None
     unit: Unit | None = None
-    formula: str = ""  # as held, for documentation
+    formula: str = ""  # as held, for documentation; empty of a table of points
     scale: Scale | None = None  # of a number, where the formula is a line
-    curve: Curve | None = None  # of any other formula, and of one on floats; without either it is the raw value
+    curve: Curve | None = None  # of other formulas, those of floats, and points; without either it is the raw value
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
@@ -139,8 +139,14 @@ class Field:
 
     @property
     def leads_back(self) -> bool:
-        """Whether a physical value gives the nearest raw one: always, but with some polynomials."""
+        """Whether a physical value gives the nearest raw one: always, but with some curves."""
         return self.curve is None or leads_back(self.curve, self.type == "float", self.raw_min, self.raw_max)
+
+    @property
+    def ends(self) -> tuple[int, int]:
+        """The least and the largest raw value of a number that setting a physical one may give."""
+        every = self.raw_min, self.raw_max
+        return every if self.curve is None or self.type == "float" else self.curve.ends(*every)
 
     @property
     def is_bytes(self) -> bool:

@@ -14,15 +14,16 @@ from pathlib import Path
 from typing import Any
 
 from icdgen.icd import model
-from icdgen.icd.curve import Curve
+from icdgen.icd.curve import Curve, Piece
 from icdgen.icd.formula import Scale
 from icdgen.icd.units import Unit
 
+_TUPLES = (Scale, Curve, Piece, Unit)
 _SCALARS = frozenset((str, int, bool, float, type(None)))
 _CLASSES: dict[str, type[Any]] = {
     kind.__name__: kind
-    for kind in (Scale, Curve, Unit, *vars(model).values())
-    if isinstance(kind, type) and (is_dataclass(kind) or kind in (Scale, Curve, Unit))
+    for kind in (*_TUPLES, *vars(model).values())
+    if isinstance(kind, type) and (is_dataclass(kind) or kind in _TUPLES)
 }
 
 

@@ -73,5 +73,7 @@ def of_key(key: str, known: list[str]) -> str:
         if "count" in known:
             return "write `count:`: `{at: 0, bits: 16, count: 6, name: Temperatures, type: int}` is an array of six numbers"
         return "only fields are repeated, by `count:`: what else there is several times is written as often"
+    if key.isdecimal():
+        return "decimals have a point and no comma: `formula: raw*0.1`"
     meant = _KEYS.get(key.lower(), "")
     return f"write {meant}" if meant and re.search(r"`(\w+):", meant)[1] in known else ""  # type: ignore[index]

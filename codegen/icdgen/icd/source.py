@@ -13,13 +13,14 @@ from typing import Any, Protocol, cast
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.icd.located import Map, Mark, Seq, Spot, place_of
 
+TREACHEROUS = "ICD003"
 MAX_BYTES = 4_000_000
 MAX_DEPTH = 40
 MAX_SCALAR = 20_000
 
 _INTEGER = re.compile(r"-?(?:0|[1-9][0-9]*)\Z")
 _HEX = re.compile(r"0x[0-9A-Fa-f]+\Z")
-_DECIMAL = re.compile(r"-?(?:0|[1-9][0-9]*)\.[0-9]+\Z")
+_DECIMAL = re.compile(r"-?(?:0|[1-9][0-9]*)\.[0-9]+(?:[eE][-+][0-9]{1,2})?\Z")
 _LONGEST_WORD = len("false")  # of those that mean something else to some reader of YAML
 _WORDS = {"true": True, "false": False, "null": None, "~": None, "": None}
 _UNPRINTABLE = (
@@ -63,6 +64,17 @@ def contents(path: Path, name: str) -> bytes:
 
 def parse(data: bytes, name: str) -> Map:
     """The tree of ``data``. Raises `Findings` with everything wrong at the level of YAML."""
+    tree, findings = parse_on(data, name)
+    if findings:
+        raise Findings(findings)
+    return tree
+
+
+def parse_on(data: bytes, name: str) -> tuple[Map, list[Finding]]:
+    """The tree of ``data``, and the values in it that YAML readers read differently, each held as the text that it is.
+
+    Raises `Findings` where anything else is wrong at the level of YAML.
+    """
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -75,9 +87,9 @@ def parse(data: bytes, name: str) -> Map:
     elif not findings and not isinstance(tree, Map):
         findings = [Finding("ICD001", "the file is not a mapping of keys to values", Place(name),
                             "an ICD begins with `icdgen: 1`, an overlay with `errata: 1`")]  # fmt: skip
-    if findings or not isinstance(tree, Map):
+    if not isinstance(tree, Map) or any(one.code != TREACHEROUS for one in findings):
         raise Findings(findings)
-    return tree
+    return tree, findings
 
 
 class Event(Protocol):
@@ -224,13 +236,13 @@ class Builder:
             return _number(text) if len(text) < 40 else text
         if _TREACHEROUS.match(text) and text not in (".", "-"):
             help = f'write "{text}" in quotes if it is text, a plain decimal or 0x number if it is a number'
-            self.add("ICD003", f"YAML readers disagree about what `{text}` is", event, help)
+            self.add(TREACHEROUS, f"YAML readers disagree about what `{text}` is", event, help)
             return self
         return text
 
     def check_tag(self, event: Event) -> None:
         if event.tag is not None and event.tag != "!":
-            self.add("ICD003", f"the tag `{event.tag}` is not part of the format", event, "remove the tag")
+            self.add(TREACHEROUS, f"the tag `{event.tag}` is not part of the format", event, "remove the tag")
 
     def refuse_alias(self, event: Event) -> None:
         self.add("ICD001", "anchors and aliases are not part of the format", event, "write the value out")

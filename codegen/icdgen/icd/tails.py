@@ -131,7 +131,7 @@ def _is_unknown(message: Map, item: Map) -> bool:
 
 def _odd(counter: Map, message: Map) -> str:
     """Why a field cannot count, as the end of a sentence; empty if it can."""
-    if counter.get("type") != "uint" or "formula" in counter:
+    if counter.get("type") != "uint" or not counter.keys().isdisjoint(("formula", "points")):
         return "is scaled" if counter.get("type") == "uint" else f"is `{counter.get('type')}`"
     for key, words in (("count", "is an array"), ("bitfields", "is divided"), ("const", "is constant")):
         if key in counter:

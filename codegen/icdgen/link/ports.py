@@ -211,6 +211,8 @@ def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
         return makers[scheme]()
     if _is_pty(text):
         return Terminal(text)
+    if text.isdecimal() and not os.path.exists(text):
+        raise PortError(f"there is no port `{text}`", f"did you mean tcp://localhost:{text}?")
     if _BARE_ADDRESS.fullmatch(text) and not os.path.exists(text):
         raise PortError(f"there is no port `{text}`", f"did you mean tcp://{text}?")
     if "/" in text and not os.path.exists(text):

@@ -8,6 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from icdgen_runtime._curves import columns_on_curve
+
 from icdgen import codec
 from icdgen.errors import UserError
 from icdgen.icd.model import Enum
@@ -152,7 +154,7 @@ class _Reader:
             bits = raw.astype(np.uint32 if is_single else np.uint64)
             raw = bits.view(np.float32 if is_single else np.float64)
         if column.curve:
-            return pa.array(_on_curve(column.curve.coefficients, raw))
+            return pa.array(columns_on_curve(np, column.curve.pieces, raw))
         if column.kind == "float":
             return pa.array(raw)
         return pa.array(raw.astype(type_.to_pandas_dtype()))
@@ -203,19 +205,6 @@ class _Reader:
             return value
         different, where = np.unique(raw, return_inverse=True)
         return np.array([(int(one) * a + b) / d for one in different], np.float64)[where]
-
-
-def _on_curve(coefficients: tuple[float, ...], raw: np.ndarray) -> np.ndarray:
-    """Horner's rule, as `icdgen.icd.curve.Curve.double`."""
-    import numpy as np
-
-    value = np.full(len(raw), coefficients[-1])
-    with np.errstate(all="ignore"):  # that a float is a signalling NaN, too
-        raw = raw.astype(np.float64)
-        for coefficient in coefficients[-2::-1]:
-            value = value * raw + coefficient
-    value[np.isnan(value)] = np.nan
-    return value
 
 
 def _whole(data: bytes, stride: int, at: int, size: int, little: bool, kind: str = "u") -> np.ndarray:

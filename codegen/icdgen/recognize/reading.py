@@ -97,7 +97,8 @@ class Reading:
 
     def noted(self, *remarks: str) -> Reading:
         """The same, with further remarks."""
-        return replace(self, remarks=(*self.remarks, *remarks))
+        shown = None if self.frame is None else replace(self.frame, remarks=(*self.frame.remarks, *remarks))
+        return replace(self, frame=shown, remarks=(*self.remarks, *remarks))
 
     def to_json(self) -> dict[str, object]:
         """The frame as `Frame.to_json` has it, with ``direction``; what has no data of its own as a short form of it."""

@@ -8,7 +8,15 @@ from fractions import Fraction
 from icdgen import layout
 from icdgen.describe.bounds import allowed_ends, bounds
 from icdgen.describe.comments import condition_text, orders_text
-from icdgen.describe.numbers import byte_count, count_text, exact_text, factor_text, special_text, value_text
+from icdgen.describe.numbers import (
+    byte_count,
+    count_text,
+    exact_text,
+    factor_text,
+    points_text,
+    special_text,
+    value_text,
+)
 from icdgen.icd.model import Field, Message, Node
 from icdgen.tables import Column, render
 
@@ -69,6 +77,8 @@ def remarks(
             yield (
                 f"{most}{step.count} times, every {byte_count(step.struct.length)}" if step.count > 1 else f"{most}once"
             )
+    if field.curve is not None and field.curve.points:
+        yield f"points {points_text(field.curve, 12)}"
     if field.const is not None:
         yield f"always {value_text(field.const)}"
     for bound in bounds(field.limits):

@@ -112,7 +112,7 @@ def _field(field: Field) -> _Object:
         unit=field.unit.symbol if field.unit else None,
         scale=str(scale.factor) if scale else None,
         scale_offset=str(scale.offset) if scale and scale.offset else None,
-        coefficients=list(field.curve.coefficients) if field.curve else None,
+        **(field.curve.plain if field.curve else {}),
         formula=field.formula if field.has_formula else None,
         special=[_attributes(one) for one in field.special],
         limits=_limits(field.limits),

@@ -111,5 +111,5 @@ def _held(field: Field, curve: Curve, value: float) -> int:
         return 0
     if field.type == "float":
         return codec.float_bits(field, curve.inverse(value))
-    ends = sorted((curve.double(field.raw_min), curve.double(field.raw_max)))
+    ends = sorted(map(curve.double, field.ends))
     return codec.raw_from_physical(field, min(max(value, ends[0]), ends[1]))

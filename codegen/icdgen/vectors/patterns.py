@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import lru_cache
+from itertools import pairwise
 
 from icdgen import codec
 from icdgen.icd.model import Field, Message, Node, Tail
@@ -123,7 +126,8 @@ def values(field: Field) -> list[int | bytes]:
             )
         return [ascending, bytes(size), bytes(byte ^ 0xFF for byte in ascending)]
     if field.type == "float":
-        return list(dict.fromkeys((*_FLOATS[field.bits], *(special.value for special in field.special))))
+        named = (special.value for special in field.special)
+        return list(dict.fromkeys((*_FLOATS[field.bits], *named, *_near_bits(field))))
     if field.type == "bool":
         return [0, 1]
     return list(dict.fromkeys(v for v in _numbers(field) if field.raw_min <= v <= field.raw_max))
@@ -147,6 +151,21 @@ def _numbers(field: Field) -> Iterator[int]:
         yield from (field.const, field.const + 1)
     for special in field.special:
         yield special.value
+    yield from (number for near in _near(field) for number in (math.floor(near), math.ceil(near)))
+
+
+def _near_bits(field: Field) -> Iterator[int]:
+    for number in _near(field):
+        with suppress(codec.CodecError):
+            yield codec.float_bits(field, number)
+
+
+def _near(field: Field) -> Iterator[float]:
+    """The points of a table, and what lies between them and beyond."""
+    points = [raw for raw, _ in field.curve.points] if field.curve is not None else []
+    if points:
+        yield from (*points, points[0] - 1, points[-1] + 1)
+        yield from ((one + other) / 2 for one, other in pairwise(points))
 
 
 def raw_columns(message: Message) -> Iterator[dict[str, int | bytes]]:

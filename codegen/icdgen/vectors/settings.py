@@ -92,8 +92,8 @@ def _on_curve(field: Field, curve: Curve) -> Iterator[float]:
         numbers = (0.0, 1.0, -1.5, 0.1, 1e-3, -123456.789, 3.4028234663852886e38, 1e-45)
         yield from (curve.double(one) for one in numbers)
         return
-    low, high = field.raw_min, field.raw_max
-    for raw in (low, (low + high) // 2, low + (high - low) // 3, high - 1):
+    low, high = field.ends
+    for raw in sorted({low, (low + high) // 2, low + (high - low) // 3, high - 1}):
         here, there = curve.double(raw), curve.double(raw + 1)
         middle = here + (there - here) / 2
         yield from (here, there, middle)

@@ -118,7 +118,7 @@ def _field(vectors: MessageVectors, field: Field) -> str:
     if field.scale is not None:
         row["factor"], row["offset"] = str(field.scale.factor), str(field.scale.offset)
     if field.curve is not None:
-        row["coefficients"] = list(field.curve.coefficients)
+        row |= field.curve.plain
     if field.view:
         row["view"] = True
     if field.when:

@@ -58,7 +58,7 @@ static inline icd_status_t bootloader_copy_to_internal_flash_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 2 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 2 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t bootloader_copy_to_internal_flash_encode(
     const bootloader_copy_to_internal_flash_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

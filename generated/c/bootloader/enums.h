@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 /**
- * BootSetProgramsList: an enumeration. Table 63.
+ * BootSetProgramsList: an enumeration. Table 63. Held by Program Index in Set Boot Index.
  * @note BOOT-009 (certain): Three enumerations of program places. BootSetProgramsList, ProgramsList and
  * BootProgramsList overlap. The internal program is 1 in all, the bootloader 0 in one and 2 in another, where 2 is
  * EEPROM in the first.
@@ -35,7 +35,10 @@ static inline const char *bootloader_boot_set_programs_list_name(bootloader_boot
     }
 }
 
-/** ProgramsList: an enumeration. Table 66. */
+/**
+ * ProgramsList: an enumeration. Table 66. Held by Program Index in Read Program Information and Program Information;
+ * Source Program Index in Copy Program to Internal Flash.
+ */
 typedef uint8_t bootloader_programs_list_t;
 
 enum {

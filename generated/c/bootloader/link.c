@@ -306,8 +306,8 @@ ICDGEN_API const icd_link_t *bootloader_link(void)
     };
 #endif
     static const icd_crc_form_t crc16 = {
-        /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, table */
-        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, ICDGEN_TABLE(crc16_table),
+        /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, tables */
+        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, NULL, ICDGEN_TABLE(crc16_table),
     };
 #ifndef ICDGEN_NO_FILES
     static const icd_time_form_t packed_time = {

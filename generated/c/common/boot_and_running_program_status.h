@@ -93,7 +93,7 @@ static inline const char *common_boot_and_running_program_status_misfit(
 }
 
 /**
- * Writes a frame of 6 bytes, reserved bits 0. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
+ * Writes a frame of 6 bytes. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
  * value does not fit its field; nothing is written then.
  */
 static inline icd_status_t common_boot_and_running_program_status_encode(

@@ -49,7 +49,7 @@ static inline icd_status_t common_boot_index_and_status_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 2 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 2 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t common_boot_index_and_status_encode(
     const common_boot_index_and_status_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -52,7 +52,7 @@ static inline icd_status_t common_current_unix_time_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 6 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 6 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t common_current_unix_time_encode(
     const common_current_unix_time_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

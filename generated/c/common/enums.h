@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 /**
- * FileType: an enumeration. Table 16.
+ * FileType: an enumeration. Table 16. Held by File Type in Erase File, Load File Download Block and File Information.
  * @note COM-037 (open): FileType begins at 2 and jumps to 15. Values 0, 1 and 5 to 14 are not explained. Value 0 ends
  * the file list, since an entry of zeroes does.
  */
@@ -52,7 +52,8 @@ static inline const char *common_file_type_name(common_file_type_t value)
 }
 
 /**
- * FileUploadDestination: an enumeration. Table 20. The SD card destinations are not supported.
+ * FileUploadDestination: an enumeration. Table 20. The SD card destinations are not supported. Held by Destination in
+ * Initiate File Upload and Finalize Upload Block.
  * @note COM-045 (certain): Names of the flash areas differ between two lists. Flash program 1 of the upload is External
  * Flash Program 1 of the bootloader, with the same number.
  */
@@ -163,7 +164,7 @@ static inline const char *common_file_upload_destination_name(common_file_upload
     }
 }
 
-/** ResetCause: an enumeration. Table 29. */
+/** ResetCause: an enumeration. Table 29. Held by Cause of MCU Reset in Boot And Running Program Status. */
 typedef uint8_t common_reset_cause_t;
 
 enum {
@@ -261,7 +262,7 @@ static inline const char *common_reset_cause_name(common_reset_cause_t value)
     }
 }
 
-/** BootCause: an enumeration. Table 30. */
+/** BootCause: an enumeration. Table 30. Held by Boot Cause in Boot And Running Program Status. */
 typedef uint8_t common_boot_cause_t;
 
 enum {
@@ -312,7 +313,10 @@ static inline const char *common_boot_cause_name(common_boot_cause_t value)
     }
 }
 
-/** BootProgramsList: an enumeration. Table 31. */
+/**
+ * BootProgramsList: an enumeration. Table 31. Held by Boot Program Index in Boot And Running Program Status; Program
+ * Index in Boot Index and Status.
+ */
 typedef uint8_t common_boot_programs_list_t;
 
 enum {
@@ -342,7 +346,7 @@ static inline const char *common_boot_programs_list_name(common_boot_programs_li
 
 /**
  * BootStatus: an enumeration. Table 33. Kept in flash. The bootloader counts up before each attempt, the program sets
- * Boot Success once it runs.
+ * Boot Success once it runs. Held by Boot Status in Boot Index and Status.
  * @note COM-070 (open): Boot Status: whether the third attempt still takes place. After a first failure the bootloader
  * is to try twice more, three attempts in all. But the status is raised before each start, so it reads 4 before the
  * third attempt begins, and at 4 the application is said not to be started any more.
@@ -392,7 +396,7 @@ static inline const char *common_boot_status_name(common_boot_status_t value)
     }
 }
 
-/** TcErrorReason: an enumeration. Table 40. */
+/** TcErrorReason: an enumeration. Table 40. Held by TC error status in Telecommand Acknowledge. */
 typedef uint8_t common_tc_error_reason_t;
 
 enum {

@@ -62,7 +62,7 @@ static inline icd_status_t common_file_upload_packet_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 22 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 22 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t common_file_upload_packet_encode(
     const common_file_upload_packet_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

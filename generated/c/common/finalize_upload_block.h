@@ -61,7 +61,7 @@ static inline icd_status_t common_finalize_upload_block_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 7 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 7 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t common_finalize_upload_block_encode(
     const common_finalize_upload_block_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

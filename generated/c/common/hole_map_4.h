@@ -52,7 +52,7 @@ static inline icd_status_t common_hole_map_4_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 16 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 16 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t common_hole_map_4_encode(
     const common_hole_map_4_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

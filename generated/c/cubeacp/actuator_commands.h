@@ -83,7 +83,7 @@ static inline icd_status_t cubeacp_actuator_commands_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 12 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 12 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_actuator_commands_encode(
     const cubeacp_actuator_commands_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

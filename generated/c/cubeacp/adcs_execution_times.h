@@ -52,7 +52,7 @@ static inline icd_status_t cubeacp_adcs_execution_times_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 8 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 8 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_adcs_execution_times_encode(
     const cubeacp_adcs_execution_times_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

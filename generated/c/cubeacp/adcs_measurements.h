@@ -182,7 +182,7 @@ static inline icd_status_t cubeacp_adcs_measurements_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 72 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 72 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_adcs_measurements_encode(
     const cubeacp_adcs_measurements_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

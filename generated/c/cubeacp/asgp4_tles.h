@@ -107,7 +107,7 @@ static inline const char *cubeacp_asgp4_tles_misfit(const cubeacp_asgp4_tles_t *
 }
 
 /**
- * Writes a frame of 33 bytes, reserved bits 0. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
+ * Writes a frame of 33 bytes. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
  * value does not fit its field; nothing is written then.
  */
 static inline icd_status_t cubeacp_asgp4_tles_encode(

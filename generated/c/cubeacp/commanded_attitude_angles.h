@@ -50,7 +50,7 @@ static inline icd_status_t cubeacp_commanded_attitude_angles_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 6 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 6 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_commanded_attitude_angles_encode(
     const cubeacp_commanded_attitude_angles_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -58,7 +58,7 @@ static inline icd_status_t cubeacp_convert_to_jpg_file_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 3 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 3 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_convert_to_jpg_file_encode(
     const cubeacp_convert_to_jpg_file_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

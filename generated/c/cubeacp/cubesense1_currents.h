@@ -46,7 +46,7 @@ static inline icd_status_t cubeacp_cubesense1_currents_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 4 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 4 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_cubesense1_currents_encode(
     const cubeacp_cubesense1_currents_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

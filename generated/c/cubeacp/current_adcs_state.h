@@ -244,7 +244,7 @@ static inline const char *cubeacp_current_adcs_state_misfit(const cubeacp_curren
 }
 
 /**
- * Writes a frame of 6 bytes, reserved bits 0. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
+ * Writes a frame of 6 bytes. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
  * value does not fit its field; nothing is written then.
  */
 static inline icd_status_t cubeacp_current_adcs_state_encode(

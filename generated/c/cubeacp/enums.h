@@ -11,7 +11,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** AdcsRunMode: an enumeration. Table 75. */
+/**
+ * AdcsRunMode: an enumeration. Table 75. Held by Enabled in ADCS Run Mode; ADCS Run Mode in Current ADCS State and ADCS
+ * State.
+ */
 typedef uint8_t cubeacp_adcs_run_mode_t;
 
 enum {
@@ -52,7 +55,8 @@ static inline const char *cubeacp_adcs_run_mode_name(cubeacp_adcs_run_mode_t val
 }
 
 /**
- * ConModeSelect: an enumeration. Table 78.
+ * ConModeSelect: an enumeration. Table 78. Held by Control Mode in Set Attitude Control Mode, Current ADCS State and
+ * ADCS State.
  * @note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control mode has a reference
  * vector, and GEO tracking, inertial and two sun pointing modes are special selections. The list of control modes has
  * none of them.
@@ -185,7 +189,10 @@ static inline const char *cubeacp_con_mode_select_name(cubeacp_con_mode_select_t
     }
 }
 
-/** EstimModeSelect: an enumeration. Table 80. */
+/**
+ * EstimModeSelect: an enumeration. Table 80. Held by Attitude Estimation Mode in Set Attitude Estimation Mode, Current
+ * ADCS State and ADCS State.
+ */
 typedef uint8_t cubeacp_estim_mode_select_t;
 
 enum {
@@ -240,7 +247,8 @@ static inline const char *cubeacp_estim_mode_select_name(cubeacp_estim_mode_sele
 }
 
 /**
- * GpsSolutionStatus: an enumeration. Table 85.
+ * GpsSolutionStatus: an enumeration. Table 85. Held by Gps Solution Status in Trigger ADCS Loop with Simulated Sensor
+ * Data, Raw GPS Status and Raw GPS Measurements.
  * @note ACP-045 (open): One GPS status for different receivers. The enumeration is used whatever receiver is fitted;
  * three types are listed, among them none. Whether the values are those of the receiver or of the control program is
  * not said.
@@ -308,7 +316,7 @@ static inline const char *cubeacp_gps_solution_status_name(cubeacp_gps_solution_
 }
 
 /**
- * Asgp4ModeSelect: an enumeration. Table 87.
+ * Asgp4ModeSelect: an enumeration. Table 87. Held by ASGP4 Mode in ASGP4 Run Mode, Current ADCS State and ADCS State.
  * @note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one module are spelt in
  * four ways.
  */
@@ -344,7 +352,9 @@ static inline const char *cubeacp_asgp4_mode_select_name(cubeacp_asgp4_mode_sele
 
 /**
  * MagModeVal: an enumeration. Table 90. MTM is the magnetometer, Signal and Motor are the microcontrollers that sample
- * it.
+ * it. Held by Magnetometer Mode in Set Mode of Magnetometer Operation, ADCS Configuration and Estimation Parameters;
+ * Current Magnetometer Sampling Mode in ADCS State and Current ADCS State 2; Magnetometer Selection for RAW MTM TLM in
+ * ADCS Configuration and Estimation Parameters.
  * @note ACP-050 (open): MagModeVal: one combination is missing, and None is not explained. The redundant magnetometer
  * cannot be sampled through the motor controller, the main one can. What None does to estimation and control is not
  * said.
@@ -385,7 +395,7 @@ static inline const char *cubeacp_mag_mode_val_name(cubeacp_mag_mode_val_t value
 }
 
 /**
- * CamSelect: an enumeration. Table 95.
+ * CamSelect: an enumeration. Table 95. Held by Camera Select in Save Image.
  * @note ACP-056 (likely): Cameras: Cam, CubeSense, and star. Cam1 and Cam2 appear beside CubeSense1 and CubeSense2,
  * once as Cam 1; the third camera is Star, CubeStar or star tracker. That CamN is the camera of CubeSenseN is only
  * likely.
@@ -416,7 +426,7 @@ static inline const char *cubeacp_cam_select_name(cubeacp_cam_select_t value)
     }
 }
 
-/** ImSize: an enumeration. Table 96. */
+/** ImSize: an enumeration. Table 96. Held by Image Size in Save Image. */
 typedef uint8_t cubeacp_im_size_t;
 
 enum {
@@ -451,7 +461,7 @@ static inline const char *cubeacp_im_size_name(cubeacp_im_size_t value)
     }
 }
 
-/** JpgConvertResult: an enumeration. Table 100. */
+/** JpgConvertResult: an enumeration. Table 100. Held by Conversion Result in JPG Conversion Progress. */
 typedef uint8_t cubeacp_jpg_convert_result_t;
 
 enum {
@@ -482,7 +492,10 @@ static inline const char *cubeacp_jpg_convert_result_name(cubeacp_jpg_convert_re
     }
 }
 
-/** CaptureResult: an enumeration. Table 123. */
+/**
+ * CaptureResult: an enumeration. Table 123. Held by Cam2 Capture status in Raw Cam2 Sensor and Raw Sensor Measurements;
+ * Cam1 Capture status in Raw Cam1 Sensor and Raw Sensor Measurements.
+ */
 typedef uint8_t cubeacp_capture_result_t;
 
 enum {
@@ -521,7 +534,10 @@ static inline const char *cubeacp_capture_result_name(cubeacp_capture_result_t v
     }
 }
 
-/** DetectResult: an enumeration. Table 124. */
+/**
+ * DetectResult: an enumeration. Table 124. Held by Cam2 Detection result in Raw Cam2 Sensor and Raw Sensor
+ * Measurements; Cam1 Detection result in Raw Cam1 Sensor and Raw Sensor Measurements.
+ */
 typedef uint8_t cubeacp_detect_result_t;
 
 enum {
@@ -569,7 +585,7 @@ static inline const char *cubeacp_detect_result_name(cubeacp_detect_result_t val
 }
 
 /**
- * StarIDModeVal: an enumeration. Table 147.
+ * StarIDModeVal: an enumeration. Table 147. Held by Identification mode in Star Performance1 and Raw Star Tracker.
  * @note ACP-097 (open): StarIDModeVal is not described. The members of the identification mode have no descriptions;
  * Lost Mode may be the lost-in-space search or a lost track.
  */
@@ -595,7 +611,7 @@ static inline const char *cubeacp_star_id_mode_val_name(cubeacp_star_id_mode_val
     }
 }
 
-/** ExecutionWaypoints: an enumeration. Table 168. */
+/** ExecutionWaypoints: an enumeration. Table 168. Held by Current Execution Point in ACP Execution State. */
 typedef uint8_t cubeacp_execution_waypoints_t;
 
 enum {
@@ -667,7 +683,7 @@ static inline const char *cubeacp_execution_waypoints_name(cubeacp_execution_way
 }
 
 /**
- * AsgpError: an enumeration. Table 171.
+ * AsgpError: an enumeration. Table 171. Held by ASGP4 error in ASGP4 TLEs.
  * @note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one module are spelt in
  * four ways.
  */
@@ -705,7 +721,7 @@ static inline const char *cubeacp_asgp_error_name(cubeacp_asgp_error_t value)
     }
 }
 
-/** ImSaveStatus: an enumeration. Table 177. */
+/** ImSaveStatus: an enumeration. Table 177. Held by Status in Status of Image Capture and Save Operation. */
 typedef uint8_t cubeacp_im_save_status_t;
 
 enum {
@@ -740,7 +756,13 @@ static inline const char *cubeacp_im_save_status_name(cubeacp_im_save_status_t v
     }
 }
 
-/** AxisSelect: an enumeration. Table 180. */
+/**
+ * AxisSelect: an enumeration. Table 180. Held by Magnetorquer 1 Configuration in Set Magnetorquer Configuration and
+ * ADCS Configuration; Magnetorquer 2 Configuration in Set Magnetorquer Configuration and ADCS Configuration;
+ * Magnetorquer 3 Configuration in Set Magnetorquer Configuration and ADCS Configuration; RW1 Configuration in Set Wheel
+ * Configuration and ADCS Configuration; RW2 Configuration in Set Wheel Configuration and ADCS Configuration; 17 other
+ * fields.
+ */
 typedef uint8_t cubeacp_axis_select_t;
 
 enum {
@@ -787,7 +809,11 @@ static inline const char *cubeacp_axis_select_name(cubeacp_axis_select_t value)
     }
 }
 
-/** PowerSelect: an enumeration. Table 185. */
+/**
+ * PowerSelect: an enumeration. Table 185. Held by CubeControl Signal Power Selection in ADCS Power Control; CubeControl
+ * Motor Power Selection in ADCS Power Control; CubeSense1 Power Selection in ADCS Power Control; CubeSense2 Power
+ * Selection in ADCS Power Control; CubeStarPower Power Selection in ADCS Power Control; 5 other fields.
+ */
 typedef uint8_t cubeacp_power_select_t;
 
 enum {
@@ -819,7 +845,7 @@ static inline const char *cubeacp_power_select_name(cubeacp_power_select_t value
 }
 
 /**
- * AsgpFilter: an enumeration. Table 193.
+ * AsgpFilter: an enumeration. Table 193. Held by ASGP4 filter in ADCS Configuration and Augmented-SGP4 Parameters.
  * @note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one module are spelt in
  * four ways.
  */
@@ -845,7 +871,7 @@ static inline const char *cubeacp_asgp_filter_name(cubeacp_asgp_filter_t value)
     }
 }
 
-/** AcpProgramType: an enumeration. Table 202. */
+/** AcpProgramType: an enumeration. Table 202. Held by ACP Type in ADCS System Configuration. */
 typedef uint8_t cubeacp_acp_program_type_t;
 
 enum {
@@ -869,7 +895,7 @@ static inline const char *cubeacp_acp_program_type_name(cubeacp_acp_program_type
 }
 
 /**
- * SpecialConSelect: an enumeration. Table 203.
+ * SpecialConSelect: an enumeration. Table 203. Held by Special Control Selection in ADCS System Configuration.
  * @note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control mode has a reference
  * vector, and GEO tracking, inertial and two sun pointing modes are special selections. The list of control modes has
  * none of them.
@@ -919,7 +945,10 @@ static inline const char *cubeacp_special_con_select_name(cubeacp_special_con_se
     }
 }
 
-/** CsCamType: an enumeration. Table 204. */
+/**
+ * CsCamType: an enumeration. Table 204. Held by CubeSense1 Camera Type in ADCS System Configuration; CubeSense2 Camera
+ * Type in ADCS System Configuration.
+ */
 typedef uint8_t cubeacp_cs_cam_type_t;
 
 enum {
@@ -942,7 +971,7 @@ static inline const char *cubeacp_cs_cam_type_name(cubeacp_cs_cam_type_t value)
     }
 }
 
-/** GpsSelect: an enumeration. Table 205. */
+/** GpsSelect: an enumeration. Table 205. Held by GPS Type in ADCS System Configuration. */
 typedef uint8_t cubeacp_gps_select_t;
 
 enum {
@@ -969,7 +998,11 @@ static inline const char *cubeacp_gps_select_name(cubeacp_gps_select_t value)
     }
 }
 
-/** GpioPort: an enumeration. Table 206. */
+/**
+ * GpioPort: an enumeration. Table 206. Held by CC Signal Enable Port in ADCS System Configuration; CC Motor Enable Port
+ * in ADCS System Configuration; CC Common Enable Port in ADCS System Configuration; CubeSense1 Enable Port in ADCS
+ * System Configuration; CubeSense2 Enable Port in ADCS System Configuration; 4 other fields.
+ */
 typedef uint8_t cubeacp_gpio_port_t;
 
 enum {
@@ -1008,7 +1041,11 @@ static inline const char *cubeacp_gpio_port_name(cubeacp_gpio_port_t value)
     }
 }
 
-/** GpioPortPin: an enumeration. Table 207. */
+/**
+ * GpioPortPin: an enumeration. Table 207. Held by CC Signal Enable Pin in ADCS System Configuration; CC Motor Enable
+ * Pin in ADCS System Configuration; CC Common Enable Pin in ADCS System Configuration; CubeSense1 Enable Pin in ADCS
+ * System Configuration; CubeSense2 Enable Pin in ADCS System Configuration; 4 other fields.
+ */
 typedef uint8_t cubeacp_gpio_port_pin_t;
 
 enum {
@@ -1087,7 +1124,9 @@ static inline const char *cubeacp_gpio_port_pin_name(cubeacp_gpio_port_pin_t val
     }
 }
 
-/** SdLogSelect: an enumeration. Table 211. */
+/**
+ * SdLogSelect: an enumeration. Table 211. Held by Log Destination in SD Log1 Configuration and SD Log2 Configuration.
+ */
 typedef uint8_t cubeacp_sd_log_select_t;
 
 enum {

@@ -668,7 +668,7 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         &can_extended, /* messages of several packets */
     };
 #ifndef ICDGEN_NO_TABLES
-    static const uint16_t crc8_table[] = {
+    static const uint8_t crc8_table[] = {
         0x00u, 0x12u, 0x24u, 0x36u, 0x48u, 0x5au, 0x6cu, 0x7eu,
         0x90u, 0x82u, 0xb4u, 0xa6u, 0xd8u, 0xcau, 0xfcu, 0xeeu,
         0x32u, 0x20u, 0x16u, 0x04u, 0x7au, 0x68u, 0x5eu, 0x4cu,
@@ -715,8 +715,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         0u, /* telecommand_always */
         0u, /* telemetry_always */
         1u, /* bytes */
-        /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, table */
-        {8u, 0x12u, 0x0u, true, true, 0x0u, true, 0xffu, ICDGEN_TABLE(crc8_table)},
+        /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, tables */
+        {8u, 0x12u, 0x0u, true, true, 0x0u, true, 0xffu, ICDGEN_TABLE(crc8_table), NULL},
     };
 #ifndef ICDGEN_NO_TABLES
     static const uint16_t crc16_table[] = {
@@ -755,8 +755,8 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
     };
 #endif
     static const icd_crc_form_t crc16 = {
-        /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, table */
-        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, ICDGEN_TABLE(crc16_table),
+        /* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, tables */
+        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, NULL, ICDGEN_TABLE(crc16_table),
     };
 #ifndef ICDGEN_NO_LOGS
     static const icd_log_bit_t log_bits[] = {

@@ -48,7 +48,7 @@ static inline icd_status_t cubeacp_modelled_sun_vector_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 6 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 6 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_modelled_sun_vector_encode(
     const cubeacp_modelled_sun_vector_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

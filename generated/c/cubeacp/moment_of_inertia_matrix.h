@@ -69,7 +69,7 @@ static inline icd_status_t cubeacp_moment_of_inertia_matrix_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 24 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 24 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_moment_of_inertia_matrix_encode(
     const cubeacp_moment_of_inertia_matrix_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -138,7 +138,7 @@ static inline icd_status_t cubeacp_power_and_temperature_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 38 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 38 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_power_and_temperature_encode(
     const cubeacp_power_and_temperature_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -132,7 +132,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 30 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 30 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_redundant_mag_configuration_encode(
     const cubeacp_redundant_mag_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

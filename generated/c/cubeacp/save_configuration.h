@@ -45,7 +45,7 @@ static inline icd_status_t cubeacp_save_configuration_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 0 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 0 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_save_configuration_encode(
     const cubeacp_save_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -46,7 +46,7 @@ static inline icd_status_t cubeacp_save_image_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 2 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 2 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_save_image_encode(
     const cubeacp_save_image_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -41,7 +41,7 @@ static inline icd_status_t cubeacp_set_attitude_estimation_mode_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 1 byte, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 1 byte; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_set_attitude_estimation_mode_encode(
     const cubeacp_set_attitude_estimation_mode_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -48,7 +48,7 @@ static inline icd_status_t cubeacp_set_mode_of_magnetometer_operation_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 1 byte, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 1 byte; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_set_mode_of_magnetometer_operation_encode(
     const cubeacp_set_mode_of_magnetometer_operation_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -78,7 +78,7 @@ static inline icd_status_t cubeacp_set_rate_gyro_configuration_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 10 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 10 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_set_rate_gyro_configuration_encode(
     const cubeacp_set_rate_gyro_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -90,7 +90,7 @@ static inline const char *cubeacp_set_reaction_wheel_control_parameters_misfit(
 }
 
 /**
- * Writes a frame of 13 bytes, reserved bits 0. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
+ * Writes a frame of 13 bytes. ICD_ERROR_LENGTH if the buffer is smaller, ICD_ERROR_RANGE if a raw
  * value does not fit its field; nothing is written then.
  */
 static inline icd_status_t cubeacp_set_reaction_wheel_control_parameters_encode(

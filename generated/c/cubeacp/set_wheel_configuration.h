@@ -70,7 +70,7 @@ static inline icd_status_t cubeacp_set_wheel_configuration_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 4 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 4 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_set_wheel_configuration_encode(
     const cubeacp_set_wheel_configuration_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

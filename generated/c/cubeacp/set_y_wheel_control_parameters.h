@@ -80,7 +80,7 @@ static inline icd_status_t cubeacp_set_y_wheel_control_parameters_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 20 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 20 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_set_y_wheel_control_parameters_encode(
     const cubeacp_set_y_wheel_control_parameters_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

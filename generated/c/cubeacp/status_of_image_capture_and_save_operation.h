@@ -51,7 +51,7 @@ static inline icd_status_t cubeacp_status_of_image_capture_and_save_operation_de
     return ICD_OK;
 }
 
-/** Writes a frame of 2 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 2 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_status_of_image_capture_and_save_operation_encode(
     const cubeacp_status_of_image_capture_and_save_operation_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

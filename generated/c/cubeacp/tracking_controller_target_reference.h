@@ -63,7 +63,7 @@ static inline icd_status_t cubeacp_tracking_controller_target_reference_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 12 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 12 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_tracking_controller_target_reference_encode(
     const cubeacp_tracking_controller_target_reference_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -54,7 +54,7 @@ static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameter
     return ICD_OK;
 }
 
-/** Writes a frame of 96 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 96 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameters_encode(
     const cubeacp_user_coded_controller_and_estimator_parameters_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 /**
- * MagState: an enumeration. Table 58. State of the CubeMag service.
+ * MagState: an enumeration. Table 58. State of the CubeMag service. Held by MagSvc State in State.
  * @note MAG-008 (open): MagState has no deployed state. The service can be armed, deploying, idle or in error. A
  * deployed boom shows as idle at best, and what a unit without a boom reports is not said.
  */
@@ -47,7 +47,8 @@ static inline const char *cubemag_mag_state_name(cubemag_mag_state_t value)
 }
 
 /**
- * MntState: an enumeration. Table 59. State of a magnetometer service.
+ * MntState: an enumeration. Table 59. State of a magnetometer service. Held by Primary Mag State in State; Red Mag
+ * State in State.
  * @note MAG-009 (open): MntState: Mnt is not explained. The states belong to the magnetometers by the table that uses
  * them; Mnt stands nowhere else.
  */

@@ -60,7 +60,7 @@ static inline icd_status_t cubemag_state_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 3 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 3 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubemag_state_encode(
     const cubemag_state_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

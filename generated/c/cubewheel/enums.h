@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** WheelErrorState: an enumeration. Table 48. */
+/** WheelErrorState: an enumeration. Table 48. Held by Wheel Error State in Wheel Speed. */
 typedef uint8_t cubewheel_wheel_error_state_t;
 
 enum {

@@ -54,7 +54,7 @@ static inline icd_status_t cubewheel_wheel_reference_speed_decode(
     return ICD_OK;
 }
 
-/** Writes a frame of 4 bytes, reserved bits 0; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
+/** Writes a frame of 4 bytes; ICD_ERROR_LENGTH, and nothing written, if the buffer is smaller. */
 static inline icd_status_t cubewheel_wheel_reference_speed_encode(
     const cubewheel_wheel_reference_speed_t *ICDGEN_RESTRICT message,
     uint8_t *ICDGEN_RESTRICT buffer,

@@ -22,7 +22,7 @@ class FieldInfo:
     __slots__ = (
         "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
         "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
-        "elements", "is_open", "fewest", "struct", "curve", "leads_back", "when",
+        "elements", "is_open", "fewest", "struct", "curve", "ends", "leads_back", "when",
     )  # fmt: skip
 
     def __init__(
@@ -50,7 +50,8 @@ class FieldInfo:
         is_open: bool = False,
         fewest: int = 0,
         struct: _lazy.Optional[type[_lazy.Struct]] = None,
-        curve: tuple[float, ...] = (),
+        curve: _lazy.Curve = (),
+        ends: tuple[int, ...] = (),
         leads_back: bool = True,
         when: tuple[tuple[str, tuple[int, ...]], ...] = (),
     ) -> None:
@@ -103,10 +104,13 @@ class FieldInfo:
         self.struct = struct
         """The class of what stands here, where that is a struct; the offsets in it begin at 0."""
         self.curve = curve
-        """Of a polynomial its coefficients, the constant first, and no scale.
+        """How it is computed in doubles, and no scale: from a raw value on, the terms of
+        a polynomial in what is above that, the constant first.
 
-        The physical value is computed from them in doubles, by Horner's rule.
+        A table of points has several such pieces; without terms there is no number.
         """
+        self.ends = ends
+        """The raw values between which a physical one leads back, where not all do."""
         self.leads_back = leads_back
         """Whether the physical value can be set."""
         self.when = when
@@ -241,15 +245,16 @@ class Tail:
 class Form:
     """Another attribute of the field that is declared before it: its value in another form."""
 
-    __slots__ = ("kind", "terms", "curve")
+    __slots__ = ("kind", "terms", "curve", "ends")
 
     def __init__(
         self,
         kind: str,
         terms: tuple[int, int, int] = (1, 0, 1),
-        curve: tuple[float, ...] = (),
+        curve: _lazy.Curve = (),
+        ends: tuple[int, ...] = (),
     ) -> None:
-        self.kind, self.terms, self.curve = kind, terms, curve
+        self.kind, self.terms, self.curve, self.ends = kind, terms, curve, ends
 
     def property_of(self, info: FieldInfo, name: str) -> property:
         """What the class has as ``name``, which the field is told of."""
@@ -257,19 +262,19 @@ class Form:
             info.physical = name
             return _text_property(info)
         if self.curve:
-            info.physical, info.curve = name, self.curve
+            info.physical, info.curve, info.ends = name, self.curve, self.ends
             info.leads_back = self.kind == "curve"
             return _curve_property(info)
         if self.kind == "whole":
             info.whole = name
         else:
             info.physical, info.scale = name, self.terms
-        return _number_property(info, self)
+        return _number_property(info, self, name)
 
 
-def _number_property(info: FieldInfo, form: Form) -> property:
+def _number_property(info: FieldInfo, form: Form, name: str) -> property:
     if info.elements:
-        return _array_property(info, form)
+        return _array_property(info, form, name)
     attribute, terms = info.attribute, form.terms
     p, c, q = terms
     is_whole = form.kind == "whole"
@@ -283,7 +288,7 @@ def _number_property(info: FieldInfo, form: Form) -> property:
         return value
 
     def set_nearest(self: Any, value: float) -> None:
-        setattr(self, attribute, nearest_raw(value, attribute, terms, info.raw_range))
+        setattr(self, attribute, nearest_raw(value, info, name, terms))
 
     if info.when:
         return _optional(
@@ -307,21 +312,21 @@ def _optional(attribute: str, get: Any, set: Any) -> property:
 def _curve_property(info: FieldInfo) -> property:
     from ._curves import from_curve, on_curve
 
-    attribute, curve = info.attribute, info.curve
+    attribute, curve, name = info.attribute, info.curve, info.physical
 
     def get(self: Any) -> float:
         return on_curve(curve, getattr(self, attribute))
 
     def set(self: Any, value: float) -> None:
-        setattr(self, attribute, from_curve(value, info, attribute))
+        setattr(self, attribute, from_curve(value, info, name))
 
     def get_all(self: Any) -> tuple[float, ...]:
         return tuple(on_curve(curve, raw) for raw in getattr(self, attribute))
 
     def set_all(self: Any, values: Any) -> None:
-        _counted(info, values)
+        _counted(info, name, values)
         each = enumerate(values)
-        found = (from_curve(one, info, f"{attribute}[{place}]") for place, one in each)
+        found = (from_curve(one, info, f"{name}[{place}]") for place, one in each)
         setattr(self, attribute, tuple(found))
 
     if info.when:
@@ -329,15 +334,15 @@ def _curve_property(info: FieldInfo) -> property:
     return property(get_all, set_all) if info.elements else property(get, set)
 
 
-def _counted(info: FieldInfo, values: Any) -> None:
-    """Raises `RangeError` unless there is a value for each element."""
+def _counted(info: FieldInfo, name: str, values: Any) -> None:
+    """Raises `RangeError` that names the attribute unless there is a value for each element."""
     from ._codec import elements_of, has_elements
 
     if not has_elements(info, values):
-        raise RangeError(info.attribute, elements_of(info), values)
+        raise RangeError(name, elements_of(info), values)
 
 
-def _array_property(info: FieldInfo, form: Form) -> property:
+def _array_property(info: FieldInfo, form: Form, name: str) -> property:
     attribute, terms = info.attribute, form.terms
     p, c, q = terms
     is_whole = form.kind == "whole"
@@ -349,9 +354,9 @@ def _array_property(info: FieldInfo, form: Form) -> property:
         return tuple((raw * p + c) / q for raw in getattr(self, attribute))
 
     def set_nearest(self: Any, values: Any) -> None:
-        _counted(info, values)
+        _counted(info, name, values)
         found = (
-            nearest_raw(value, f"{attribute}[{index}]", terms, info.raw_range)
+            nearest_raw(value, info, f"{name}[{index}]", terms)
             for index, value in enumerate(values)
         )
         setattr(self, attribute, tuple(found))
@@ -410,23 +415,26 @@ def scaled(p: int, c: int, q: int, *, default: _lazy.Any) -> _lazy.Any:
     return Form("scaled", (p, c, q))
 
 
-def curve(coefficients: tuple[float, ...], *, default: _lazy.Any) -> _lazy.Any:
-    """The physical value by a polynomial in the field above, the constant first.
+def curve(
+    *pieces: tuple[float, tuple[float, ...]],
+    default: _lazy.Any,
+    ends: tuple[int, ...] = (),
+) -> _lazy.Any:
+    """The physical value of the field above by a curve: see `FieldInfo.curve`.
 
-    It is computed in doubles, by Horner's rule. Setting it takes the nearest raw value,
-    of two the even one. Raises `RangeError`.
+    Setting it takes the nearest raw value, of two the even one, between ``ends`` where
+    these are told. Raises `RangeError`.
     """
-    return Form("curve", curve=coefficients)
+    return Form("curve", curve=pieces, ends=ends)
 
 
 def curve_only(
-    coefficients: tuple[float, ...],
-    *,
+    *pieces: tuple[float, tuple[float, ...]],
     default: _lazy.Any,
     init: _lazy.Literal[False] = False,
 ) -> _lazy.Any:
     """The same where it does not lead back to a raw value: it is only read."""
-    return Form("curve_only", curve=coefficients)
+    return Form("curve_only", curve=pieces)
 
 
 def whole(p: int, c: int, *, init: _lazy.Literal[False] = False) -> _lazy.Any:

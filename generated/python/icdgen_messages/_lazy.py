@@ -14,6 +14,7 @@ __all__ = [
     "Buffer",
     "Callable",
     "Candidate",
+    "Curve",
     "FieldInfo",
     "Frames",
     "Iterator",
@@ -39,13 +40,14 @@ if TYPE_CHECKING:
     from ._base import Message, Struct
     from ._enumeration import OpenEnum
     from ._fields import FieldInfo
-    from ._hints import Buffer, Candidate, Frames, Known, M, S, T
+    from ._hints import Buffer, Candidate, Curve, Frames, Known, M, S, T
 else:
     _NAMED = {
         "Any": "typing",
         "Buffer": "._hints",
         "Callable": "collections.abc",
         "Candidate": "._hints",
+        "Curve": "._hints",
         "FieldInfo": "._fields",
         "Frames": "._hints",
         "Iterator": "collections.abc",

@@ -19,6 +19,14 @@ static inline uint32_t icdgen_reflected(uint32_t value, unsigned width)
     return reflected;
 }
 
+/* A byte with its bits the other way round: halves change places, then quarters, then bits. */
+static inline uint32_t icdgen_reflected_byte(uint32_t byte)
+{
+    const uint32_t halves = ((byte & 0x0Fu) << 4) | (byte >> 4);
+    const uint32_t quarters = ((halves & 0x33u) << 2) | ((halves >> 2) & 0x33u);
+    return ((quarters & 0x55u) << 1) | ((quarters >> 1) & 0x55u);
+}
+
 ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length)
 {
     const icd_crc_form_t *const form = crc->form;
@@ -31,10 +39,17 @@ ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length
 #endif
     uint32_t value = crc->value;
     for (size_t i = 0; i < length; ++i) {
-        const uint32_t byte = form->reflect_in ? icdgen_reflected(bytes[i], 8) : bytes[i];
+        const uint32_t byte = form->reflect_in ? icdgen_reflected_byte(bytes[i]) : bytes[i];
 #ifndef ICDGEN_NO_TABLES
-        if (form->table != NULL) {
-            value = ((value << 8) ^ form->table[(((value >> beyond) << missing) ^ byte) & 0xFFu]) & mask;
+        if ((form->table8 != NULL) || (form->table16 != NULL)) {
+            const uint32_t row = (((value >> beyond) << missing) ^ byte) & 0xFFu;
+            uint32_t entry;
+            if (form->table8 != NULL) {
+                entry = form->table8[row];
+            } else {
+                entry = form->table16[row];
+            }
+            value = ((value << 8) ^ entry) & mask;
             continue;
         }
 #endif

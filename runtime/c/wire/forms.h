@@ -100,7 +100,8 @@ typedef struct {
     bool has_empty;
     /** Checksum of no bytes at all, where it is not what the algorithm gives. */
     uint32_t empty;
-    const uint16_t *table; /**< NULL: it is computed without. */
+    const uint8_t *table8;   /**< Of a width of up to 8 bits. */
+    const uint16_t *table16; /**< Of a greater one; both NULL: it is computed without. */
 } icd_crc_form_t;
 
 /** The optional checksum of telecommands and frames. */

@@ -100,6 +100,7 @@ typedef struct {
     uint8_t *buffer;
     size_t capacity;
     size_t length; /**< Bytes in the buffer. */
+    size_t needed; /* bytes in the buffer with which the next thing is decided, where a field tells the length */
     uint32_t *sequences;
     size_t sequence_count;
     size_t pending;     /**< Bytes of the stream about which nothing is decided yet. */

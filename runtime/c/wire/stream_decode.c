@@ -135,6 +135,20 @@ static inline bool icdgen_stream_constants(
     return true;
 }
 
+/* Bytes of a header of which `left` came with which more can be said of it: those up to the next constant, or all. */
+static inline size_t icdgen_stream_next(const icd_stream_form_t *form, size_t left)
+{
+    size_t next = form->header_bytes;
+    for (size_t i = 0; i < form->field_count; ++i) {
+        const icd_envelope_field_t *const field = &form->fields[i];
+        const size_t end = ICDGEN_SIZE(field->at) + field->size;
+        if (field->role == ICD_ENVELOPE_CONSTANT && !field->in_trailer && end > left && end < next) {
+            next = end;
+        }
+    }
+    return next;
+}
+
 /* What the field of the length says that the data have; negative if that is none. */
 static inline int64_t icdgen_stream_length(
     const icd_stream_form_t *form, const icd_envelope_field_t *field, const uint8_t *frame, const uint8_t *trailer)
@@ -209,6 +223,7 @@ static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t a
         return 1;
     }
     if (left < form->header_bytes || field == NULL) {
+        decoder->needed = icdgen_stream_next(form, left);
         return 0;
     }
     const int64_t length = icdgen_stream_length(form, field, frame, frame);
@@ -221,6 +236,7 @@ static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t a
     }
     const size_t whole = ICDGEN_SIZE(size);
     if (left < whole) {
+        decoder->needed = whole;
         return 0;
     }
     const icdgen_verdict_t verdict = icdgen_stream_judge(decoder, frame, whole, listener);
@@ -229,22 +245,32 @@ static inline size_t icdgen_stream_front(icd_stream_decoder_t *decoder, size_t a
     return taken;
 }
 
-/* A byte where a field of the length delimits messages. There is room: a whole buffer is always decided. */
-static inline void icdgen_stream_append(icd_stream_decoder_t *decoder, uint8_t byte, const icdgen_listener_t *listener)
+/* Bytes where a field of the length delimits messages. There is room: a whole buffer is always decided. */
+static inline void icdgen_stream_append(
+    icd_stream_decoder_t *decoder, const uint8_t *bytes, size_t count, const icdgen_listener_t *listener)
 {
-    size_t at = 0;
-    size_t count;
-    decoder->buffer[decoder->length] = byte;
-    decoder->length++;
-    do {
-        count = icdgen_stream_front(decoder, at, listener);
-        at += count;
-    } while (count != 0u);
-    if (at != 0u) {
-        decoder->length -= at;
-        (void)memmove(decoder->buffer, decoder->buffer + at, decoder->length);
+    size_t taken = 0;
+    while (taken < count) {
+        const size_t wanted = decoder->needed > decoder->length ? decoder->needed - decoder->length : 1u;
+        const size_t piece = wanted < (count - taken) ? wanted : (count - taken);
+        (void)memcpy(decoder->buffer + decoder->length, bytes + taken, piece);
+        decoder->length += piece;
+        taken += piece;
+        if (decoder->length >= decoder->needed) {
+            size_t at = 0;
+            size_t over;
+            do {
+                decoder->needed = 0;
+                over = icdgen_stream_front(decoder, at, listener);
+                at += over;
+            } while (over != 0u);
+            if (at != 0u) {
+                decoder->length -= at;
+                (void)memmove(decoder->buffer, decoder->buffer + at, decoder->length);
+            }
+        }
+        decoder->pending = decoder->length;
     }
-    decoder->pending = decoder->length;
 }
 
 static inline void icdgen_stream_fail(icd_stream_decoder_t *decoder, icd_stream_kind_t fault)
@@ -336,11 +362,11 @@ ICDGEN_API void icd_stream_feed(
     const uint32_t end = delimiter == ICD_DELIMITED_BY_SLIP ? ICDGEN_SLIP_END
         : delimiter == ICD_DELIMITED_BY_HDLC                ? ICDGEN_HDLC_FLAG
                                                             : 0u;
+    if (delimiter == ICD_DELIMITED_BY_LENGTH) {
+        icdgen_stream_append(decoder, bytes, count, &listener);
+        return;
+    }
     for (size_t i = 0; i < count; ++i) {
-        if (delimiter == ICD_DELIMITED_BY_LENGTH) {
-            icdgen_stream_append(decoder, bytes[i], &listener);
-            continue;
-        }
         decoder->pending++;
         if (bytes[i] == end) {
             icdgen_stream_end(decoder, &listener);

@@ -357,8 +357,9 @@ def view(message: Message, attribute: str, kind: type[_lazy.T]) -> _lazy.T:
     return value
 
 
-def on_curve(coefficients: tuple[float, ...], raw: float) -> float:
-    """The physical value of a view, by a polynomial whose constant stands first."""
+def on_curve(message: Message, attribute: str) -> float:
+    """The physical value of a view that has a curve. Raises `RangeError`."""
     from ._curves import on_curve as found
 
-    return found(coefficients, raw)
+    (curve,) = (one.curve for one in message.VIEWS if one.attribute == attribute)
+    return found(curve, getattr(message, attribute))

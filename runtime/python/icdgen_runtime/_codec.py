@@ -162,12 +162,12 @@ def bytes_of_texts(info: _lazy.FieldInfo, said: _lazy.Any) -> _lazy.Any:
     """What such a field has for a text, or an array for texts. Raises `RangeError`."""
     size = info.bits // 8
     if not info.elements:
-        raw = text_bytes(said, info.attribute, size)
+        raw = text_bytes(said, info.physical, size)
         return raw[: max(len(said), info.fewest)] if info.is_open else raw
     if not has_elements(info, said):
-        raise RangeError(info.attribute, elements_of(info), said)
+        raise RangeError(info.physical, elements_of(info), said)
     return tuple(
-        text_bytes(one, f"{info.attribute}[{index}]", size)
+        text_bytes(one, f"{info.physical}[{index}]", size)
         for index, one in enumerate(said)
     )
 
@@ -222,7 +222,10 @@ def seen(message: _lazy.Message, attribute: str, kind: _lazy.Any) -> _lazy.Any:
 
 def _fits_integer(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
     low, high = info.raw_range
-    return f"integers from {low} to {high}", _is_within(value, low, high)
+    named = "" if info.enum is None else f"members of {info.enum.__name__} or "
+    meant = info.physical if isinstance(value, float) and info.leads_back else ""
+    hint = f" ({meant} takes physical values)" if meant else ""
+    return f"{named}integers from {low} to {high}{hint}", _is_within(value, low, high)
 
 
 def _fits_bool(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:

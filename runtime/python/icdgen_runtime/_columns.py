@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from ._base import Message
 from ._codec import text
 from ._conditions import absent
+from ._curves import columns_on_curve
 from ._dicts import OCTETS
 from ._errors import IcdError, LengthError
 from ._fields import FieldInfo
@@ -200,7 +201,7 @@ def _metadata(info: FieldInfo) -> dict[str, str]:
 def _physical(numpy: Any, info: FieldInfo, raw: Any) -> Any:
     """Correctly rounded: all but the division is exact, or Python's integers do it."""
     if info.curve:
-        return _on_curve(numpy, info.curve, raw)
+        return columns_on_curve(numpy, info.curve, raw)
     p, c, q = info.scale
     low, high = info.raw_range
     bounds = [p, c, q, low, high, low * p, high * p, low * p + c, high * p + c]
@@ -214,18 +215,6 @@ def _physical(numpy: Any, info: FieldInfo, raw: Any) -> Any:
         column += c
     if q != 1:
         column /= q
-    return column
-
-
-def _on_curve(numpy: Any, coefficients: tuple[float, ...], raw: Any) -> Any:
-    """Horner's rule, as `icdgen_runtime._curves.on_curve`."""
-    column = numpy.full(len(raw), coefficients[-1])
-    with numpy.errstate(all="ignore"):  # that a float is a signalling NaN, too
-        raw = raw.astype(numpy.float64)
-        for coefficient in coefficients[-2::-1]:
-            column *= raw
-            column += coefficient
-    column[numpy.isnan(column)] = numpy.nan
     return column
 
 

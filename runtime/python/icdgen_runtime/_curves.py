@@ -1,28 +1,67 @@
-"""Physical values by polynomials, computed in doubles: Horner's rule."""
+"""Physical values by curves, computed in doubles.
+
+A curve is pieces: from a raw value on, the terms of a polynomial in what is above that,
+the constant first; without terms, no number. Each step is rounded: Horner's rule.
+"""
 
 from __future__ import annotations
 
 import math
 import struct
+from bisect import bisect_right
+from functools import lru_cache
 
 from . import _lazy
 from ._errors import RangeError
+from ._scales import span_of
 
 
-def on_curve(coefficients: tuple[float, ...], raw: float) -> float:
-    """The physical value of a raw one; the constant stands first.
+def on_curve(curve: _lazy.Curve, raw: float) -> float:
+    """The physical value of a raw one: of the last piece that begins there or below.
 
-    >>> on_curve((-40.0, 0.5, 0.25), 2)
+    >>> on_curve(((0.0, (-40.0, 0.5, 0.25)),), 2)
     -38.0
+    >>> on_curve(((0.0, (7.0,)), (0.0, (7.0, 0.5)), (10.0, (12.0,))), 3)
+    8.5
     """
-    x, value = float(raw), coefficients[-1]
-    for coefficient in coefficients[-2::-1]:
-        value = value * x + coefficient
+    x = float(raw)
+    place = bisect_right(_starts(curve), x) - 1 if len(curve) > 1 else 0
+    start, terms = curve[max(place, 0)]
+    if not terms or math.isnan(x):
+        return math.nan
+    above, value = x - start, terms[-1]
+    for term in terms[-2::-1]:
+        value = value * above + term
     return math.nan if math.isnan(value) else value
 
 
+@lru_cache(maxsize=256)
+def _starts(curve: _lazy.Curve) -> tuple[float, ...]:
+    return tuple(start for start, _ in curve)
+
+
+def columns_on_curve(numpy: _lazy.Any, curve: _lazy.Curve, raw: _lazy.Any) -> _lazy.Any:
+    """The physical values of a whole column."""
+    with numpy.errstate(all="ignore"):  # that a float is a signalling NaN, too
+        x = raw.astype(numpy.float64)
+    place = numpy.searchsorted(_starts(curve), x, side="right") - 1
+    place = numpy.clip(place, 0, None)
+    sizes = numpy.array([len(terms) for _, terms in curve])[place]
+    most = max(len(terms) for _, terms in curve)
+    padded = [(*terms, *(0.0,) * (most - len(terms))) for _, terms in curve]
+    table, column = numpy.array(padded), numpy.full(len(x), numpy.nan)
+    with numpy.errstate(all="ignore"):
+        above = x - numpy.array(_starts(curve))[place]
+        for power in range(most - 1, -1, -1):
+            term = table[place, power]
+            is_highest = sizes == power + 1
+            column = numpy.where(is_highest, term, column * above + term)
+    column[numpy.isnan(column) | numpy.isnan(x)] = numpy.nan
+    return column
+
+
 def from_curve(value: _lazy.Any, info: _lazy.FieldInfo, field: str) -> _lazy.Any:
-    """The nearest raw value, of two the even one. Raises `RangeError`."""
+    """The nearest raw value, of two the even one. Raises `RangeError` that names ``field``, the attribute that is set."""
     try:
         top, bottom = value.as_integer_ratio()
         wanted = value if isinstance(value, float) else top / bottom
@@ -30,7 +69,9 @@ def from_curve(value: _lazy.Any, info: _lazy.FieldInfo, field: str) -> _lazy.Any
         raise RangeError(field, "a finite number", value) from None
     if not info.leads_back:
         raise RangeError(
-            field, "raw values only: its formula does not lead back", value
+            field,
+            f"no value, as it does not lead back: set {info.attribute}",
+            value,
         )
     if info.type == "float":
         return _number(wanted, info, field)
@@ -38,7 +79,7 @@ def from_curve(value: _lazy.Any, info: _lazy.FieldInfo, field: str) -> _lazy.Any
 
 
 def _number(value: float, info: _lazy.FieldInfo, field: str) -> float:
-    constant, slope = info.curve
+    ((_, (constant, slope)),) = info.curve
     inverse = (value - constant) / slope
     try:
         form = "<f" if info.bits == 32 else "<d"
@@ -51,12 +92,12 @@ def _number(value: float, info: _lazy.FieldInfo, field: str) -> float:
 
 
 def _nearest(value: float, info: _lazy.FieldInfo, field: str) -> int:
-    low, high = info.raw_range
+    low, high = info.ends or info.raw_range
     first, last = on_curve(info.curve, low), on_curve(info.curve, high)
     rises = first < last
     least, most = (first, last) if rises else (last, first)
     if not least <= value <= most:
-        raise RangeError(field, f"{least!r} to {most!r}", value)
+        raise RangeError(field, span_of(least, most, info.unit), value)
     while high - low > 1:
         middle = (low + high) // 2
         here = on_curve(info.curve, middle)

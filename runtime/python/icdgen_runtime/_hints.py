@@ -20,6 +20,9 @@ Buffer = Union[bytes, bytearray, memoryview]
 Frames = Union[Buffer, Iterable[Buffer]]
 """Many frames: one after the other, or a list of them."""
 
+Curve = tuple[tuple[float, tuple[float, ...]], ...]
+"""From a raw value on, the terms of a polynomial in what is above that."""
+
 M = TypeVar("M", bound="_lazy.Message")
 S = TypeVar("S", bound="_lazy.Struct")
 T = TypeVar("T")

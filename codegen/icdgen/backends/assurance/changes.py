@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
@@ -14,7 +15,9 @@ from typing import Any, NamedTuple, TypeVar
 from icdgen import layout
 from icdgen.icd import floats
 from icdgen.icd.build import calibration, special
-from icdgen.icd.located import Map
+from icdgen.icd.curve import OUTSIDE, Curve, doubles, table
+from icdgen.icd.formula import FormulaError
+from icdgen.icd.located import Map, plain
 from icdgen.icd.model import Enum, Field, Limits, Member, Message, Node, Struct
 from icdgen.icd.paths import members_of
 
@@ -107,15 +110,42 @@ def _types(field: Field) -> Iterator[tuple[Change, Field]]:
     for kind in OTHER_TYPES[field.type] if _is_plain(field) else ():
         if _can_be(field, kind):
             scale, curve = calibration(field.formula, kind)
+            if "points" in source and kind in ("uint", "int", "float"):
+                curve = field.curve
             yield Change("type", source, "type", field.type, kind), replace(field, type=kind, scale=scale, curve=curve)
 
 
 def _formulas(field: Field) -> Iterator[tuple[Change, Field]]:
+    """The changes of what the physical value is computed by."""
+    if field.curve is not None and field.curve.points:
+        yield from _tables(field, field.curve)
+        return
     for text in formulas(field.formula) if field.has_formula else ():
         scale, curve = calibration(text, field.type)
         if scale is not None or curve is not None:  # else its factor would be 0
             change = Change("formula", field.source, "formula", field.formula, text)
             yield change, replace(field, scale=scale, curve=curve)
+
+
+def _tables(field: Field, old: Curve) -> Iterator[tuple[Change, Field]]:
+    source, said, outside = field.source, plain(field.source["points"]), field.source.get("outside", "")
+    others = [(Change("points", source, "points", said, points), points, outside) for points in tables(said)]
+    if outside and (field.type == "float" or not old.holds(field.raw_min, field.raw_max)):
+        others += [(Change("outside", source, "outside", outside, now), said, now) for now in OUTSIDE if now != outside]
+    for change, points, around in others:
+        with suppress(FormulaError):  # it would be none
+            new = table(doubles(points), around)
+            if new != old:
+                yield change, replace(field, curve=new)
+
+
+def tables(points: list[list[Any]]) -> Iterator[list[list[Any]]]:
+    """Each number of a table one more and one less."""
+    for index, (place, step) in product(range(len(points)), product((0, 1), (-1, 1))):
+        number = points[index][place]
+        point = list(points[index])
+        point[place] = (float(number) if isinstance(number, str) else number) + step
+        yield [*points[:index], point, *points[index + 1 :]]
 
 
 def with_struct(fields: tuple[Field, ...], old: Struct, new: Struct) -> tuple[Field, ...]:

@@ -14,7 +14,7 @@ from icdgen.icd.model import Enum, Message, Node
 TITLES = {"c": "C", "python": "Python", "rust": "Rust"}
 _SHOWN = (
     "id", "set_id", "get_id", "length", "node_type", "interface_version", "at", "bits", "type", "enum", "value", "unit", "formula",
-    "const", "min", "max", "above", "below", "byte_order", "bit_order",
+    "points", "outside", "const", "min", "max", "above", "below", "byte_order", "bit_order",
 )  # fmt: skip
 """Keys of what is printed in a row of the manual, in the order of a sentence."""
 _SAYS = (

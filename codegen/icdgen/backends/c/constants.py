@@ -29,6 +29,8 @@ def _value(one: Constant, field: FieldDescription) -> str:
         return _float(one, field.model.bits)
     if isinstance(one.value, int) and one.key in ("const", "special") and not field.storage.signed:
         return mask(one.value, field.storage.bits)
+    if one.is_raw and field.storage.signed and one.value == -(1 << field.storage.bits - 1):
+        return f"INT{field.storage.bits}_MIN"  # of 64 bits it cannot be written: what `-` stands before is too large
     text = exact_text(one.value)
     if not one.is_raw and text.lstrip("-").isdigit():
         text += ".0"  # a physical value is a double

@@ -16,7 +16,7 @@ from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
 _MOST_PACKETS = 256
-_CRC = f"/* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, table */\n{STEP * 2}"
+_CRC = f"/* width, polynomial, init, reflected in, out, xor out, whether there is one of no bytes, which, tables */\n{STEP * 2}"
 
 
 class Table(NamedTuple):
@@ -254,12 +254,13 @@ class _Tables:
 
     def crc(self, name: str, one: Crc, is_crc: bool = True) -> str:
         """The initialiser of a CRC without its braces; the table for whole bytes is one of its own."""
-        table = "NULL"
+        found = ["NULL", "NULL"]
         if is_crc and one.width <= 16:
             entries = (f"{value:#0{2 + -(-one.width // 4)}x}u" for value in crc_table(one))
-            table = f"ICDGEN_TABLE({self.numbers(f'{name}_table', 'uint16_t', entries, 8)})"
+            bits = 8 if one.width <= 8 else 16
+            found[bits // 8 - 1] = f"ICDGEN_TABLE({self.numbers(f'{name}_table', f'uint{bits}_t', entries, 8)})"
             self.tables[-1] = self.tables[-1]._replace(unless="ICDGEN_NO_TABLES")
-        return f"{self.values(name, one)}, {table}"
+        return ", ".join((self.values(name, one), *found))
 
     def checksum(self) -> str:
         one = self.known.checksum

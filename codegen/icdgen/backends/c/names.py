@@ -1,4 +1,4 @@
-"""The C names of messages and enumerations. All names at file scope begin with the name of the declaring node."""
+"""The C names of messages and enumerations. All names at file scope begin with the name of the declaring node, once."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from icdgen.describe.enums import MemberDescription
 
 
 def stem(one: Composite[Any] | EnumDescription) -> str:
-    """``demo_estimated_roll``: stem of the functions and the type."""
-    return f"{one.node.name}_{one.name}"
+    """``demo_estimated_roll``: stem of the functions and the type; of ``DemoState`` ``demo_state``, for it has the node's name."""
+    prefix = f"{one.node.name}_"
+    return one.name if one.name.startswith(prefix) else prefix + one.name
 
 
 def enumerator(enum: EnumDescription, member: MemberDescription) -> str:

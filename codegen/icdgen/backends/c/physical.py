@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
+from itertools import accumulate
 from typing import NamedTuple
 
 from icdgen.backends.c.types import cast
@@ -46,16 +48,36 @@ def in_doubles(field: FieldDescription) -> tuple[str, tuple[str, ...], tuple[str
 
 
 def _on_curve(field: FieldDescription, curve: Curve) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
-    coefficients = ", ".join(map(repr, curve.coefficients))
-    count = f"{len(curve.coefficients)}u"
+    count = f"{len(curve.pieces)}u"
     getter = f"icdgen_curve(ICDGEN_CAST(double, {RAW}), curve, {count})"
-    declared = (f"static const double curve[] = {{{coefficients}}};",)
+    declared = tuple(_declared(curve))
     if field.model.type == "float":
         return getter, (f"icdgen_set_curve_f{field.model.bits}", "value", "curve"), declared
     one, storage = field.model, field.storage
-    limits = [_limit(end, storage) for end in ((one.raw_min, one.raw_max) if storage.signed else (one.raw_max,))]
+    limits = [_limit(end, storage) for end in one.ends]
     kind = f"{'i' if storage.signed else 'u'}{storage.bits}"
     return getter, (f"icdgen_set_curve_{kind}", "value", "curve", count, *limits), declared
+
+
+def _declared(curve: Curve) -> Iterator[str]:
+    """Of all pieces the terms, then the pieces; each on a line of its own if there are several."""
+    terms = [", ".join(map(repr, piece.terms)) for piece in curve.pieces]
+    begin = accumulate((len(piece.terms) for piece in curve.pieces), initial=0)
+    pieces = (
+        f"{{{start!r}, {f'&terms[{at}]' if held else 'terms'}, {len(held)}u}}"
+        for (start, held), at in zip(curve.pieces, begin, strict=False)
+    )
+    yield from _array("static const double terms[]", [one for one in terms if one])
+    yield from _array("static const icdgen_piece_t curve[]", list(pieces))
+
+
+def _array(head: str, rows: list[str]) -> Iterator[str]:
+    if len(rows) == 1:
+        yield f"{head} = {{{rows[0]}}};"
+        return
+    yield f"{head} = {{"
+    yield from (f"    {row}," for row in rows)
+    yield "};"
 
 
 def scaled(field: FieldDescription) -> Scaled:

@@ -108,7 +108,7 @@ def _row(key: int, field: Field, message: Message, links: Links, anchor: str) ->
         unit=field.unit.symbol if field.unit else "",
         unit_url=links.unit(field.unit) if field.unit else "",
         unit_title=field.unit.quantity if field.unit else "",
-        formula=field.formula if field.has_formula else "",
+        formula=field.formula if field.has_formula else "",  # points are among the notes
         summary=field.summary,
         notes=tuple(_notes(field, message)),
         errata=field.errata,

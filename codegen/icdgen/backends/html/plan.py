@@ -65,9 +65,11 @@ def _field(field: Field, node: Node) -> dict[str, object]:
     if scaled is not None:
         plan["scale"] = [integer(term) for term in scaled.terms]
     if field.curve is not None:
-        plan["curve"] = list(field.curve.coefficients)
+        plan["curve"] = [[start, list(terms)] for start, terms in field.curve.pieces]
         if not field.leads_back:
             plan["oneWay"] = True
+        elif field.ends != (field.raw_min, field.raw_max):
+            plan["ends"] = list(field.ends)
     if field.unit is not None:
         plan["unit"] = field.unit.symbol
     if field.enum is not None:

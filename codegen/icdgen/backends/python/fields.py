@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
 from icdgen.backends.lines import STEP, exploded
@@ -11,6 +12,7 @@ from icdgen.describe import FieldDescription, MessageDescription, wholes
 from icdgen.describe.constants import Constant
 from icdgen.describe.wholes import Whole
 from icdgen.icd import floats
+from icdgen.icd.curve import Curve
 from icdgen.icd.model import Special
 
 _WIDTH = 120  # columns of a declaration
@@ -118,7 +120,9 @@ def view_info(field: FieldDescription) -> str:
     if field.steps is not None:
         items += [f'physical="{field.physical_name}"', f"scale={field.steps.terms}"]
     if field.curve is not None:
-        items += [f'physical="{field.physical_name}"', f"curve={field.curve.coefficients}"]
+        pieces = _pieces(field.curve)
+        listed = exploded("(", pieces, ")", " " * 12) if len(pieces) > 1 else f"({pieces[0]},)"
+        items += [f'physical="{field.physical_name}"', f"curve={listed}"]
     if field.enum is not None:
         items.append(f"enum={class_name(field.enum)}")
     return f"_base.FieldInfo({', '.join(items)})"
@@ -127,7 +131,7 @@ def view_info(field: FieldDescription) -> str:
 def physical(field: FieldDescription) -> str:
     """The physical value of a view."""
     if field.curve is not None:
-        return f"_base.on_curve({field.curve.coefficients}, self.{field.name})"
+        return f'_base.on_curve(self, "{field.name}")'
     assert field.steps is not None
     p, c, q = field.steps.terms
     return f"(self.{field.name} * {p} {'-' if c < 0 else '+'} {abs(c)}) / {q}"
@@ -136,7 +140,7 @@ def physical(field: FieldDescription) -> str:
 def scaled(field: FieldDescription) -> str:
     """``estimated_roll_angle_deg: float = _base.scaled(...)``: the steps of the physical value, and the first one."""
     curve, steps = field.curve, field.steps
-    first = repr(curve.double(field.fresh) if curve is not None else steps.double(field.fresh) if steps else 0.0)
+    first = _double(curve.double(field.fresh) if curve is not None else steps.double(field.fresh) if steps else 0.0)
     if field.is_open:
         few = field.message.fewest
         first, note = f"({first},) * {few}" if few else "()", "tuple[float, ...]"
@@ -145,10 +149,22 @@ def scaled(field: FieldDescription) -> str:
     else:
         note = _perhaps(field, "float")
     if curve is not None:
-        items = [str(curve.coefficients), f"default={first}"]
+        items = [*_pieces(curve), f"default={first}"]
+        if field.is_set and field.model.ends != (field.model.raw_min, field.model.raw_max):
+            items.append(f"ends={field.model.ends}")
         return _statement(field.physical_name, note, "curve" if field.is_set else "curve_only", items)
     assert steps is not None
     return _statement(field.physical_name, note, "scaled", [*map(str, steps.terms), f"default={first}"])
+
+
+def _pieces(curve: Curve) -> list[str]:
+    """A literal of each."""
+    return [f"({start!r}, {terms!r})" for start, terms in curve.pieces]
+
+
+def _double(value: float) -> str:
+    """A literal."""
+    return repr(value) if math.isfinite(value) else f'float("{value}")'
 
 
 def text(field: FieldDescription) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from icdgen.backends.lines import STEP
+from icdgen.backends.lines import STEP, exploded
 from icdgen.backends.rust.names import field_name, struct_path
 from icdgen.backends.rust.physical import curve_name, curve_value, physical, raw_value, single
 from icdgen.backends.rust.text import WIDTH, assigned, double, integer, string
@@ -102,19 +102,26 @@ def scale_of(field: FieldDescription) -> str:
     terms = field.steps.terms if field.steps else (1, 0, 1)
     one = field.model
     numbers = [f"({', '.join(map(integer, row))})" for row in ((one.raw_min, one.raw_max), terms)]
-    return assigned(
-        f"const {field.name.upper()}: Scale =", f"Scale::new({string(one.name)}, {', '.join(numbers)})", ";", ""
-    )
+    return _constant(field.name.upper(), "Scale", [string(one.name), string(field.takes), *numbers])
+
+
+def _constant(name: str, type: str, items: list[str]) -> str:
+    """``const NAME: Scale = Scale::new(...);``"""
+    call = f"{type}::new("
+    if len(f"{STEP}{call}{', '.join(items)});") <= WIDTH:
+        return assigned(f"const {name}: {type} =", f"{call}{', '.join(items)})", ";", "")
+    return exploded(f"const {name}: {type} = {call}", items, ");")
 
 
 def curve_of(field: FieldDescription) -> str:
     """The constant of a field with a curve."""
     assert field.curve is not None
     one = field.model
-    ends = (one.raw_min, one.raw_max) if field.model.type != "float" and field.model.leads_back else (0, 0)
-    coefficients = ", ".join(map(double, field.curve.coefficients))
-    numbers = f"({', '.join(map(integer, ends))}), &[{coefficients}]"
-    return f"#[rustfmt::skip]\nconst {curve_name(field)}: Curve = Curve::new({string(one.name)}, {numbers});"
+    ends = one.ends if one.type != "float" and one.leads_back else (0, 0)
+    pieces = [f"({double(start)}, &[{', '.join(map(double, terms))}])" for start, terms in field.curve.pieces]
+    listed = "\n".join(["", *(f"{STEP}{piece}," for piece in pieces), ""]) if len(pieces) > 1 else pieces[0]
+    items = f"{string(one.name)}, {string(field.takes)}, ({', '.join(map(integer, ends))}), &[{listed}]"
+    return f"#[rustfmt::skip]\nconst {curve_name(field)}: Curve = Curve::new({items});"
 
 
 def field_row(field: FieldDescription) -> str:

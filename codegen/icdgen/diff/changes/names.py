@@ -120,7 +120,7 @@ def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     if renamed:
         was, now = (next((name.text for name in side if name), "") for side in zip(*renamed, strict=True))
         text = f"accessors or constants of {quote(pair.new.name)} {'change' if was else 'are new'}"
-        keys = ("unit", "formula", "special", "min", "max", "above", "below")
+        keys = ("unit", "formula", "points", "special", "min", "max", "above", "below")
         severity, addition = (None, None) if was else ("note", True)
         yield Found(text, keys, was, now, lines(renamed), severity, addition)
 

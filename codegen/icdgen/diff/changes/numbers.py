@@ -7,15 +7,16 @@ from dataclasses import replace
 from functools import lru_cache
 
 from icdgen.describe.bounds import KEYS, bounds
+from icdgen.describe.numbers import point_text
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import FieldPair, differing
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.similar import same_sense
-from icdgen.diff.wording import formula, number
+from icdgen.diff.wording import MOST, formula, number
 from icdgen.icd.curve import Curve
 from icdgen.icd.formula import RAW, Scale
 from icdgen.icd.model import Field, Limits, Special
-from icdgen.icd.rules.wording import quote
+from icdgen.icd.rules.wording import count, listing, quote
 
 
 @rule("DIF201", "field")
@@ -27,13 +28,28 @@ def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     was, now = formula(old), formula(new)
     if isinstance(old, Curve) or isinstance(new, Curve):
         text = f"the value of {quote(pair.new.name)} is {now}, was {was}"
-        yield Found(text, ("formula", "unit"), was, now, code="DIF201")
+        yield Found(text, ("points", "outside", "formula", "unit"), was, now, _points(old, new), code="DIF201")
     elif old.factor == -new.factor:
         text = f"the sign of {quote(pair.new.name)} is turned: {now}, was {was}"
         yield Found(text, ("formula",), was, now, code="DIF203")
     else:
         text = f"the value of {quote(pair.new.name)} is {now}, was {was}"
         yield Found(text, ("formula", "unit"), was, now, _times(old, new), code="DIF201")
+
+
+def _points(old: Curve | Scale, new: Curve | Scale) -> tuple[str, ...]:
+    """Which points of a table are others."""
+    tables = [one for one in (old, new) if isinstance(one, Curve) and one.points]
+    if len(tables) < 2:
+        return ()
+    was, now = (frozenset(one.points) for one in tables)
+    went, came = (sorted(one) for one in (was - now, now - was))
+    told = (("It had", went), ("It has", came))
+    return tuple(f"{what} {listing(_few(list(map(point_text, points))))}." for what, points in told if points)
+
+
+def _few(points: list[str]) -> list[str]:
+    return points if len(points) <= MOST else [*points[:MOST], count(len(points) - MOST, "more point")]
 
 
 @lru_cache(maxsize=4096)

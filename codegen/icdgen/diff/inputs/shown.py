@@ -12,9 +12,8 @@ from typing import Any, TypeVar
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError
-from icdgen.icd import annex, model, schema, source
-from icdgen.icd.curve import Curve
-from icdgen.icd.formula import Scale
+from icdgen.icd import annex, curve, model, schema, source
+from icdgen.icd.formula import FormulaError, Scale
 from icdgen.icd.implied import implied_count
 from icdgen.icd.located import Map, Seq, plain
 from icdgen.icd.units import STANDARD, Unit
@@ -208,7 +207,7 @@ class _Reader:
             unit=self.units.get(item.get("unit", "")),
             formula=item.get("formula", ""),
             scale=_scale(item),
-            curve=Curve(tuple(map(float, item["coefficients"]))) if "coefficients" in item else None,
+            curve=_curve(item),
             special=tuple(model.Special(**_as_it_is(model.Special, one)) for one in item.get("special", ())),
             limits=model.Limits(**limits) if "limits" in item else None,
             view=item.get("view", False),
@@ -218,6 +217,13 @@ class _Reader:
 
 def _as_it_is(kind: object, item: Map) -> dict[str, Any]:
     return {name: item[name] for name in machine.as_they_are(kind) if name in item}
+
+
+def _curve(item: Map) -> curve.Curve | None:
+    try:
+        return curve.of_plain(item)
+    except FormulaError as error:
+        raise Findings([Finding("ICD010", f"`points` cannot be used: {error}", item.at("points"), _HELP)]) from None
 
 
 def _scale(item: Map) -> Scale | None:

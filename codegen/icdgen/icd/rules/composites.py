@@ -14,7 +14,7 @@ from icdgen.icd.rules.wording import line_of, listing, quote
 from icdgen.icd.wire_ids import number
 from icdgen.suggest import close_to
 
-_KEYS = ("bits", "type", "enum", "unit", "formula")
+_KEYS = ("bits", "type", "enum", "unit", "formula", "points", "outside")
 _IDS = ("id", "set_id", "get_id")
 
 

@@ -14,12 +14,17 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
 
 SCALED = ("uint", "int", "float")
+_POINTS = "a table goes from one raw value to the next: `points: [[0, -40], [512, 20.5], [1023, 125]]`"
+_BEYOND = (
+    "add `outside: clamp` (the value of the last point), `outside: extrapolate` (the last line goes on) "
+    "or `outside: refuse` (there is no number)"
+)
 
 
 @rule("ICD060")
 def formula_reads(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.having["formula"]:
-        if not field.has_formula and field.type in SCALED:
+        if not field.has_formula and field.type in SCALED and "points" not in field.source:
             text = field.source["formula"]
             try:
                 curve.parse(text)
@@ -31,10 +36,43 @@ def formula_reads(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD061")
 def formula_has_number(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.having["formula"]:
-        if field.type not in SCALED:
-            message = f"{quote(field.name)} is `{field.type}`, which takes no formula"
-            yield Fault(field.source, field.source.at("formula"), message, "only numbers have one: uint, int and float")
+    for key, what in (("formula", "formula"), ("points", "table of points")):
+        for field, _, _ in ctx.having[key]:
+            if field.type not in SCALED:
+                message = f"{quote(field.name)} is `{field.type}`, which takes no {what}"
+                yield Fault(field.source, field.source.at(key), message, "only numbers have one: uint, int and float")
+
+
+@rule("ICD067")
+def points_read(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.having["points"]:
+        source = field.source
+        if "formula" in source:
+            message = f"{quote(field.name)} has a formula and a table of points"
+            yield Fault(source, source.at("points"), message, "remove one of them")
+        elif field.type in SCALED and field.curve is None:
+            try:
+                curve.table(curve.doubles(source["points"]), "")
+            except formula.FormulaError as error:
+                message = f"the points of {quote(field.name)} cannot be used: {error}"
+                yield Fault(source, source.at("points"), message, _POINTS)
+
+
+@rule("ICD068")
+def outside_is_said(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.having["points"]:
+        line, source = field.curve, field.source
+        if line is None or not line.points or "outside" in source:
+            continue
+        if field.type == "float" or not line.holds(field.raw_min, field.raw_max):
+            ends = "any number" if field.type == "float" else f"{field.raw_min:,} to {field.raw_max:,}"
+            said = " to ".join(f"{raw:g}" for raw in (line.points[0][0], line.points[-1][0]))
+            message = f"raw values of {quote(field.name)} are {ends}, its points go from {said}: what is outside?"
+            yield Fault(source, source.at("points"), message, _BEYOND)
+    for field, _, _ in ctx.having["outside"]:
+        if "points" not in field.source:
+            message = f"{quote(field.name)} has `outside` and no points"
+            yield Fault(field.source, field.source.at("outside"), message, "add `points`, or remove it")
 
 
 @rule("ICD062")
@@ -42,7 +80,7 @@ def formula_direction(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.having["formula_for"]:
         source, said = field.source, field.source["formula_for"]
         place = source.at("formula_for")
-        if "formula" not in source:
+        if "formula" not in source or "points" in source:
             message = f"{quote(field.name)} has `formula_for` and no formula"
             yield Fault(source, place, message, "add `formula` or remove it")
             continue
@@ -92,12 +130,13 @@ def unit_has_number(ctx: Context) -> Iterator[Fault]:
 @rule("ICD064")
 def formula_computable(ctx: Context) -> Iterator[Fault]:
     checked: dict[str, bool] = {}
-    for field, _, _ in ctx.having["formula"]:
+    for field, _, _ in (*ctx.having["formula"], *ctx.having["points"]):
         scale = field.scale
         line = field.curve
         if line is not None and field.type != "float" and not curve.is_finite(line, field.raw_min, field.raw_max):
-            message = f"the formula of {quote(field.name)} leads beyond what a double holds"
-            yield Fault(field.source, field.source.at("formula"), message, "correct an exponent, or `bits`")
+            key, what = _calibration(field)
+            message = f"the {what} of {quote(field.name)} leads beyond what a double holds"
+            yield Fault(field.source, field.source.at(key), message, "correct an exponent, or `bits`")
         if scale is None:
             continue
         if field.formula not in checked:
@@ -112,20 +151,29 @@ def formula_computable(ctx: Context) -> Iterator[Fault]:
 @rule("ICD066", severity="warning")
 def formula_leads_back(ctx: Context) -> Iterator[Fault]:
     sent = [message for message, _ in ctx.messages if message.telecommand_id is not None]
-    for field, owner, _ in ctx.having["formula"]:
+    for field, owner, _ in (*ctx.having["formula"], *ctx.having["points"]):
         if field.view or not field.has_formula or field.leads_back:
             continue
         message = next((one for one in sent if one is owner or has_struct(one.fields, owner)), None)
         if message is None:
             continue
         if field.type == "float":
-            why = "of a float only a line leads back"
+            why = "of a float only a formula that is a line leads back"
         elif field.bits > curve.MOST_BITS:
-            why = f"of a polynomial this is only known for fields of up to {curve.MOST_BITS} bits"
+            what = "table" if field.curve is not None and field.curve.points else "polynomial"
+            why = f"of a {what} this is only known for fields of up to {curve.MOST_BITS} bits"
+        elif field.ends[0] >= field.ends[1]:
+            why = "no two raw values lie between its points"
         else:
             why = "its values do not rise, or fall, from each raw value to the next"
-        text = f"the formula of {quote(field.name)} does not lead back, and {quote(message.name)} is sent: {why}"
-        yield Fault(field.source, field.source.at("formula"), text, "its raw value can be set all the same")
+        key, what = _calibration(field)
+        text = f"the {what} of {quote(field.name)} does not lead back, and {quote(message.name)} is sent: {why}"
+        yield Fault(field.source, field.source.at(key), text, "its raw value can be set all the same")
+
+
+def _calibration(field: Field) -> tuple[str, str]:
+    """The key that says how its physical value is computed, and what it is called."""
+    return ("points", "table") if field.curve is not None and field.curve.points else ("formula", "formula")
 
 
 def _shown(number: int) -> str:

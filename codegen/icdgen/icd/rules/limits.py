@@ -80,7 +80,7 @@ def limits_in_order(ctx: Context) -> Iterator[Fault]:
 @rule("ICD034")
 def limits_in_range(ctx: Context) -> Iterator[Fault]:
     for field in _limited(ctx):
-        if field.type not in NUMBERS or (field.formula and field.scale is None):
+        if field.type not in NUMBERS or (("points" in field.source or field.formula) and field.scale is None):
             continue  # a float holds anything, a curve may; a bad formula has its own finding
         within, source = bounds(field), field.source
         if within.is_empty:

@@ -81,7 +81,8 @@ def unit_known(ctx: Context) -> Iterator[Fault]:
             unit = field.source["unit"]
             known = (u.symbol for n in ctx.scope(node) for u in n.units)
             close = close_to(unit, [*known, *STANDARD])
-            help = f"did you mean {quote(close)}? If not, declare it in `units:`" if close else "declare it in `units:`"
+            help = "declare it in `units:`; `icdgen units` lists those that are known"
+            help = f"did you mean {quote(close)}? If not, declare it in `units:`" if close else help
             if unit in SPELLINGS:
                 help = f"did you mean {quote(SPELLINGS[unit])}?"
             yield Fault(field.source, field.source.at("unit"), f"the unit {quote(unit)} is unknown", help)

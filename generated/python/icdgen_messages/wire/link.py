@@ -433,3 +433,6 @@ class Link(Facts, Generic[N]):
     """The link of a node, which type checkers know the messages of that node by."""
 
     __slots__ = ()
+
+    def __repr__(self) -> str:
+        return f"Link(node={self.node!r}, ...)"

@@ -99,7 +99,7 @@ impl BootAndRunningProgramStatus {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
@@ -119,9 +119,10 @@ impl BootAndRunningProgramStatus {
     }
 }
 
-const CAUSE_OF_MCU_RESET: Scale = Scale::new("Cause of MCU Reset", (0, 15), (1, 0, 1));
+const CAUSE_OF_MCU_RESET: Scale =
+    Scale::new("Cause of MCU Reset", "ResetCause, 0 to 15", (0, 15), (1, 0, 1));
 
-const BOOT_CAUSE: Scale = Scale::new("Boot Cause", (0, 15), (1, 0, 1));
+const BOOT_CAUSE: Scale = Scale::new("Boot Cause", "BootCause, 0 to 15", (0, 15), (1, 0, 1));
 
 message!(BootAndRunningProgramStatus {
     cause_of_mcu_reset: ("Cause of MCU Reset", 0, 4),

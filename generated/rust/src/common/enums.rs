@@ -6,6 +6,8 @@ use crate::support::enumeration;
 
 /// FileType: an enumeration. Table 16.
 ///
+/// Held by File Type in Erase File, Load File Download Block and File Information.
+///
 /// Note COM-037 (open): FileType begins at 2 and jumps to 15. Values 0, 1 and 5 to 14 are not
 /// explained. Value 0 ends the file list, since an entry of zeroes does.
 ///
@@ -88,6 +90,8 @@ enumeration!(FileType: u8);
 /// FileUploadDestination: an enumeration. Table 20.
 ///
 /// The SD card destinations are not supported.
+///
+/// Held by Destination in Initiate File Upload and Finalize Upload Block.
 ///
 /// Note COM-045 (certain): Names of the flash areas differ between two lists. Flash program 1 of
 /// the upload is External Flash Program 1 of the bootloader, with the same number.
@@ -247,6 +251,8 @@ enumeration!(FileUploadDestination: u8);
 
 /// ResetCause: an enumeration. Table 29.
 ///
+/// Held by Cause of MCU Reset in Boot And Running Program Status.
+///
 /// ```
 /// use icd::common::enums::ResetCause;
 ///
@@ -402,6 +408,8 @@ enumeration!(ResetCause: u8);
 
 /// BootCause: an enumeration. Table 30.
 ///
+/// Held by Boot Cause in Boot And Running Program Status.
+///
 /// ```
 /// use icd::common::enums::BootCause;
 ///
@@ -493,6 +501,9 @@ enumeration!(BootCause: u8);
 
 /// BootProgramsList: an enumeration. Table 31.
 ///
+/// Held by Boot Program Index in Boot And Running Program Status; Program Index in Boot Index and
+/// Status.
+///
 /// ```
 /// use icd::common::enums::BootProgramsList;
 ///
@@ -563,6 +574,8 @@ enumeration!(BootProgramsList: u8);
 ///
 /// Kept in flash. The bootloader counts up before each attempt, the program sets Boot Success once
 /// it runs.
+///
+/// Held by Boot Status in Boot Index and Status.
 ///
 /// Note COM-070 (open): Boot Status: whether the third attempt still takes place. After a first
 /// failure the bootloader is to try twice more, three attempts in all. But the status is raised
@@ -652,6 +665,8 @@ impl From<u8> for BootStatus {
 enumeration!(BootStatus: u8);
 
 /// TcErrorReason: an enumeration. Table 40.
+///
+/// Held by TC error status in Telecommand Acknowledge.
 ///
 /// ```
 /// use icd::common::enums::TcErrorReason;

@@ -127,7 +127,7 @@ impl FileInformation {
     }
 }
 
-const FILE_TYPE: Scale = Scale::new("File Type", (0, 15), (1, 0, 1));
+const FILE_TYPE: Scale = Scale::new("File Type", "FileType, 0 to 15", (0, 15), (1, 0, 1));
 
 message!(FileInformation {
     file_type: ("File Type", 0, 4),

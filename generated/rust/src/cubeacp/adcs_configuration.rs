@@ -3812,210 +3812,399 @@ impl Default for AdcsConfiguration {
 }
 
 const X_RATE_SENSOR_OFFSET: Scale =
-    Scale::new("X-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("X-Rate Sensor Offset", "-32.768 to 32.767 deg/s", (-32_768, 32_767), (1, 0, 1_000));
 
 const Y_RATE_SENSOR_OFFSET: Scale =
-    Scale::new("Y-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("Y-Rate Sensor Offset", "-32.768 to 32.767 deg/s", (-32_768, 32_767), (1, 0, 1_000));
 
 const Z_RATE_SENSOR_OFFSET: Scale =
-    Scale::new("Z-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("Z-Rate Sensor Offset", "-32.768 to 32.767 deg/s", (-32_768, 32_767), (1, 0, 1_000));
 
-const CSS1_RELATIVE_SCALE: Scale = Scale::new("CSS1 Relative Scale", (0, 255), (1, 0, 100));
+const CSS1_RELATIVE_SCALE: Scale =
+    Scale::new("CSS1 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS2_RELATIVE_SCALE: Scale = Scale::new("CSS2 Relative Scale", (0, 255), (1, 0, 100));
+const CSS2_RELATIVE_SCALE: Scale =
+    Scale::new("CSS2 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS3_RELATIVE_SCALE: Scale = Scale::new("CSS3 Relative Scale", (0, 255), (1, 0, 100));
+const CSS3_RELATIVE_SCALE: Scale =
+    Scale::new("CSS3 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS4_RELATIVE_SCALE: Scale = Scale::new("CSS4 Relative Scale", (0, 255), (1, 0, 100));
+const CSS4_RELATIVE_SCALE: Scale =
+    Scale::new("CSS4 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS5_RELATIVE_SCALE: Scale = Scale::new("CSS5 Relative Scale", (0, 255), (1, 0, 100));
+const CSS5_RELATIVE_SCALE: Scale =
+    Scale::new("CSS5 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS6_RELATIVE_SCALE: Scale = Scale::new("CSS6 Relative Scale", (0, 255), (1, 0, 100));
+const CSS6_RELATIVE_SCALE: Scale =
+    Scale::new("CSS6 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS7_RELATIVE_SCALE: Scale = Scale::new("CSS7 Relative Scale", (0, 255), (1, 0, 100));
+const CSS7_RELATIVE_SCALE: Scale =
+    Scale::new("CSS7 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS8_RELATIVE_SCALE: Scale = Scale::new("CSS8 Relative Scale", (0, 255), (1, 0, 100));
+const CSS8_RELATIVE_SCALE: Scale =
+    Scale::new("CSS8 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS9_RELATIVE_SCALE: Scale = Scale::new("CSS9 Relative Scale", (0, 255), (1, 0, 100));
+const CSS9_RELATIVE_SCALE: Scale =
+    Scale::new("CSS9 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS10_RELATIVE_SCALE: Scale = Scale::new("CSS10 Relative Scale", (0, 255), (1, 0, 100));
+const CSS10_RELATIVE_SCALE: Scale =
+    Scale::new("CSS10 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CAM1_MOUNTING_ALPHA: Scale =
-    Scale::new("Cam1 Sensor Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+const CAM1_MOUNTING_ALPHA: Scale = Scale::new(
+    "Cam1 Sensor Mounting Transform Alpha Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const CAM1_MOUNTING_BETA: Scale =
-    Scale::new("Cam1 Sensor Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+const CAM1_MOUNTING_BETA: Scale = Scale::new(
+    "Cam1 Sensor Mounting Transform Beta Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const CAM1_MOUNTING_GAMMA: Scale =
-    Scale::new("Cam1 Sensor Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+const CAM1_MOUNTING_GAMMA: Scale = Scale::new(
+    "Cam1 Sensor Mounting Transform Gamma Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const CAM1_BORESIGHT_X: Scale = Scale::new("Cam1 Boresight X", (0, 65_535), (1, 0, 100));
+const CAM1_BORESIGHT_X: Scale =
+    Scale::new("Cam1 Boresight X", "0 to 655.35 pixels", (0, 65_535), (1, 0, 100));
 
-const CAM1_BORESIGHT_Y: Scale = Scale::new("Cam1 Boresight Y", (0, 65_535), (1, 0, 100));
+const CAM1_BORESIGHT_Y: Scale =
+    Scale::new("Cam1 Boresight Y", "0 to 655.35 pixels", (0, 65_535), (1, 0, 100));
 
-const CAM2_MOUNTING_ALPHA: Scale =
-    Scale::new("Cam2 Sensor Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+const CAM2_MOUNTING_ALPHA: Scale = Scale::new(
+    "Cam2 Sensor Mounting Transform Alpha Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const CAM2_MOUNTING_BETA: Scale =
-    Scale::new("Cam2 Sensor Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+const CAM2_MOUNTING_BETA: Scale = Scale::new(
+    "Cam2 Sensor Mounting Transform Beta Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const CAM2_MOUNTING_GAMMA: Scale =
-    Scale::new("Cam2 Sensor Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+const CAM2_MOUNTING_GAMMA: Scale = Scale::new(
+    "Cam2 Sensor Mounting Transform Gamma Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const CAM2_BORESIGHT_X: Scale = Scale::new("Cam2 Boresight X", (0, 65_535), (1, 0, 100));
+const CAM2_BORESIGHT_X: Scale =
+    Scale::new("Cam2 Boresight X", "0 to 655.35 pixels", (0, 65_535), (1, 0, 100));
 
-const CAM2_BORESIGHT_Y: Scale = Scale::new("Cam2 Boresight Y", (0, 65_535), (1, 0, 100));
+const CAM2_BORESIGHT_Y: Scale =
+    Scale::new("Cam2 Boresight Y", "0 to 655.35 pixels", (0, 65_535), (1, 0, 100));
 
-const MAGNETOMETER_MOUNTING_ALPHA: Scale =
-    Scale::new("Magnetometer Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+const MAGNETOMETER_MOUNTING_ALPHA: Scale = Scale::new(
+    "Magnetometer Mounting Transform Alpha Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const MAGNETOMETER_MOUNTING_BETA: Scale =
-    Scale::new("Magnetometer Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+const MAGNETOMETER_MOUNTING_BETA: Scale = Scale::new(
+    "Magnetometer Mounting Transform Beta Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const MAGNETOMETER_MOUNTING_GAMMA: Scale =
-    Scale::new("Magnetometer Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+const MAGNETOMETER_MOUNTING_GAMMA: Scale = Scale::new(
+    "Magnetometer Mounting Transform Gamma Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const MAGNETOMETER_CHANNEL_1_OFFSET: Scale =
-    Scale::new("Magnetometer Channel 1 Offset", (-32_768, 32_767), (1, 0, 1_000));
+const MAGNETOMETER_CHANNEL_1_OFFSET: Scale = Scale::new(
+    "Magnetometer Channel 1 Offset",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const MAGNETOMETER_CHANNEL_2_OFFSET: Scale =
-    Scale::new("Magnetometer Channel 2 Offset", (-32_768, 32_767), (1, 0, 1_000));
+const MAGNETOMETER_CHANNEL_2_OFFSET: Scale = Scale::new(
+    "Magnetometer Channel 2 Offset",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const MAGNETOMETER_CHANNEL_3_OFFSET: Scale =
-    Scale::new("Magnetometer Channel 3 Offset", (-32_768, 32_767), (1, 0, 1_000));
+const MAGNETOMETER_CHANNEL_3_OFFSET: Scale = Scale::new(
+    "Magnetometer Channel 3 Offset",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const MAGNETOMETER_SENSITIVITY_S11: Scale =
-    Scale::new("Magnetometer Sensitivity Matrix S11", (-32_768, 32_767), (1, 0, 1_000));
+const MAGNETOMETER_SENSITIVITY_S11: Scale = Scale::new(
+    "Magnetometer Sensitivity Matrix S11",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const MAGNETOMETER_SENSITIVITY_S22: Scale =
-    Scale::new("Magnetometer Sensitivity Matrix S22", (-32_768, 32_767), (1, 0, 1_000));
+const MAGNETOMETER_SENSITIVITY_S22: Scale = Scale::new(
+    "Magnetometer Sensitivity Matrix S22",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const MAGNETOMETER_SENSITIVITY_S33: Scale =
-    Scale::new("Magnetometer Sensitivity Matrix S33", (-32_768, 32_767), (1, 0, 1_000));
+const MAGNETOMETER_SENSITIVITY_S33: Scale = Scale::new(
+    "Magnetometer Sensitivity Matrix S33",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const MAGNETOMETER_SENSITIVITY_S12: Scale =
-    Scale::new("Magnetometer Sensitivity Matrix S12", (-32_768, 32_767), (1, 0, 1_000));
+const MAGNETOMETER_SENSITIVITY_S12: Scale = Scale::new(
+    "Magnetometer Sensitivity Matrix S12",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const MAGNETOMETER_SENSITIVITY_S13: Scale =
-    Scale::new("Magnetometer Sensitivity Matrix S13", (-32_768, 32_767), (1, 0, 1_000));
+const MAGNETOMETER_SENSITIVITY_S13: Scale = Scale::new(
+    "Magnetometer Sensitivity Matrix S13",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const MAGNETOMETER_SENSITIVITY_S21: Scale =
-    Scale::new("Magnetometer Sensitivity Matrix S21", (-32_768, 32_767), (1, 0, 1_000));
+const MAGNETOMETER_SENSITIVITY_S21: Scale = Scale::new(
+    "Magnetometer Sensitivity Matrix S21",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const MAGNETOMETER_SENSITIVITY_S23: Scale =
-    Scale::new("Magnetometer Sensitivity Matrix S23", (-32_768, 32_767), (1, 0, 1_000));
+const MAGNETOMETER_SENSITIVITY_S23: Scale = Scale::new(
+    "Magnetometer Sensitivity Matrix S23",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const MAGNETOMETER_SENSITIVITY_S31: Scale =
-    Scale::new("Magnetometer Sensitivity Matrix S31", (-32_768, 32_767), (1, 0, 1_000));
+const MAGNETOMETER_SENSITIVITY_S31: Scale = Scale::new(
+    "Magnetometer Sensitivity Matrix S31",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const MAGNETOMETER_SENSITIVITY_S32: Scale =
-    Scale::new("Magnetometer Sensitivity Matrix S32", (-32_768, 32_767), (1, 0, 1_000));
+const MAGNETOMETER_SENSITIVITY_S32: Scale = Scale::new(
+    "Magnetometer Sensitivity Matrix S32",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const REDUNDANT_MAG_MOUNTING_ALPHA: Scale =
-    Scale::new("Redundant Magnetometer Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+const REDUNDANT_MAG_MOUNTING_ALPHA: Scale = Scale::new(
+    "Redundant Magnetometer Mounting Transform Alpha Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const REDUNDANT_MAG_MOUNTING_BETA: Scale =
-    Scale::new("Redundant Magnetometer Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+const REDUNDANT_MAG_MOUNTING_BETA: Scale = Scale::new(
+    "Redundant Magnetometer Mounting Transform Beta Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const REDUNDANT_MAG_MOUNTING_GAMMA: Scale =
-    Scale::new("Redundant Magnetometer Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+const REDUNDANT_MAG_MOUNTING_GAMMA: Scale = Scale::new(
+    "Redundant Magnetometer Mounting Transform Gamma Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const REDUNDANT_MAG_CHANNEL_1_OFFSET: Scale =
-    Scale::new("Redundant Magnetometer Channel 1 Offset", (-32_768, 32_767), (1, 0, 1_000));
+const REDUNDANT_MAG_CHANNEL_1_OFFSET: Scale = Scale::new(
+    "Redundant Magnetometer Channel 1 Offset",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const REDUNDANT_MAG_CHANNEL_2_OFFSET: Scale =
-    Scale::new("Redundant Magnetometer Channel 2 Offset", (-32_768, 32_767), (1, 0, 1_000));
+const REDUNDANT_MAG_CHANNEL_2_OFFSET: Scale = Scale::new(
+    "Redundant Magnetometer Channel 2 Offset",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const REDUNDANT_MAG_CHANNEL_3_OFFSET: Scale =
-    Scale::new("Redundant Magnetometer Channel 3 Offset", (-32_768, 32_767), (1, 0, 1_000));
+const REDUNDANT_MAG_CHANNEL_3_OFFSET: Scale = Scale::new(
+    "Redundant Magnetometer Channel 3 Offset",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const REDUNDANT_MAG_SENSITIVITY_S11: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S11", (-32_768, 32_767), (1, 0, 1_000));
+const REDUNDANT_MAG_SENSITIVITY_S11: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S11",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const REDUNDANT_MAG_SENSITIVITY_S22: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S22", (-32_768, 32_767), (1, 0, 1_000));
+const REDUNDANT_MAG_SENSITIVITY_S22: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S22",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const REDUNDANT_MAG_SENSITIVITY_S33: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S33", (-32_768, 32_767), (1, 0, 1_000));
+const REDUNDANT_MAG_SENSITIVITY_S33: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S33",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const REDUNDANT_MAG_SENSITIVITY_S12: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S12", (-32_768, 32_767), (1, 0, 1_000));
+const REDUNDANT_MAG_SENSITIVITY_S12: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S12",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const REDUNDANT_MAG_SENSITIVITY_S13: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S13", (-32_768, 32_767), (1, 0, 1_000));
+const REDUNDANT_MAG_SENSITIVITY_S13: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S13",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const REDUNDANT_MAG_SENSITIVITY_S21: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S21", (-32_768, 32_767), (1, 0, 1_000));
+const REDUNDANT_MAG_SENSITIVITY_S21: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S21",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const REDUNDANT_MAG_SENSITIVITY_S23: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S23", (-32_768, 32_767), (1, 0, 1_000));
+const REDUNDANT_MAG_SENSITIVITY_S23: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S23",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const REDUNDANT_MAG_SENSITIVITY_S31: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S31", (-32_768, 32_767), (1, 0, 1_000));
+const REDUNDANT_MAG_SENSITIVITY_S31: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S31",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const REDUNDANT_MAG_SENSITIVITY_S32: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S32", (-32_768, 32_767), (1, 0, 1_000));
+const REDUNDANT_MAG_SENSITIVITY_S32: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S32",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const STAR_TRACKER_MOUNTING_ALPHA: Scale =
-    Scale::new("StarTracker Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+const STAR_TRACKER_MOUNTING_ALPHA: Scale = Scale::new(
+    "StarTracker Mounting Transform Alpha Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const STAR_TRACKER_MOUNTING_BETA: Scale =
-    Scale::new("StarTracker Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+const STAR_TRACKER_MOUNTING_BETA: Scale = Scale::new(
+    "StarTracker Mounting Transform Beta Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const STAR_TRACKER_MOUNTING_GAMMA: Scale =
-    Scale::new("StarTracker Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+const STAR_TRACKER_MOUNTING_GAMMA: Scale = Scale::new(
+    "StarTracker Mounting Transform Gamma Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
 const STAR_TRACKER_ERROR_MARGIN: Scale =
-    Scale::new("Star Tracker Error Margin", (0, 255), (1, 0, 100));
+    Scale::new("Star Tracker Error Margin", "0 to 2.55 %", (0, 255), (1, 0, 100));
 
-const STAR_TRACKING_MARGIN: Scale = Scale::new("Star Tracking Margin", (0, 255), (1, 0, 100));
+const STAR_TRACKING_MARGIN: Scale =
+    Scale::new("Star Tracking Margin", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const STAR_VALIDATION_MARGIN: Scale = Scale::new("Star Validation Margin", (0, 255), (1, 0, 100));
+const STAR_VALIDATION_MARGIN: Scale =
+    Scale::new("Star Validation Margin", "0 to 2.55", (0, 255), (1, 0, 100));
 
 const STAR_TRACKING_SEARCH_WIDTH: Scale =
-    Scale::new("Star Tracking Search Width", (0, 255), (1, 0, 5));
+    Scale::new("Star Tracking Search Width", "0 to 51", (0, 255), (1, 0, 5));
 
 const REFERENCE_SPIN_RATE: Scale =
-    Scale::new("Reference spin rate", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("Reference spin rate", "-32.768 to 32.767 deg/s", (-32_768, 32_767), (1, 0, 1_000));
 
-const SUN_POINTING_FACET: Scale = Scale::new("Sun-pointing Facet", (0, 127), (1, 0, 1));
+const SUN_POINTING_FACET: Scale =
+    Scale::new("Sun-pointing Facet", "AxisSelect, 0 to 127", (0, 127), (1, 0, 1));
 
-const MAGNETOMETER_MODE: Scale = Scale::new("Magnetometer Mode", (0, 3), (1, 0, 1));
+const MAGNETOMETER_MODE: Scale =
+    Scale::new("Magnetometer Mode", "MagModeVal, 0 to 3", (0, 3), (1, 0, 1));
 
 const RAW_MAGNETOMETER_SELECTION: Scale =
-    Scale::new("Magnetometer Selection for RAW MTM TLM", (0, 3), (1, 0, 1));
+    Scale::new("Magnetometer Selection for RAW MTM TLM", "MagModeVal, 0 to 3", (0, 3), (1, 0, 1));
 
-const CAM1_PERIOD: Scale = Scale::new("Cam1 period", (0, 15), (1, 0, 1));
+const CAM1_PERIOD: Scale = Scale::new("Cam1 period", "0 to 15 s", (0, 15), (1, 0, 1));
 
-const CAM2_PERIOD: Scale = Scale::new("Cam2 period", (0, 15), (1, 0, 1));
+const CAM2_PERIOD: Scale = Scale::new("Cam2 period", "0 to 15 s", (0, 15), (1, 0, 1));
 
-const INCL_COEFFICIENT: Scale = Scale::new("Incl. coefficient", (0, 65_535), (1, 0, 1_000));
+const INCL_COEFFICIENT: Scale =
+    Scale::new("Incl. coefficient", "0 to 65.535", (0, 65_535), (1, 0, 1_000));
 
-const RAAN_COEFFICIENT: Scale = Scale::new("Raan coefficient", (0, 65_535), (1, 0, 1_000));
+const RAAN_COEFFICIENT: Scale =
+    Scale::new("Raan coefficient", "0 to 65.535", (0, 65_535), (1, 0, 1_000));
 
-const ECC_COEFFICIENT: Scale = Scale::new("Ecc coefficient", (0, 65_535), (1, 0, 1_000));
+const ECC_COEFFICIENT: Scale =
+    Scale::new("Ecc coefficient", "0 to 65.535", (0, 65_535), (1, 0, 1_000));
 
-const AOP_COEFFICIENT: Scale = Scale::new("Aop coefficient", (0, 65_535), (1, 0, 1_000));
+const AOP_COEFFICIENT: Scale =
+    Scale::new("Aop coefficient", "0 to 65.535", (0, 65_535), (1, 0, 1_000));
 
-const TIME_COEFFICIENT: Scale = Scale::new("Time coefficient", (0, 65_535), (1, 0, 1_000));
+const TIME_COEFFICIENT: Scale =
+    Scale::new("Time coefficient", "0 to 65.535", (0, 65_535), (1, 0, 1_000));
 
-const POS_COEFFICIENT: Scale = Scale::new("Pos coefficient", (0, 65_535), (1, 0, 1_000));
+const POS_COEFFICIENT: Scale =
+    Scale::new("Pos coefficient", "0 to 65.535", (0, 65_535), (1, 0, 1_000));
 
-const MAXIMUM_POSITION_ERROR: Scale = Scale::new("Maximum position error", (0, 255), (1, 0, 10));
+const MAXIMUM_POSITION_ERROR: Scale =
+    Scale::new("Maximum position error", "0 to 25.5", (0, 255), (1, 0, 10));
 
-const XP_COEFFICIENT: Scale =
-    Scale::new("xp coefficient", (-2_147_483_648, 2_147_483_647), (1, 0, 10_000_000));
+const XP_COEFFICIENT: Scale = Scale::new(
+    "xp coefficient",
+    "-214.7483648 to 214.7483647",
+    (-2_147_483_648, 2_147_483_647),
+    (1, 0, 10_000_000),
+);
 
-const YP_COEFFICIENT: Scale =
-    Scale::new("yp coefficient", (-2_147_483_648, 2_147_483_647), (1, 0, 10_000_000));
+const YP_COEFFICIENT: Scale = Scale::new(
+    "yp coefficient",
+    "-214.7483648 to 214.7483647",
+    (-2_147_483_648, 2_147_483_647),
+    (1, 0, 10_000_000),
+);
 
-const POSITION_SD: Scale = Scale::new("Position sd", (0, 255), (1, 0, 10));
+const POSITION_SD: Scale = Scale::new("Position sd", "0 to 25.5", (0, 255), (1, 0, 10));
 
-const VELOCITY_SD: Scale = Scale::new("Velocity sd", (0, 255), (1, 0, 100));
+const VELOCITY_SD: Scale = Scale::new("Velocity sd", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const TIME_GAIN: Scale = Scale::new("Time gain", (0, 255), (1, 0, 100));
+const TIME_GAIN: Scale = Scale::new("Time gain", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const MAX_LAG: Scale = Scale::new("Max. lag", (0, 255), (1, 0, 100));
+const MAX_LAG: Scale = Scale::new("Max. lag", "0 to 2.55", (0, 255), (1, 0, 100));
 
 message!(AdcsConfiguration {
     magnetorquer_1_configuration: ("Magnetorquer 1 Configuration", 0, 8),

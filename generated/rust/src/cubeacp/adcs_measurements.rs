@@ -210,11 +210,11 @@ impl AdcsMeasurements {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 72], Error> {
         let mut bytes = [0; 72];
@@ -1314,71 +1314,101 @@ impl AdcsMeasurements {
     }
 }
 
-const MAGNETIC_FIELD_X: Scale = Scale::new("Magnetic Field X", (-32_768, 32_767), (1, 0, 100));
+const MAGNETIC_FIELD_X: Scale =
+    Scale::new("Magnetic Field X", "-327.68 to 327.67 uT", (-32_768, 32_767), (1, 0, 100));
 
-const MAGNETIC_FIELD_Y: Scale = Scale::new("Magnetic Field Y", (-32_768, 32_767), (1, 0, 100));
+const MAGNETIC_FIELD_Y: Scale =
+    Scale::new("Magnetic Field Y", "-327.68 to 327.67 uT", (-32_768, 32_767), (1, 0, 100));
 
-const MAGNETIC_FIELD_Z: Scale = Scale::new("Magnetic Field Z", (-32_768, 32_767), (1, 0, 100));
+const MAGNETIC_FIELD_Z: Scale =
+    Scale::new("Magnetic Field Z", "-327.68 to 327.67 uT", (-32_768, 32_767), (1, 0, 100));
 
-const COARSE_SUN_X: Scale = Scale::new("Coarse Sun X", (-32_768, 32_767), (1, 0, 10_000));
+const COARSE_SUN_X: Scale =
+    Scale::new("Coarse Sun X", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const COARSE_SUN_Y: Scale = Scale::new("Coarse Sun Y", (-32_768, 32_767), (1, 0, 10_000));
+const COARSE_SUN_Y: Scale =
+    Scale::new("Coarse Sun Y", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const COARSE_SUN_Z: Scale = Scale::new("Coarse Sun Z", (-32_768, 32_767), (1, 0, 10_000));
+const COARSE_SUN_Z: Scale =
+    Scale::new("Coarse Sun Z", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const SUN_X: Scale = Scale::new("Sun X", (-32_768, 32_767), (1, 0, 10_000));
+const SUN_X: Scale = Scale::new("Sun X", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const SUN_Y: Scale = Scale::new("Sun Y", (-32_768, 32_767), (1, 0, 10_000));
+const SUN_Y: Scale = Scale::new("Sun Y", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const SUN_Z: Scale = Scale::new("Sun Z", (-32_768, 32_767), (1, 0, 10_000));
+const SUN_Z: Scale = Scale::new("Sun Z", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const NADIR_X: Scale = Scale::new("Nadir X", (-32_768, 32_767), (1, 0, 10_000));
+const NADIR_X: Scale =
+    Scale::new("Nadir X", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const NADIR_Y: Scale = Scale::new("Nadir Y", (-32_768, 32_767), (1, 0, 10_000));
+const NADIR_Y: Scale =
+    Scale::new("Nadir Y", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const NADIR_Z: Scale = Scale::new("Nadir Z", (-32_768, 32_767), (1, 0, 10_000));
+const NADIR_Z: Scale =
+    Scale::new("Nadir Z", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const X_ANGULAR_RATE: Scale = Scale::new("X Angular Rate", (-32_768, 32_767), (1, 0, 100));
+const X_ANGULAR_RATE: Scale =
+    Scale::new("X Angular Rate", "-327.68 to 327.67 deg/s", (-32_768, 32_767), (1, 0, 100));
 
-const Y_ANGULAR_RATE: Scale = Scale::new("Y Angular Rate", (-32_768, 32_767), (1, 0, 100));
+const Y_ANGULAR_RATE: Scale =
+    Scale::new("Y Angular Rate", "-327.68 to 327.67 deg/s", (-32_768, 32_767), (1, 0, 100));
 
-const Z_ANGULAR_RATE: Scale = Scale::new("Z Angular Rate", (-32_768, 32_767), (1, 0, 100));
+const Z_ANGULAR_RATE: Scale =
+    Scale::new("Z Angular Rate", "-327.68 to 327.67 deg/s", (-32_768, 32_767), (1, 0, 100));
 
-const STAR1_BODY_X: Scale = Scale::new("Star1BX", (-32_768, 32_767), (1, 0, 10_000));
+const STAR1_BODY_X: Scale =
+    Scale::new("Star1BX", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_BODY_Y: Scale = Scale::new("Star1BY", (-32_768, 32_767), (1, 0, 10_000));
+const STAR1_BODY_Y: Scale =
+    Scale::new("Star1BY", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_BODY_Z: Scale = Scale::new("Star1BZ", (-32_768, 32_767), (1, 0, 10_000));
+const STAR1_BODY_Z: Scale =
+    Scale::new("Star1BZ", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_ORBIT_X: Scale = Scale::new("Star1OX", (-32_768, 32_767), (1, 0, 10_000));
+const STAR1_ORBIT_X: Scale =
+    Scale::new("Star1OX", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_ORBIT_Y: Scale = Scale::new("Star1OY", (-32_768, 32_767), (1, 0, 10_000));
+const STAR1_ORBIT_Y: Scale =
+    Scale::new("Star1OY", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_ORBIT_Z: Scale = Scale::new("Star1OZ", (-32_768, 32_767), (1, 0, 10_000));
+const STAR1_ORBIT_Z: Scale =
+    Scale::new("Star1OZ", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_BODY_X: Scale = Scale::new("Star2BX", (-32_768, 32_767), (1, 0, 10_000));
+const STAR2_BODY_X: Scale =
+    Scale::new("Star2BX", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_BODY_Y: Scale = Scale::new("Star2BY", (-32_768, 32_767), (1, 0, 10_000));
+const STAR2_BODY_Y: Scale =
+    Scale::new("Star2BY", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_BODY_Z: Scale = Scale::new("Star2BZ", (-32_768, 32_767), (1, 0, 10_000));
+const STAR2_BODY_Z: Scale =
+    Scale::new("Star2BZ", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_ORBIT_X: Scale = Scale::new("Star2OX", (-32_768, 32_767), (1, 0, 10_000));
+const STAR2_ORBIT_X: Scale =
+    Scale::new("Star2OX", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_ORBIT_Y: Scale = Scale::new("Star2OY", (-32_768, 32_767), (1, 0, 10_000));
+const STAR2_ORBIT_Y: Scale =
+    Scale::new("Star2OY", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_ORBIT_Z: Scale = Scale::new("Star2OZ", (-32_768, 32_767), (1, 0, 10_000));
+const STAR2_ORBIT_Z: Scale =
+    Scale::new("Star2OZ", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_BODY_X: Scale = Scale::new("Star3BX", (-32_768, 32_767), (1, 0, 10_000));
+const STAR3_BODY_X: Scale =
+    Scale::new("Star3BX", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_BODY_Y: Scale = Scale::new("Star3BY", (-32_768, 32_767), (1, 0, 10_000));
+const STAR3_BODY_Y: Scale =
+    Scale::new("Star3BY", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_BODY_Z: Scale = Scale::new("Star3BZ", (-32_768, 32_767), (1, 0, 10_000));
+const STAR3_BODY_Z: Scale =
+    Scale::new("Star3BZ", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_ORBIT_X: Scale = Scale::new("Star3OX", (-32_768, 32_767), (1, 0, 10_000));
+const STAR3_ORBIT_X: Scale =
+    Scale::new("Star3OX", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_ORBIT_Y: Scale = Scale::new("Star3OY", (-32_768, 32_767), (1, 0, 10_000));
+const STAR3_ORBIT_Y: Scale =
+    Scale::new("Star3OY", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_ORBIT_Z: Scale = Scale::new("Star3OZ", (-32_768, 32_767), (1, 0, 10_000));
+const STAR3_ORBIT_Z: Scale =
+    Scale::new("Star3OZ", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(AdcsMeasurements {
     magnetic_field_x: ("Magnetic Field X", 0, 16).unit("uT").scale(&MAGNETIC_FIELD_X),

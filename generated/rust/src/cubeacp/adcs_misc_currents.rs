@@ -76,11 +76,11 @@ impl AdcsMiscCurrents {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -187,12 +187,14 @@ impl AdcsMiscCurrents {
     }
 }
 
-const CUBESTAR_CURRENT: Scale = Scale::new("CubeStarCurrent", (0, 65_535), (1, 0, 100));
+const CUBESTAR_CURRENT: Scale =
+    Scale::new("CubeStarCurrent", "0 to 655.35 mA", (0, 65_535), (1, 0, 100));
 
-const MAGNETORQUER_CURRENT: Scale = Scale::new("Magnetorquer Current", (0, 65_535), (1, 0, 10));
+const MAGNETORQUER_CURRENT: Scale =
+    Scale::new("Magnetorquer Current", "0 to 6553.5 mA", (0, 65_535), (1, 0, 10));
 
 const CUBESTAR_MCU_TEMPERATURE: Scale =
-    Scale::new("CubeStar MCU temperature", (-32_768, 32_767), (1, 0, 100));
+    Scale::new("CubeStar MCU temperature", "-327.68 to 327.67 C", (-32_768, 32_767), (1, 0, 100));
 
 message!(AdcsMiscCurrents {
     cubestar_current: ("CubeStarCurrent", 0, 16).unit("mA").scale(&CUBESTAR_CURRENT),

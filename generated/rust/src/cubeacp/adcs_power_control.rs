@@ -157,32 +157,32 @@ impl AdcsPowerControl {
 }
 
 const CUBECONTROL_SIGNAL_POWER_SELECTION: Scale =
-    Scale::new("CubeControl Signal Power Selection", (0, 3), (1, 0, 1));
+    Scale::new("CubeControl Signal Power Selection", "PowerSelect, 0 to 3", (0, 3), (1, 0, 1));
 
 const CUBECONTROL_MOTOR_POWER_SELECTION: Scale =
-    Scale::new("CubeControl Motor Power Selection", (0, 3), (1, 0, 1));
+    Scale::new("CubeControl Motor Power Selection", "PowerSelect, 0 to 3", (0, 3), (1, 0, 1));
 
 const CUBESENSE1_POWER_SELECTION: Scale =
-    Scale::new("CubeSense1 Power Selection", (0, 3), (1, 0, 1));
+    Scale::new("CubeSense1 Power Selection", "PowerSelect, 0 to 3", (0, 3), (1, 0, 1));
 
 const CUBESENSE2_POWER_SELECTION: Scale =
-    Scale::new("CubeSense2 Power Selection", (0, 3), (1, 0, 1));
+    Scale::new("CubeSense2 Power Selection", "PowerSelect, 0 to 3", (0, 3), (1, 0, 1));
 
 const CUBESTAR_POWER_SELECTION: Scale =
-    Scale::new("CubeStarPower Power Selection", (0, 3), (1, 0, 1));
+    Scale::new("CubeStarPower Power Selection", "PowerSelect, 0 to 3", (0, 3), (1, 0, 1));
 
 const CUBEWHEEL1_POWER_SELECTION: Scale =
-    Scale::new("CubeWheel1Power Power Selection", (0, 3), (1, 0, 1));
+    Scale::new("CubeWheel1Power Power Selection", "PowerSelect, 0 to 3", (0, 3), (1, 0, 1));
 
 const CUBEWHEEL2_POWER_SELECTION: Scale =
-    Scale::new("CubeWheel2Power Power Selection", (0, 3), (1, 0, 1));
+    Scale::new("CubeWheel2Power Power Selection", "PowerSelect, 0 to 3", (0, 3), (1, 0, 1));
 
 const CUBEWHEEL3_POWER_SELECTION: Scale =
-    Scale::new("CubeWheel3Power Power Selection", (0, 3), (1, 0, 1));
+    Scale::new("CubeWheel3Power Power Selection", "PowerSelect, 0 to 3", (0, 3), (1, 0, 1));
 
-const MOTOR_POWER: Scale = Scale::new("Motor Power", (0, 3), (1, 0, 1));
+const MOTOR_POWER: Scale = Scale::new("Motor Power", "PowerSelect, 0 to 3", (0, 3), (1, 0, 1));
 
-const GPS_POWER: Scale = Scale::new("GPS Power", (0, 3), (1, 0, 1));
+const GPS_POWER: Scale = Scale::new("GPS Power", "PowerSelect, 0 to 3", (0, 3), (1, 0, 1));
 
 message!(AdcsPowerControl {
     cubecontrol_signal_power_selection: ("CubeControl Signal Power Selection", 0, 2),

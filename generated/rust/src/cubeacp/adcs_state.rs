@@ -986,52 +986,74 @@ impl AdcsState {
     }
 }
 
-const ATTITUDE_ESTIMATION_MODE: Scale = Scale::new("Attitude Estimation Mode", (0, 15), (1, 0, 1));
+const ATTITUDE_ESTIMATION_MODE: Scale =
+    Scale::new("Attitude Estimation Mode", "EstimModeSelect, 0 to 15", (0, 15), (1, 0, 1));
 
-const CONTROL_MODE: Scale = Scale::new("Control Mode", (0, 15), (1, 0, 1));
+const CONTROL_MODE: Scale =
+    Scale::new("Control Mode", "ConModeSelect, 0 to 15", (0, 15), (1, 0, 1));
 
-const ADCS_RUN_MODE: Scale = Scale::new("ADCS Run Mode", (0, 3), (1, 0, 1));
+const ADCS_RUN_MODE: Scale = Scale::new("ADCS Run Mode", "AdcsRunMode, 0 to 3", (0, 3), (1, 0, 1));
 
-const ASGP4_MODE: Scale = Scale::new("ASGP4 Mode", (0, 3), (1, 0, 1));
+const ASGP4_MODE: Scale = Scale::new("ASGP4 Mode", "Asgp4ModeSelect, 0 to 3", (0, 3), (1, 0, 1));
 
 const CURRENT_MAGNETOMETER_SAMPLING_MODE: Scale =
-    Scale::new("Current Magnetometer Sampling Mode", (0, 3), (1, 0, 1));
+    Scale::new("Current Magnetometer Sampling Mode", "MagModeVal, 0 to 3", (0, 3), (1, 0, 1));
 
 const ESTIMATED_ROLL_ANGLE: Scale =
-    Scale::new("Estimated Roll Angle", (-32_768, 32_767), (1, 0, 100));
+    Scale::new("Estimated Roll Angle", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
 
 const ESTIMATED_PITCH_ANGLE: Scale =
-    Scale::new("Estimated Pitch Angle", (-32_768, 32_767), (1, 0, 100));
+    Scale::new("Estimated Pitch Angle", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
 
 const ESTIMATED_YAW_ANGLE: Scale =
-    Scale::new("Estimated Yaw Angle", (-32_768, 32_767), (1, 0, 100));
+    Scale::new("Estimated Yaw Angle", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
 
-const ESTIMATED_X_ANGULAR_RATE: Scale =
-    Scale::new("Estimated X Angular Rate", (-32_768, 32_767), (1, 0, 100));
+const ESTIMATED_X_ANGULAR_RATE: Scale = Scale::new(
+    "Estimated X Angular Rate",
+    "-327.68 to 327.67 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const ESTIMATED_Y_ANGULAR_RATE: Scale =
-    Scale::new("Estimated Y Angular Rate", (-32_768, 32_767), (1, 0, 100));
+const ESTIMATED_Y_ANGULAR_RATE: Scale = Scale::new(
+    "Estimated Y Angular Rate",
+    "-327.68 to 327.67 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const ESTIMATED_Z_ANGULAR_RATE: Scale =
-    Scale::new("Estimated Z Angular Rate", (-32_768, 32_767), (1, 0, 100));
+const ESTIMATED_Z_ANGULAR_RATE: Scale = Scale::new(
+    "Estimated Z Angular Rate",
+    "-327.68 to 327.67 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const X_POSITION: Scale = Scale::new("X position", (-32_768, 32_767), (1, 0, 4));
+const X_POSITION: Scale =
+    Scale::new("X position", "-8192 to 8191.75 km", (-32_768, 32_767), (1, 0, 4));
 
-const Y_POSITION: Scale = Scale::new("Y position", (-32_768, 32_767), (1, 0, 4));
+const Y_POSITION: Scale =
+    Scale::new("Y position", "-8192 to 8191.75 km", (-32_768, 32_767), (1, 0, 4));
 
-const Z_POSITION: Scale = Scale::new("Z position", (-32_768, 32_767), (1, 0, 4));
+const Z_POSITION: Scale =
+    Scale::new("Z position", "-8192 to 8191.75 km", (-32_768, 32_767), (1, 0, 4));
 
-const X_VELOCITY: Scale = Scale::new("X Velocity", (-32_768, 32_767), (1, 0, 4));
+const X_VELOCITY: Scale =
+    Scale::new("X Velocity", "-8192 to 8191.75 m/s", (-32_768, 32_767), (1, 0, 4));
 
-const Y_VELOCITY: Scale = Scale::new("Y Velocity", (-32_768, 32_767), (1, 0, 4));
+const Y_VELOCITY: Scale =
+    Scale::new("Y Velocity", "-8192 to 8191.75 m/s", (-32_768, 32_767), (1, 0, 4));
 
-const Z_VELOCITY: Scale = Scale::new("Z Velocity", (-32_768, 32_767), (1, 0, 4));
+const Z_VELOCITY: Scale =
+    Scale::new("Z Velocity", "-8192 to 8191.75 m/s", (-32_768, 32_767), (1, 0, 4));
 
-const LATITUDE: Scale = Scale::new("Latitude", (-32_768, 32_767), (1, 0, 100));
+const LATITUDE: Scale =
+    Scale::new("Latitude", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
 
-const LONGITUDE: Scale = Scale::new("Longitude", (-32_768, 32_767), (1, 0, 100));
+const LONGITUDE: Scale =
+    Scale::new("Longitude", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
 
-const ALTITUDE: Scale = Scale::new("Altitude", (0, 65_535), (1, 0, 100));
+const ALTITUDE: Scale = Scale::new("Altitude", "0 to 655.35 km", (0, 65_535), (1, 0, 100));
 
 message!(AdcsState {
     attitude_estimation_mode: ("Attitude Estimation Mode", 0, 4),

@@ -476,52 +476,72 @@ impl AdcsSystemConfiguration {
     }
 }
 
-const ACP_TYPE: Scale = Scale::new("ACP Type", (0, 15), (1, 0, 1));
+const ACP_TYPE: Scale = Scale::new("ACP Type", "AcpProgramType, 0 to 15", (0, 15), (1, 0, 1));
 
 const SPECIAL_CONTROL_SELECTION: Scale =
-    Scale::new("Special Control Selection", (0, 15), (1, 0, 1));
+    Scale::new("Special Control Selection", "SpecialConSelect, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBESENSE1_CAMERA_TYPE: Scale = Scale::new("CubeSense1 Camera Type", (0, 15), (1, 0, 1));
+const CUBESENSE1_CAMERA_TYPE: Scale =
+    Scale::new("CubeSense1 Camera Type", "CsCamType, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBESENSE2_CAMERA_TYPE: Scale = Scale::new("CubeSense2 Camera Type", (0, 15), (1, 0, 1));
+const CUBESENSE2_CAMERA_TYPE: Scale =
+    Scale::new("CubeSense2 Camera Type", "CsCamType, 0 to 15", (0, 15), (1, 0, 1));
 
-const GPS_TYPE: Scale = Scale::new("GPS Type", (0, 15), (1, 0, 1));
+const GPS_TYPE: Scale = Scale::new("GPS Type", "GpsSelect, 0 to 15", (0, 15), (1, 0, 1));
 
-const CC_SIGNAL_ENABLE_PORT: Scale = Scale::new("CC Signal Enable Port", (0, 15), (1, 0, 1));
+const CC_SIGNAL_ENABLE_PORT: Scale =
+    Scale::new("CC Signal Enable Port", "GpioPort, 0 to 15", (0, 15), (1, 0, 1));
 
-const CC_SIGNAL_ENABLE_PIN: Scale = Scale::new("CC Signal Enable Pin", (0, 15), (1, 0, 1));
+const CC_SIGNAL_ENABLE_PIN: Scale =
+    Scale::new("CC Signal Enable Pin", "GpioPortPin, 0 to 15", (0, 15), (1, 0, 1));
 
-const CC_MOTOR_ENABLE_PORT: Scale = Scale::new("CC Motor Enable Port", (0, 15), (1, 0, 1));
+const CC_MOTOR_ENABLE_PORT: Scale =
+    Scale::new("CC Motor Enable Port", "GpioPort, 0 to 15", (0, 15), (1, 0, 1));
 
-const CC_MOTOR_ENABLE_PIN: Scale = Scale::new("CC Motor Enable Pin", (0, 15), (1, 0, 1));
+const CC_MOTOR_ENABLE_PIN: Scale =
+    Scale::new("CC Motor Enable Pin", "GpioPortPin, 0 to 15", (0, 15), (1, 0, 1));
 
-const CC_COMMON_ENABLE_PORT: Scale = Scale::new("CC Common Enable Port", (0, 15), (1, 0, 1));
+const CC_COMMON_ENABLE_PORT: Scale =
+    Scale::new("CC Common Enable Port", "GpioPort, 0 to 15", (0, 15), (1, 0, 1));
 
-const CC_COMMON_ENABLE_PIN: Scale = Scale::new("CC Common Enable Pin", (0, 15), (1, 0, 1));
+const CC_COMMON_ENABLE_PIN: Scale =
+    Scale::new("CC Common Enable Pin", "GpioPortPin, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBESENSE1_ENABLE_PORT: Scale = Scale::new("CubeSense1 Enable Port", (0, 15), (1, 0, 1));
+const CUBESENSE1_ENABLE_PORT: Scale =
+    Scale::new("CubeSense1 Enable Port", "GpioPort, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBESENSE1_ENABLE_PIN: Scale = Scale::new("CubeSense1 Enable Pin", (0, 15), (1, 0, 1));
+const CUBESENSE1_ENABLE_PIN: Scale =
+    Scale::new("CubeSense1 Enable Pin", "GpioPortPin, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBESENSE2_ENABLE_PORT: Scale = Scale::new("CubeSense2 Enable Port", (0, 15), (1, 0, 1));
+const CUBESENSE2_ENABLE_PORT: Scale =
+    Scale::new("CubeSense2 Enable Port", "GpioPort, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBESENSE2_ENABLE_PIN: Scale = Scale::new("CubeSense2 Enable Pin", (0, 15), (1, 0, 1));
+const CUBESENSE2_ENABLE_PIN: Scale =
+    Scale::new("CubeSense2 Enable Pin", "GpioPortPin, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBESTAR_ENABLE_PORT: Scale = Scale::new("CubeStar Enable Port", (0, 15), (1, 0, 1));
+const CUBESTAR_ENABLE_PORT: Scale =
+    Scale::new("CubeStar Enable Port", "GpioPort, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBESTAR_ENABLE_PIN: Scale = Scale::new("CubeStar Enable Pin", (0, 15), (1, 0, 1));
+const CUBESTAR_ENABLE_PIN: Scale =
+    Scale::new("CubeStar Enable Pin", "GpioPortPin, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBEWHEEL1_ENABLE_PORT: Scale = Scale::new("CubeWheel1 Enable Port", (0, 15), (1, 0, 1));
+const CUBEWHEEL1_ENABLE_PORT: Scale =
+    Scale::new("CubeWheel1 Enable Port", "GpioPort, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBEWHEEL1_ENABLE_PIN: Scale = Scale::new("CubeWheel1 Enable Pin", (0, 15), (1, 0, 1));
+const CUBEWHEEL1_ENABLE_PIN: Scale =
+    Scale::new("CubeWheel1 Enable Pin", "GpioPortPin, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBEWHEEL2_ENABLE_PORT: Scale = Scale::new("CubeWheel2 Enable Port", (0, 15), (1, 0, 1));
+const CUBEWHEEL2_ENABLE_PORT: Scale =
+    Scale::new("CubeWheel2 Enable Port", "GpioPort, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBEWHEEL2_ENABLE_PIN: Scale = Scale::new("CubeWheel2 Enable Pin", (0, 15), (1, 0, 1));
+const CUBEWHEEL2_ENABLE_PIN: Scale =
+    Scale::new("CubeWheel2 Enable Pin", "GpioPortPin, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBEWHEEL3_ENABLE_PORT: Scale = Scale::new("CubeWheel3 Enable Port", (0, 15), (1, 0, 1));
+const CUBEWHEEL3_ENABLE_PORT: Scale =
+    Scale::new("CubeWheel3 Enable Port", "GpioPort, 0 to 15", (0, 15), (1, 0, 1));
 
-const CUBEWHEEL3_ENABLE_PIN: Scale = Scale::new("CubeWheel3 Enable Pin", (0, 15), (1, 0, 1));
+const CUBEWHEEL3_ENABLE_PIN: Scale =
+    Scale::new("CubeWheel3 Enable Pin", "GpioPortPin, 0 to 15", (0, 15), (1, 0, 1));
 
 message!(AdcsSystemConfiguration {
     acp_type: ("ACP Type", 0, 4),

@@ -80,11 +80,11 @@ impl AdcsTemperatures {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -160,10 +160,14 @@ impl AdcsTemperatures {
 }
 
 const MAGNETOMETER_TEMPERATURE: Scale =
-    Scale::new("Magnetometer Temperature", (-32_768, 32_767), (1, 0, 10));
+    Scale::new("Magnetometer Temperature", "-3276.8 to 3276.7 C", (-32_768, 32_767), (1, 0, 10));
 
-const REDUNDANT_MAG_TEMPERATURE: Scale =
-    Scale::new("Redundant Magnetometer Temperature", (-32_768, 32_767), (1, 0, 10));
+const REDUNDANT_MAG_TEMPERATURE: Scale = Scale::new(
+    "Redundant Magnetometer Temperature",
+    "-3276.8 to 3276.7 C",
+    (-32_768, 32_767),
+    (1, 0, 10),
+);
 
 message!(AdcsTemperatures {
     mcu_temperature: ("MCU Temperature", 0, 16).unit("C"),

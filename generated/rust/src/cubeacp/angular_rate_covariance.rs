@@ -72,11 +72,11 @@ impl AngularRateCovariance {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -184,13 +184,13 @@ impl AngularRateCovariance {
 }
 
 const X_ANGULAR_RATE_COVARIANCE: Scale =
-    Scale::new("X Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("X Angular Rate Covariance", "-32.768 to 32.767", (-32_768, 32_767), (1, 0, 1_000));
 
 const Y_ANGULAR_RATE_COVARIANCE: Scale =
-    Scale::new("Y Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("Y Angular Rate Covariance", "-32.768 to 32.767", (-32_768, 32_767), (1, 0, 1_000));
 
 const Z_ANGULAR_RATE_COVARIANCE: Scale =
-    Scale::new("Z Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("Z Angular Rate Covariance", "-32.768 to 32.767", (-32_768, 32_767), (1, 0, 1_000));
 
 message!(AngularRateCovariance {
     x_angular_rate_covariance: ("X Angular Rate Covariance", 0, 16)

@@ -134,7 +134,7 @@ impl Asgp4Tles {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
@@ -157,7 +157,7 @@ impl Asgp4Tles {
     }
 }
 
-const ASGP4_ERROR: Scale = Scale::new("ASGP4 error", (0, 127), (1, 0, 1));
+const ASGP4_ERROR: Scale = Scale::new("ASGP4 error", "AsgpError, 0 to 127", (0, 127), (1, 0, 1));
 
 message!(Asgp4Tles {
     asgp4_complete: ("ASGP4 complete", 0, 1),

@@ -186,11 +186,11 @@ impl AugmentedSgp4Parameters {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 30], Error> {
         let mut bytes = [0; 30];
@@ -605,33 +605,48 @@ impl AugmentedSgp4Parameters {
     }
 }
 
-const INCL_COEFFICIENT: Scale = Scale::new("Incl. coefficient", (0, 65_535), (1, 0, 1_000));
+const INCL_COEFFICIENT: Scale =
+    Scale::new("Incl. coefficient", "0 to 65.535", (0, 65_535), (1, 0, 1_000));
 
-const RAAN_COEFFICIENT: Scale = Scale::new("Raan coefficient", (0, 65_535), (1, 0, 1_000));
+const RAAN_COEFFICIENT: Scale =
+    Scale::new("Raan coefficient", "0 to 65.535", (0, 65_535), (1, 0, 1_000));
 
-const ECC_COEFFICIENT: Scale = Scale::new("Ecc coefficient", (0, 65_535), (1, 0, 1_000));
+const ECC_COEFFICIENT: Scale =
+    Scale::new("Ecc coefficient", "0 to 65.535", (0, 65_535), (1, 0, 1_000));
 
-const AOP_COEFFICIENT: Scale = Scale::new("Aop coefficient", (0, 65_535), (1, 0, 1_000));
+const AOP_COEFFICIENT: Scale =
+    Scale::new("Aop coefficient", "0 to 65.535", (0, 65_535), (1, 0, 1_000));
 
-const TIME_COEFFICIENT: Scale = Scale::new("Time coefficient", (0, 65_535), (1, 0, 1_000));
+const TIME_COEFFICIENT: Scale =
+    Scale::new("Time coefficient", "0 to 65.535", (0, 65_535), (1, 0, 1_000));
 
-const POS_COEFFICIENT: Scale = Scale::new("Pos coefficient", (0, 65_535), (1, 0, 1_000));
+const POS_COEFFICIENT: Scale =
+    Scale::new("Pos coefficient", "0 to 65.535", (0, 65_535), (1, 0, 1_000));
 
-const MAXIMUM_POSITION_ERROR: Scale = Scale::new("Maximum position error", (0, 255), (1, 0, 10));
+const MAXIMUM_POSITION_ERROR: Scale =
+    Scale::new("Maximum position error", "0 to 25.5", (0, 255), (1, 0, 10));
 
-const XP_COEFFICIENT: Scale =
-    Scale::new("xp coefficient", (-2_147_483_648, 2_147_483_647), (1, 0, 10_000_000));
+const XP_COEFFICIENT: Scale = Scale::new(
+    "xp coefficient",
+    "-214.7483648 to 214.7483647",
+    (-2_147_483_648, 2_147_483_647),
+    (1, 0, 10_000_000),
+);
 
-const YP_COEFFICIENT: Scale =
-    Scale::new("yp coefficient", (-2_147_483_648, 2_147_483_647), (1, 0, 10_000_000));
+const YP_COEFFICIENT: Scale = Scale::new(
+    "yp coefficient",
+    "-214.7483648 to 214.7483647",
+    (-2_147_483_648, 2_147_483_647),
+    (1, 0, 10_000_000),
+);
 
-const POSITION_SD: Scale = Scale::new("Position sd", (0, 255), (1, 0, 10));
+const POSITION_SD: Scale = Scale::new("Position sd", "0 to 25.5", (0, 255), (1, 0, 10));
 
-const VELOCITY_SD: Scale = Scale::new("Velocity sd", (0, 255), (1, 0, 100));
+const VELOCITY_SD: Scale = Scale::new("Velocity sd", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const TIME_GAIN: Scale = Scale::new("Time gain", (0, 255), (1, 0, 100));
+const TIME_GAIN: Scale = Scale::new("Time gain", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const MAX_LAG: Scale = Scale::new("Max. lag", (0, 255), (1, 0, 100));
+const MAX_LAG: Scale = Scale::new("Max. lag", "0 to 2.55", (0, 255), (1, 0, 100));
 
 message!(AugmentedSgp4Parameters {
     incl_coefficient: ("Incl. coefficient", 0, 16).scale(&INCL_COEFFICIENT),

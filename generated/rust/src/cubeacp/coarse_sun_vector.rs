@@ -68,11 +68,11 @@ impl CoarseSunVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -179,11 +179,14 @@ impl CoarseSunVector {
     }
 }
 
-const COARSE_SUN_X: Scale = Scale::new("Coarse Sun X", (-32_768, 32_767), (1, 0, 10_000));
+const COARSE_SUN_X: Scale =
+    Scale::new("Coarse Sun X", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const COARSE_SUN_Y: Scale = Scale::new("Coarse Sun Y", (-32_768, 32_767), (1, 0, 10_000));
+const COARSE_SUN_Y: Scale =
+    Scale::new("Coarse Sun Y", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const COARSE_SUN_Z: Scale = Scale::new("Coarse Sun Z", (-32_768, 32_767), (1, 0, 10_000));
+const COARSE_SUN_Z: Scale =
+    Scale::new("Coarse Sun Z", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(CoarseSunVector {
     coarse_sun_x: ("Coarse Sun X", 0, 16).scale(&COARSE_SUN_X),

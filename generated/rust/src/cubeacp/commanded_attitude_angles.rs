@@ -69,11 +69,11 @@ impl CommandedAttitudeAngles {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -181,13 +181,13 @@ impl CommandedAttitudeAngles {
 }
 
 const COMMANDED_ROLL_ANGLE: Scale =
-    Scale::new("Commanded Roll Angle", (-32_768, 32_767), (1, 0, 100));
+    Scale::new("Commanded Roll Angle", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
 
 const COMMANDED_PITCH_ANGLE: Scale =
-    Scale::new("Commanded Pitch Angle", (-32_768, 32_767), (1, 0, 100));
+    Scale::new("Commanded Pitch Angle", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
 
 const COMMANDED_YAW_ANGLE: Scale =
-    Scale::new("Commanded Yaw Angle", (-32_768, 32_767), (1, 0, 100));
+    Scale::new("Commanded Yaw Angle", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
 
 message!(CommandedAttitudeAngles {
     commanded_roll_angle: ("Commanded Roll Angle", 0, 16).unit("deg").scale(&COMMANDED_ROLL_ANGLE),

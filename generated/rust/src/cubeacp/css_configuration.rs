@@ -124,11 +124,11 @@ impl CssConfiguration {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 21], Error> {
         let mut bytes = [0; 21];
@@ -477,25 +477,35 @@ impl CssConfiguration {
     }
 }
 
-const CSS1_RELATIVE_SCALE: Scale = Scale::new("CSS1 Relative Scale", (0, 255), (1, 0, 100));
+const CSS1_RELATIVE_SCALE: Scale =
+    Scale::new("CSS1 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS2_RELATIVE_SCALE: Scale = Scale::new("CSS2 Relative Scale", (0, 255), (1, 0, 100));
+const CSS2_RELATIVE_SCALE: Scale =
+    Scale::new("CSS2 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS3_RELATIVE_SCALE: Scale = Scale::new("CSS3 Relative Scale", (0, 255), (1, 0, 100));
+const CSS3_RELATIVE_SCALE: Scale =
+    Scale::new("CSS3 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS4_RELATIVE_SCALE: Scale = Scale::new("CSS4 Relative Scale", (0, 255), (1, 0, 100));
+const CSS4_RELATIVE_SCALE: Scale =
+    Scale::new("CSS4 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS5_RELATIVE_SCALE: Scale = Scale::new("CSS5 Relative Scale", (0, 255), (1, 0, 100));
+const CSS5_RELATIVE_SCALE: Scale =
+    Scale::new("CSS5 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS6_RELATIVE_SCALE: Scale = Scale::new("CSS6 Relative Scale", (0, 255), (1, 0, 100));
+const CSS6_RELATIVE_SCALE: Scale =
+    Scale::new("CSS6 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS7_RELATIVE_SCALE: Scale = Scale::new("CSS7 Relative Scale", (0, 255), (1, 0, 100));
+const CSS7_RELATIVE_SCALE: Scale =
+    Scale::new("CSS7 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS8_RELATIVE_SCALE: Scale = Scale::new("CSS8 Relative Scale", (0, 255), (1, 0, 100));
+const CSS8_RELATIVE_SCALE: Scale =
+    Scale::new("CSS8 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS9_RELATIVE_SCALE: Scale = Scale::new("CSS9 Relative Scale", (0, 255), (1, 0, 100));
+const CSS9_RELATIVE_SCALE: Scale =
+    Scale::new("CSS9 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const CSS10_RELATIVE_SCALE: Scale = Scale::new("CSS10 Relative Scale", (0, 255), (1, 0, 100));
+const CSS10_RELATIVE_SCALE: Scale =
+    Scale::new("CSS10 Relative Scale", "0 to 2.55", (0, 255), (1, 0, 100));
 
 message!(CssConfiguration {
     css1_configuration: ("CSS1 Configuration", 0, 8),

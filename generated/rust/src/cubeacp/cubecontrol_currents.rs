@@ -65,11 +65,11 @@ impl CubecontrolCurrents {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -138,13 +138,13 @@ impl CubecontrolCurrents {
 }
 
 const CUBECONTROL_3V3_CURRENT: Scale =
-    Scale::new("CubeControl 3V3 Current", (0, 65_535), (125, 0, 256));
+    Scale::new("CubeControl 3V3 Current", "0 to 31999.51171875 mA", (0, 65_535), (125, 0, 256));
 
 const CUBECONTROL_5V_CURRENT: Scale =
-    Scale::new("CubeControl 5V Current", (0, 65_535), (125, 0, 256));
+    Scale::new("CubeControl 5V Current", "0 to 31999.51171875 mA", (0, 65_535), (125, 0, 256));
 
 const CUBECONTROL_VBAT_CURRENT: Scale =
-    Scale::new("CubeControl Vbat Current", (0, 65_535), (125, 0, 256));
+    Scale::new("CubeControl Vbat Current", "0 to 31999.51171875 mA", (0, 65_535), (125, 0, 256));
 
 message!(CubecontrolCurrents {
     cubecontrol_3v3_current: ("CubeControl 3V3 Current", 0, 16)

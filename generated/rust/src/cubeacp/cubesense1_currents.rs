@@ -64,11 +64,11 @@ impl Cubesense1Currents {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 4], Error> {
         let mut bytes = [0; 4];
@@ -142,10 +142,11 @@ impl Cubesense1Currents {
     }
 }
 
-const CUBESENSE1_3V3_CURRENT: Scale = Scale::new("CubeSense1 3V3 Current", (0, 65_535), (1, 0, 10));
+const CUBESENSE1_3V3_CURRENT: Scale =
+    Scale::new("CubeSense1 3V3 Current", "0 to 6553.5 mA", (0, 65_535), (1, 0, 10));
 
 const CUBESENSE1_CAM_SRAM_CURRENT: Scale =
-    Scale::new("CubeSense1 Cam SRAM Current", (0, 65_535), (1, 0, 10));
+    Scale::new("CubeSense1 Cam SRAM Current", "0 to 6553.5 mA", (0, 65_535), (1, 0, 10));
 
 message!(Cubesense1Currents {
     cubesense1_3v3_current: ("CubeSense1 3V3 Current", 0, 16)

@@ -67,11 +67,11 @@ impl Cubesense2Currents {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 4], Error> {
         let mut bytes = [0; 4];
@@ -145,10 +145,11 @@ impl Cubesense2Currents {
     }
 }
 
-const CUBESENSE2_3V3_CURRENT: Scale = Scale::new("CubeSense2 3V3 Current", (0, 65_535), (1, 0, 10));
+const CUBESENSE2_3V3_CURRENT: Scale =
+    Scale::new("CubeSense2 3V3 Current", "0 to 6553.5 mA", (0, 65_535), (1, 0, 10));
 
 const CUBESENSE2_CAM_SRAM_CURRENT: Scale =
-    Scale::new("CubeSense2 Cam SRAM Current", (0, 65_535), (1, 0, 10));
+    Scale::new("CubeSense2 Cam SRAM Current", "0 to 6553.5 mA", (0, 65_535), (1, 0, 10));
 
 message!(Cubesense2Currents {
     cubesense2_3v3_current: ("CubeSense2 3V3 Current", 0, 16)

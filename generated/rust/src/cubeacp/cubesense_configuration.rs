@@ -384,7 +384,7 @@ impl CubesenseConfiguration {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 112], Error> {
         let mut bytes = [0; 112];
@@ -772,31 +772,59 @@ impl CubesenseConfiguration {
     }
 }
 
-const CAM1_MOUNTING_ALPHA: Scale =
-    Scale::new("Cam1 Sensor Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+const CAM1_MOUNTING_ALPHA: Scale = Scale::new(
+    "Cam1 Sensor Mounting Transform Alpha Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const CAM1_MOUNTING_BETA: Scale =
-    Scale::new("Cam1 Sensor Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+const CAM1_MOUNTING_BETA: Scale = Scale::new(
+    "Cam1 Sensor Mounting Transform Beta Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const CAM1_MOUNTING_GAMMA: Scale =
-    Scale::new("Cam1 Sensor Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+const CAM1_MOUNTING_GAMMA: Scale = Scale::new(
+    "Cam1 Sensor Mounting Transform Gamma Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const CAM1_BORESIGHT_X: Scale = Scale::new("Cam1 Boresight X", (0, 65_535), (1, 0, 100));
+const CAM1_BORESIGHT_X: Scale =
+    Scale::new("Cam1 Boresight X", "0 to 655.35 pixels", (0, 65_535), (1, 0, 100));
 
-const CAM1_BORESIGHT_Y: Scale = Scale::new("Cam1 Boresight Y", (0, 65_535), (1, 0, 100));
+const CAM1_BORESIGHT_Y: Scale =
+    Scale::new("Cam1 Boresight Y", "0 to 655.35 pixels", (0, 65_535), (1, 0, 100));
 
-const CAM2_MOUNTING_ALPHA: Scale =
-    Scale::new("Cam2 Sensor Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+const CAM2_MOUNTING_ALPHA: Scale = Scale::new(
+    "Cam2 Sensor Mounting Transform Alpha Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const CAM2_MOUNTING_BETA: Scale =
-    Scale::new("Cam2 Sensor Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+const CAM2_MOUNTING_BETA: Scale = Scale::new(
+    "Cam2 Sensor Mounting Transform Beta Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const CAM2_MOUNTING_GAMMA: Scale =
-    Scale::new("Cam2 Sensor Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+const CAM2_MOUNTING_GAMMA: Scale = Scale::new(
+    "Cam2 Sensor Mounting Transform Gamma Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const CAM2_BORESIGHT_X: Scale = Scale::new("Cam2 Boresight X", (0, 65_535), (1, 0, 100));
+const CAM2_BORESIGHT_X: Scale =
+    Scale::new("Cam2 Boresight X", "0 to 655.35 pixels", (0, 65_535), (1, 0, 100));
 
-const CAM2_BORESIGHT_Y: Scale = Scale::new("Cam2 Boresight Y", (0, 65_535), (1, 0, 100));
+const CAM2_BORESIGHT_Y: Scale =
+    Scale::new("Cam2 Boresight Y", "0 to 655.35 pixels", (0, 65_535), (1, 0, 100));
 
 message!(CubesenseConfiguration {
     cam1_mounting_alpha: ("Cam1 Sensor Mounting Transform Alpha Angle", 0, 16)

@@ -79,11 +79,11 @@ impl CubestarEstimatedQuaternion {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -190,11 +190,11 @@ impl CubestarEstimatedQuaternion {
     }
 }
 
-const Q0: Scale = Scale::new("Q0", (-32_768, 32_767), (1, 0, 10_000));
+const Q0: Scale = Scale::new("Q0", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const Q1: Scale = Scale::new("Q1", (-32_768, 32_767), (1, 0, 10_000));
+const Q1: Scale = Scale::new("Q1", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const Q2: Scale = Scale::new("Q2", (-32_768, 32_767), (1, 0, 10_000));
+const Q2: Scale = Scale::new("Q2", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(CubestarEstimatedQuaternion {
     q0: ("Q0", 0, 16).scale(&Q0),

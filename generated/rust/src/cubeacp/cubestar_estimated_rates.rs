@@ -75,11 +75,11 @@ impl CubestarEstimatedRates {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -186,11 +186,14 @@ impl CubestarEstimatedRates {
     }
 }
 
-const X_AXIS_RATE: Scale = Scale::new("x-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
+const X_AXIS_RATE: Scale =
+    Scale::new("x-Axis rate", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const Y_AXIS_RATE: Scale = Scale::new("y-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
+const Y_AXIS_RATE: Scale =
+    Scale::new("y-Axis rate", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const Z_AXIS_RATE: Scale = Scale::new("z-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
+const Z_AXIS_RATE: Scale =
+    Scale::new("z-Axis rate", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(CubestarEstimatedRates {
     x_axis_rate: ("x-Axis rate", 0, 16).scale(&X_AXIS_RATE),

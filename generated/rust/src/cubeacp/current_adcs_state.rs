@@ -247,7 +247,7 @@ impl CurrentAdcsState {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
@@ -303,13 +303,15 @@ impl CurrentAdcsState {
     }
 }
 
-const ATTITUDE_ESTIMATION_MODE: Scale = Scale::new("Attitude Estimation Mode", (0, 15), (1, 0, 1));
+const ATTITUDE_ESTIMATION_MODE: Scale =
+    Scale::new("Attitude Estimation Mode", "EstimModeSelect, 0 to 15", (0, 15), (1, 0, 1));
 
-const CONTROL_MODE: Scale = Scale::new("Control Mode", (0, 15), (1, 0, 1));
+const CONTROL_MODE: Scale =
+    Scale::new("Control Mode", "ConModeSelect, 0 to 15", (0, 15), (1, 0, 1));
 
-const ADCS_RUN_MODE: Scale = Scale::new("ADCS Run Mode", (0, 3), (1, 0, 1));
+const ADCS_RUN_MODE: Scale = Scale::new("ADCS Run Mode", "AdcsRunMode, 0 to 3", (0, 3), (1, 0, 1));
 
-const ASGP4_MODE: Scale = Scale::new("ASGP4 Mode", (0, 3), (1, 0, 1));
+const ASGP4_MODE: Scale = Scale::new("ASGP4 Mode", "Asgp4ModeSelect, 0 to 3", (0, 3), (1, 0, 1));
 
 message!(CurrentAdcsState {
     attitude_estimation_mode: ("Attitude Estimation Mode", 0, 4),

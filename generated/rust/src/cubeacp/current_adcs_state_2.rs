@@ -171,7 +171,7 @@ impl CurrentAdcsState2 {
 }
 
 const CURRENT_MAGNETOMETER_SAMPLING_MODE: Scale =
-    Scale::new("Current Magnetometer Sampling Mode", (0, 3), (1, 0, 1));
+    Scale::new("Current Magnetometer Sampling Mode", "MagModeVal, 0 to 3", (0, 3), (1, 0, 1));
 
 message!(CurrentAdcsState2 {
     orbit_parameters_are_invalid: ("Orbit Parameters are Invalid", 0, 1),

@@ -6,6 +6,8 @@ use crate::support::enumeration;
 
 /// AdcsRunMode: an enumeration. Table 75.
 ///
+/// Held by Enabled in ADCS Run Mode; ADCS Run Mode in Current ADCS State and ADCS State.
+///
 /// ```
 /// use icd::cubeacp::enums::AdcsRunMode;
 ///
@@ -88,6 +90,8 @@ impl From<u8> for AdcsRunMode {
 enumeration!(AdcsRunMode: u8);
 
 /// ConModeSelect: an enumeration. Table 78.
+///
+/// Held by Control Mode in Set Attitude Control Mode, Current ADCS State and ADCS State.
 ///
 /// Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control
 /// mode has a reference vector, and GEO tracking, inertial and two sun pointing modes are special
@@ -271,6 +275,9 @@ enumeration!(ConModeSelect: u8);
 
 /// EstimModeSelect: an enumeration. Table 80.
 ///
+/// Held by Attitude Estimation Mode in Set Attitude Estimation Mode, Current ADCS State and ADCS
+/// State.
+///
 /// ```
 /// use icd::cubeacp::enums::EstimModeSelect;
 ///
@@ -367,6 +374,9 @@ impl From<u8> for EstimModeSelect {
 enumeration!(EstimModeSelect: u8);
 
 /// GpsSolutionStatus: an enumeration. Table 85.
+///
+/// Held by Gps Solution Status in Trigger ADCS Loop with Simulated Sensor Data, Raw GPS Status and
+/// Raw GPS Measurements.
 ///
 /// Note ACP-045 (open): One GPS status for different receivers. The enumeration is used whatever
 /// receiver is fitted; three types are listed, among them none. Whether the values are those of the
@@ -481,6 +491,8 @@ enumeration!(GpsSolutionStatus: u8);
 
 /// Asgp4ModeSelect: an enumeration. Table 87.
 ///
+/// Held by ASGP4 Mode in ASGP4 Run Mode, Current ADCS State and ADCS State.
+///
 /// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
 /// module are spelt in four ways.
 ///
@@ -561,6 +573,10 @@ enumeration!(Asgp4ModeSelect: u8);
 ///
 /// MTM is the magnetometer, Signal and Motor are the microcontrollers that sample it.
 ///
+/// Held by Magnetometer Mode in Set Mode of Magnetometer Operation, ADCS Configuration and
+/// Estimation Parameters; Current Magnetometer Sampling Mode in ADCS State and Current ADCS State
+/// 2; Magnetometer Selection for RAW MTM TLM in ADCS Configuration and Estimation Parameters.
+///
 /// Note ACP-050 (open): MagModeVal: one combination is missing, and None is not explained. The
 /// redundant magnetometer cannot be sampled through the motor controller, the main one can. What
 /// None does to estimation and control is not said.
@@ -639,6 +655,8 @@ enumeration!(MagModeVal: u8);
 
 /// CamSelect: an enumeration. Table 95.
 ///
+/// Held by Camera Select in Save Image.
+///
 /// Note ACP-056 (likely): Cameras: Cam, CubeSense, and star. Cam1 and Cam2 appear beside CubeSense1
 /// and CubeSense2, once as Cam 1; the third camera is Star, CubeStar or star tracker. That CamN is
 /// the camera of CubeSenseN is only likely.
@@ -706,6 +724,8 @@ impl From<u8> for CamSelect {
 enumeration!(CamSelect: u8);
 
 /// ImSize: an enumeration. Table 96.
+///
+/// Held by Image Size in Save Image.
 ///
 /// ```
 /// use icd::cubeacp::enums::ImSize;
@@ -791,6 +811,8 @@ enumeration!(ImSize: u8);
 
 /// JpgConvertResult: an enumeration. Table 100.
 ///
+/// Held by Conversion Result in JPG Conversion Progress.
+///
 /// ```
 /// use icd::cubeacp::enums::JpgConvertResult;
 ///
@@ -859,6 +881,9 @@ impl From<u8> for JpgConvertResult {
 enumeration!(JpgConvertResult: u8);
 
 /// CaptureResult: an enumeration. Table 123.
+///
+/// Held by Cam2 Capture status in Raw Cam2 Sensor and Raw Sensor Measurements; Cam1 Capture status
+/// in Raw Cam1 Sensor and Raw Sensor Measurements.
 ///
 /// ```
 /// use icd::cubeacp::enums::CaptureResult;
@@ -942,6 +967,9 @@ impl From<u8> for CaptureResult {
 enumeration!(CaptureResult: u8);
 
 /// DetectResult: an enumeration. Table 124.
+///
+/// Held by Cam2 Detection result in Raw Cam2 Sensor and Raw Sensor Measurements; Cam1 Detection
+/// result in Raw Cam1 Sensor and Raw Sensor Measurements.
 ///
 /// ```
 /// use icd::cubeacp::enums::DetectResult;
@@ -1042,6 +1070,8 @@ enumeration!(DetectResult: u8);
 
 /// StarIDModeVal: an enumeration. Table 147.
 ///
+/// Held by Identification mode in Star Performance1 and Raw Star Tracker.
+///
 /// Note ACP-097 (open): StarIDModeVal is not described. The members of the identification mode have
 /// no descriptions; Lost Mode may be the lost-in-space search or a lost track.
 ///
@@ -1103,6 +1133,8 @@ impl From<u8> for StarIdModeVal {
 enumeration!(StarIdModeVal: u8);
 
 /// ExecutionWaypoints: an enumeration. Table 168.
+///
+/// Held by Current Execution Point in ACP Execution State.
 ///
 /// ```
 /// use icd::cubeacp::enums::ExecutionWaypoints;
@@ -1224,6 +1256,8 @@ enumeration!(ExecutionWaypoints: u8);
 
 /// AsgpError: an enumeration. Table 171.
 ///
+/// Held by ASGP4 error in ASGP4 TLEs.
+///
 /// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
 /// module are spelt in four ways.
 ///
@@ -1305,6 +1339,8 @@ enumeration!(AsgpError: u8);
 
 /// ImSaveStatus: an enumeration. Table 177.
 ///
+/// Held by Status in Status of Image Capture and Save Operation.
+///
 /// ```
 /// use icd::cubeacp::enums::ImSaveStatus;
 ///
@@ -1380,6 +1416,12 @@ impl From<u8> for ImSaveStatus {
 enumeration!(ImSaveStatus: u8);
 
 /// AxisSelect: an enumeration. Table 180.
+///
+/// Held by Magnetorquer 1 Configuration in Set Magnetorquer Configuration and ADCS Configuration;
+/// Magnetorquer 2 Configuration in Set Magnetorquer Configuration and ADCS Configuration;
+/// Magnetorquer 3 Configuration in Set Magnetorquer Configuration and ADCS Configuration; RW1
+/// Configuration in Set Wheel Configuration and ADCS Configuration; RW2 Configuration in Set Wheel
+/// Configuration and ADCS Configuration; 17 other fields.
 ///
 /// ```
 /// use icd::cubeacp::enums::AxisSelect;
@@ -1469,6 +1511,11 @@ enumeration!(AxisSelect: u8);
 
 /// PowerSelect: an enumeration. Table 185.
 ///
+/// Held by CubeControl Signal Power Selection in ADCS Power Control; CubeControl Motor Power
+/// Selection in ADCS Power Control; CubeSense1 Power Selection in ADCS Power Control; CubeSense2
+/// Power Selection in ADCS Power Control; CubeStarPower Power Selection in ADCS Power Control; 5
+/// other fields.
+///
 /// ```
 /// use icd::cubeacp::enums::PowerSelect;
 ///
@@ -1536,6 +1583,8 @@ enumeration!(PowerSelect: u8);
 
 /// AsgpFilter: an enumeration. Table 193.
 ///
+/// Held by ASGP4 filter in ADCS Configuration and Augmented-SGP4 Parameters.
+///
 /// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4. Enumerations and descriptions of one
 /// module are spelt in four ways.
 ///
@@ -1600,6 +1649,8 @@ enumeration!(AsgpFilter: u8);
 
 /// AcpProgramType: an enumeration. Table 202.
 ///
+/// Held by ACP Type in ADCS System Configuration.
+///
 /// ```
 /// use icd::cubeacp::enums::AcpProgramType;
 ///
@@ -1658,6 +1709,8 @@ impl From<u8> for AcpProgramType {
 enumeration!(AcpProgramType: u8);
 
 /// SpecialConSelect: an enumeration. Table 203.
+///
+/// Held by Special Control Selection in ADCS System Configuration.
 ///
 /// Note ACP-024 (open): Control modes that are named and not listed. An inertial pointing control
 /// mode has a reference vector, and GEO tracking, inertial and two sun pointing modes are special
@@ -1747,6 +1800,9 @@ enumeration!(SpecialConSelect: u8);
 
 /// CsCamType: an enumeration. Table 204.
 ///
+/// Held by CubeSense1 Camera Type in ADCS System Configuration; CubeSense2 Camera Type in ADCS
+/// System Configuration.
+///
 /// ```
 /// use icd::cubeacp::enums::CsCamType;
 ///
@@ -1805,6 +1861,8 @@ impl From<u8> for CsCamType {
 enumeration!(CsCamType: u8);
 
 /// GpsSelect: an enumeration. Table 205.
+///
+/// Held by GPS Type in ADCS System Configuration.
 ///
 /// ```
 /// use icd::cubeacp::enums::GpsSelect;
@@ -1869,6 +1927,10 @@ impl From<u8> for GpsSelect {
 enumeration!(GpsSelect: u8);
 
 /// GpioPort: an enumeration. Table 206.
+///
+/// Held by CC Signal Enable Port in ADCS System Configuration; CC Motor Enable Port in ADCS System
+/// Configuration; CC Common Enable Port in ADCS System Configuration; CubeSense1 Enable Port in
+/// ADCS System Configuration; CubeSense2 Enable Port in ADCS System Configuration; 4 other fields.
 ///
 /// ```
 /// use icd::cubeacp::enums::GpioPort;
@@ -1948,6 +2010,10 @@ impl From<u8> for GpioPort {
 enumeration!(GpioPort: u8);
 
 /// GpioPortPin: an enumeration. Table 207.
+///
+/// Held by CC Signal Enable Pin in ADCS System Configuration; CC Motor Enable Pin in ADCS System
+/// Configuration; CC Common Enable Pin in ADCS System Configuration; CubeSense1 Enable Pin in ADCS
+/// System Configuration; CubeSense2 Enable Pin in ADCS System Configuration; 4 other fields.
 ///
 /// ```
 /// use icd::cubeacp::enums::GpioPortPin;
@@ -2077,6 +2143,8 @@ impl From<u8> for GpioPortPin {
 enumeration!(GpioPortPin: u8);
 
 /// SdLogSelect: an enumeration. Table 211.
+///
+/// Held by Log Destination in SD Log1 Configuration and SD Log2 Configuration.
 ///
 /// ```
 /// use icd::cubeacp::enums::SdLogSelect;

@@ -67,11 +67,11 @@ impl EstimatedAngularRates {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -178,14 +178,26 @@ impl EstimatedAngularRates {
     }
 }
 
-const ESTIMATED_X_ANGULAR_RATE: Scale =
-    Scale::new("Estimated X Angular Rate", (-32_768, 32_767), (1, 0, 100));
+const ESTIMATED_X_ANGULAR_RATE: Scale = Scale::new(
+    "Estimated X Angular Rate",
+    "-327.68 to 327.67 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const ESTIMATED_Y_ANGULAR_RATE: Scale =
-    Scale::new("Estimated Y Angular Rate", (-32_768, 32_767), (1, 0, 100));
+const ESTIMATED_Y_ANGULAR_RATE: Scale = Scale::new(
+    "Estimated Y Angular Rate",
+    "-327.68 to 327.67 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const ESTIMATED_Z_ANGULAR_RATE: Scale =
-    Scale::new("Estimated Z Angular Rate", (-32_768, 32_767), (1, 0, 100));
+const ESTIMATED_Z_ANGULAR_RATE: Scale = Scale::new(
+    "Estimated Z Angular Rate",
+    "-327.68 to 327.67 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
 message!(EstimatedAngularRates {
     estimated_x_angular_rate: ("Estimated X Angular Rate", 0, 16)

@@ -68,11 +68,11 @@ impl EstimatedAttitudeAngles {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -180,13 +180,13 @@ impl EstimatedAttitudeAngles {
 }
 
 const ESTIMATED_ROLL_ANGLE: Scale =
-    Scale::new("Estimated Roll Angle", (-32_768, 32_767), (1, 0, 100));
+    Scale::new("Estimated Roll Angle", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
 
 const ESTIMATED_PITCH_ANGLE: Scale =
-    Scale::new("Estimated Pitch Angle", (-32_768, 32_767), (1, 0, 100));
+    Scale::new("Estimated Pitch Angle", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
 
 const ESTIMATED_YAW_ANGLE: Scale =
-    Scale::new("Estimated Yaw Angle", (-32_768, 32_767), (1, 0, 100));
+    Scale::new("Estimated Yaw Angle", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
 
 message!(EstimatedAttitudeAngles {
     estimated_roll_angle: ("Estimated Roll Angle", 0, 16).unit("deg").scale(&ESTIMATED_ROLL_ANGLE),

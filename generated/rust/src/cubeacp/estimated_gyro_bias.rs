@@ -67,11 +67,11 @@ impl EstimatedGyroBias {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -178,14 +178,26 @@ impl EstimatedGyroBias {
     }
 }
 
-const ESTIMATED_X_GYRO_BIAS: Scale =
-    Scale::new("Estimated X-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_X_GYRO_BIAS: Scale = Scale::new(
+    "Estimated X-gyro Bias",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const ESTIMATED_Y_GYRO_BIAS: Scale =
-    Scale::new("Estimated Y-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_Y_GYRO_BIAS: Scale = Scale::new(
+    "Estimated Y-gyro Bias",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const ESTIMATED_Z_GYRO_BIAS: Scale =
-    Scale::new("Estimated Z-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_Z_GYRO_BIAS: Scale = Scale::new(
+    "Estimated Z-gyro Bias",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
 message!(EstimatedGyroBias {
     estimated_x_gyro_bias: ("Estimated X-gyro Bias", 0, 16)

@@ -165,11 +165,11 @@ impl EstimationData {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 42], Error> {
         let mut bytes = [0; 42];
@@ -873,68 +873,104 @@ impl EstimationData {
     }
 }
 
-const IGRF_MODELLED_MAGNETIC_FIELD_X: Scale =
-    Scale::new("IGRF Modelled Magnetic Field X", (-32_768, 32_767), (1, 0, 100));
+const IGRF_MODELLED_MAGNETIC_FIELD_X: Scale = Scale::new(
+    "IGRF Modelled Magnetic Field X",
+    "-327.68 to 327.67 uT",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const IGRF_MODELLED_MAGNETIC_FIELD_Y: Scale =
-    Scale::new("IGRF Modelled Magnetic Field Y", (-32_768, 32_767), (1, 0, 100));
+const IGRF_MODELLED_MAGNETIC_FIELD_Y: Scale = Scale::new(
+    "IGRF Modelled Magnetic Field Y",
+    "-327.68 to 327.67 uT",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const IGRF_MODELLED_MAGNETIC_FIELD_Z: Scale =
-    Scale::new("IGRF Modelled Magnetic Field Z", (-32_768, 32_767), (1, 0, 100));
+const IGRF_MODELLED_MAGNETIC_FIELD_Z: Scale = Scale::new(
+    "IGRF Modelled Magnetic Field Z",
+    "-327.68 to 327.67 uT",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
 const MODELLED_SUN_VECTOR_X: Scale =
-    Scale::new("Modelled Sun Vector X", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Modelled Sun Vector X", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const MODELLED_SUN_VECTOR_Y: Scale =
-    Scale::new("Modelled Sun Vector Y", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Modelled Sun Vector Y", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const MODELLED_SUN_VECTOR_Z: Scale =
-    Scale::new("Modelled Sun Vector Z", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Modelled Sun Vector Z", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const ESTIMATED_X_GYRO_BIAS: Scale =
-    Scale::new("Estimated X-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_X_GYRO_BIAS: Scale = Scale::new(
+    "Estimated X-gyro Bias",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const ESTIMATED_Y_GYRO_BIAS: Scale =
-    Scale::new("Estimated Y-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_Y_GYRO_BIAS: Scale = Scale::new(
+    "Estimated Y-gyro Bias",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const ESTIMATED_Z_GYRO_BIAS: Scale =
-    Scale::new("Estimated Z-gyro Bias", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_Z_GYRO_BIAS: Scale = Scale::new(
+    "Estimated Z-gyro Bias",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
 const INNOVATION_VECTOR_X: Scale =
-    Scale::new("Innovation Vector X", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Innovation Vector X", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const INNOVATION_VECTOR_Y: Scale =
-    Scale::new("Innovation Vector Y", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Innovation Vector Y", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const INNOVATION_VECTOR_Z: Scale =
-    Scale::new("Innovation Vector Z", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Innovation Vector Z", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const QUATERNION_ERROR_Q1: Scale =
-    Scale::new("Quaternion Error - Q1", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Quaternion Error - Q1", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const QUATERNION_ERROR_Q2: Scale =
-    Scale::new("Quaternion Error - Q2", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Quaternion Error - Q2", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const QUATERNION_ERROR_Q3: Scale =
-    Scale::new("Quaternion Error - Q3", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Quaternion Error - Q3", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const QUATERNION_COVARIANCE_Q1_RMS: Scale =
-    Scale::new("Quaternion Covariance - Q1 RMS", (-32_768, 32_767), (1, 0, 1_000));
+const QUATERNION_COVARIANCE_Q1_RMS: Scale = Scale::new(
+    "Quaternion Covariance - Q1 RMS",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const QUATERNION_COVARIANCE_Q2_RMS: Scale =
-    Scale::new("Quaternion Covariance - Q2 RMS", (-32_768, 32_767), (1, 0, 1_000));
+const QUATERNION_COVARIANCE_Q2_RMS: Scale = Scale::new(
+    "Quaternion Covariance - Q2 RMS",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const QUATERNION_COVARIANCE_Q3_RMS: Scale =
-    Scale::new("Quaternion Covariance - Q3 RMS", (-32_768, 32_767), (1, 0, 1_000));
+const QUATERNION_COVARIANCE_Q3_RMS: Scale = Scale::new(
+    "Quaternion Covariance - Q3 RMS",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
 const X_ANGULAR_RATE_COVARIANCE: Scale =
-    Scale::new("X Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("X Angular Rate Covariance", "-32.768 to 32.767", (-32_768, 32_767), (1, 0, 1_000));
 
 const Y_ANGULAR_RATE_COVARIANCE: Scale =
-    Scale::new("Y Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("Y Angular Rate Covariance", "-32.768 to 32.767", (-32_768, 32_767), (1, 0, 1_000));
 
 const Z_ANGULAR_RATE_COVARIANCE: Scale =
-    Scale::new("Z Angular Rate Covariance", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("Z Angular Rate Covariance", "-32.768 to 32.767", (-32_768, 32_767), (1, 0, 1_000));
 
 message!(EstimationData {
     igrf_modelled_magnetic_field_x: ("IGRF Modelled Magnetic Field X", 0, 16)

@@ -72,11 +72,11 @@ impl EstimationInnovationVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -184,13 +184,13 @@ impl EstimationInnovationVector {
 }
 
 const INNOVATION_VECTOR_X: Scale =
-    Scale::new("Innovation Vector X", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Innovation Vector X", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const INNOVATION_VECTOR_Y: Scale =
-    Scale::new("Innovation Vector Y", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Innovation Vector Y", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const INNOVATION_VECTOR_Z: Scale =
-    Scale::new("Innovation Vector Z", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Innovation Vector Z", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(EstimationInnovationVector {
     innovation_vector_x: ("Innovation Vector X", 0, 16).scale(&INNOVATION_VECTOR_X),

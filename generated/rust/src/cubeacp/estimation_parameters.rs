@@ -207,14 +207,15 @@ impl EstimationParameters {
     }
 }
 
-const MAGNETOMETER_MODE: Scale = Scale::new("Magnetometer Mode", (0, 3), (1, 0, 1));
+const MAGNETOMETER_MODE: Scale =
+    Scale::new("Magnetometer Mode", "MagModeVal, 0 to 3", (0, 3), (1, 0, 1));
 
 const RAW_MAGNETOMETER_SELECTION: Scale =
-    Scale::new("Magnetometer Selection for RAW MTM TLM", (0, 3), (1, 0, 1));
+    Scale::new("Magnetometer Selection for RAW MTM TLM", "MagModeVal, 0 to 3", (0, 3), (1, 0, 1));
 
-const CAM1_PERIOD: Scale = Scale::new("Cam1 period", (0, 15), (1, 0, 1));
+const CAM1_PERIOD: Scale = Scale::new("Cam1 period", "0 to 15 s", (0, 15), (1, 0, 1));
 
-const CAM2_PERIOD: Scale = Scale::new("Cam2 period", (0, 15), (1, 0, 1));
+const CAM2_PERIOD: Scale = Scale::new("Cam2 period", "0 to 15 s", (0, 15), (1, 0, 1));
 
 message!(EstimationParameters {
     magnetometer_rate_filter_system_noise: ("Magnetometer Rate Filter System Noise", 0, 32),

@@ -82,11 +82,11 @@ impl FineAngularRates {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -193,14 +193,26 @@ impl FineAngularRates {
     }
 }
 
-const ESTIMATED_X_ANGULAR_RATE: Scale =
-    Scale::new("Estimated X Angular Rate", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_X_ANGULAR_RATE: Scale = Scale::new(
+    "Estimated X Angular Rate",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const ESTIMATED_Y_ANGULAR_RATE: Scale =
-    Scale::new("Estimated Y Angular Rate", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_Y_ANGULAR_RATE: Scale = Scale::new(
+    "Estimated Y Angular Rate",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const ESTIMATED_Z_ANGULAR_RATE: Scale =
-    Scale::new("Estimated Z Angular Rate", (-32_768, 32_767), (1, 0, 1_000));
+const ESTIMATED_Z_ANGULAR_RATE: Scale = Scale::new(
+    "Estimated Z Angular Rate",
+    "-32.768 to 32.767 deg/s",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
 message!(FineAngularRates {
     estimated_x_angular_rate: ("Estimated X Angular Rate", 0, 16)

@@ -67,11 +67,11 @@ impl IgrfModelledMagneticFieldVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -178,11 +178,26 @@ impl IgrfModelledMagneticFieldVector {
     }
 }
 
-const FIELD_X: Scale = Scale::new("IGRF Modelled Magnetic Field X", (-32_768, 32_767), (1, 0, 100));
+const FIELD_X: Scale = Scale::new(
+    "IGRF Modelled Magnetic Field X",
+    "-327.68 to 327.67 uT",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const FIELD_Y: Scale = Scale::new("IGRF Modelled Magnetic Field Y", (-32_768, 32_767), (1, 0, 100));
+const FIELD_Y: Scale = Scale::new(
+    "IGRF Modelled Magnetic Field Y",
+    "-327.68 to 327.67 uT",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const FIELD_Z: Scale = Scale::new("IGRF Modelled Magnetic Field Z", (-32_768, 32_767), (1, 0, 100));
+const FIELD_Z: Scale = Scale::new(
+    "IGRF Modelled Magnetic Field Z",
+    "-327.68 to 327.67 uT",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
 message!(IgrfModelledMagneticFieldVector {
     field_x: ("IGRF Modelled Magnetic Field X", 0, 16).unit("uT").scale(&FIELD_X),

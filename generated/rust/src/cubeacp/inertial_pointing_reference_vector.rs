@@ -80,11 +80,11 @@ impl InertialPointingReferenceVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -191,11 +191,14 @@ impl InertialPointingReferenceVector {
     }
 }
 
-const REFERENCE_X: Scale = Scale::new("Inertial Reference X", (-32_768, 32_767), (1, 0, 10_000));
+const REFERENCE_X: Scale =
+    Scale::new("Inertial Reference X", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const REFERENCE_Y: Scale = Scale::new("Inertial Reference Y", (-32_768, 32_767), (1, 0, 10_000));
+const REFERENCE_Y: Scale =
+    Scale::new("Inertial Reference Y", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const REFERENCE_Z: Scale = Scale::new("Inertial Reference Z", (-32_768, 32_767), (1, 0, 10_000));
+const REFERENCE_Z: Scale =
+    Scale::new("Inertial Reference Z", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(InertialPointingReferenceVector {
     reference_x: ("Inertial Reference X", 0, 16).scale(&REFERENCE_X),

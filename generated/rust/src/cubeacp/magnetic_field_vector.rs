@@ -71,11 +71,11 @@ impl MagneticFieldVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -182,11 +182,14 @@ impl MagneticFieldVector {
     }
 }
 
-const MAGNETIC_FIELD_X: Scale = Scale::new("Magnetic Field X", (-32_768, 32_767), (1, 0, 100));
+const MAGNETIC_FIELD_X: Scale =
+    Scale::new("Magnetic Field X", "-327.68 to 327.67 uT", (-32_768, 32_767), (1, 0, 100));
 
-const MAGNETIC_FIELD_Y: Scale = Scale::new("Magnetic Field Y", (-32_768, 32_767), (1, 0, 100));
+const MAGNETIC_FIELD_Y: Scale =
+    Scale::new("Magnetic Field Y", "-327.68 to 327.67 uT", (-32_768, 32_767), (1, 0, 100));
 
-const MAGNETIC_FIELD_Z: Scale = Scale::new("Magnetic Field Z", (-32_768, 32_767), (1, 0, 100));
+const MAGNETIC_FIELD_Z: Scale =
+    Scale::new("Magnetic Field Z", "-327.68 to 327.67 uT", (-32_768, 32_767), (1, 0, 100));
 
 message!(MagneticFieldVector {
     magnetic_field_x: ("Magnetic Field X", 0, 16).unit("uT").scale(&MAGNETIC_FIELD_X),

@@ -67,11 +67,11 @@ impl ModelledSunVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -179,13 +179,13 @@ impl ModelledSunVector {
 }
 
 const MODELLED_SUN_VECTOR_X: Scale =
-    Scale::new("Modelled Sun Vector X", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Modelled Sun Vector X", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const MODELLED_SUN_VECTOR_Y: Scale =
-    Scale::new("Modelled Sun Vector Y", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Modelled Sun Vector Y", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const MODELLED_SUN_VECTOR_Z: Scale =
-    Scale::new("Modelled Sun Vector Z", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Modelled Sun Vector Z", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(ModelledSunVector {
     modelled_sun_vector_x: ("Modelled Sun Vector X", 0, 16).scale(&MODELLED_SUN_VECTOR_X),

@@ -68,11 +68,11 @@ impl NadirVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -179,11 +179,14 @@ impl NadirVector {
     }
 }
 
-const NADIR_X: Scale = Scale::new("Nadir X", (-32_768, 32_767), (1, 0, 10_000));
+const NADIR_X: Scale =
+    Scale::new("Nadir X", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const NADIR_Y: Scale = Scale::new("Nadir Y", (-32_768, 32_767), (1, 0, 10_000));
+const NADIR_Y: Scale =
+    Scale::new("Nadir Y", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const NADIR_Z: Scale = Scale::new("Nadir Z", (-32_768, 32_767), (1, 0, 10_000));
+const NADIR_Z: Scale =
+    Scale::new("Nadir Z", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(NadirVector {
     nadir_x: ("Nadir X", 0, 16).scale(&NADIR_X),

@@ -165,11 +165,11 @@ impl PowerAndTemperature {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 38], Error> {
         let mut bytes = [0; 38];
@@ -637,43 +637,54 @@ impl PowerAndTemperature {
     }
 }
 
-const CUBESENSE1_3V3_CURRENT: Scale = Scale::new("CubeSense1 3V3 Current", (0, 65_535), (1, 0, 10));
+const CUBESENSE1_3V3_CURRENT: Scale =
+    Scale::new("CubeSense1 3V3 Current", "0 to 6553.5 mA", (0, 65_535), (1, 0, 10));
 
 const CUBESENSE1_CAM_SRAM_CURRENT: Scale =
-    Scale::new("CubeSense1 Cam SRAM Current", (0, 65_535), (1, 0, 10));
+    Scale::new("CubeSense1 Cam SRAM Current", "0 to 6553.5 mA", (0, 65_535), (1, 0, 10));
 
-const CUBESENSE2_3V3_CURRENT: Scale = Scale::new("CubeSense2 3V3 Current", (0, 65_535), (1, 0, 10));
+const CUBESENSE2_3V3_CURRENT: Scale =
+    Scale::new("CubeSense2 3V3 Current", "0 to 6553.5 mA", (0, 65_535), (1, 0, 10));
 
 const CUBESENSE2_CAM_SRAM_CURRENT: Scale =
-    Scale::new("CubeSense2 Cam SRAM Current", (0, 65_535), (1, 0, 10));
+    Scale::new("CubeSense2 Cam SRAM Current", "0 to 6553.5 mA", (0, 65_535), (1, 0, 10));
 
 const CUBECONTROL_3V3_CURRENT: Scale =
-    Scale::new("CubeControl 3V3 Current", (0, 65_535), (125, 0, 256));
+    Scale::new("CubeControl 3V3 Current", "0 to 31999.51171875 mA", (0, 65_535), (125, 0, 256));
 
 const CUBECONTROL_5V_CURRENT: Scale =
-    Scale::new("CubeControl 5V Current", (0, 65_535), (125, 0, 256));
+    Scale::new("CubeControl 5V Current", "0 to 31999.51171875 mA", (0, 65_535), (125, 0, 256));
 
 const CUBECONTROL_VBAT_CURRENT: Scale =
-    Scale::new("CubeControl Vbat Current", (0, 65_535), (125, 0, 256));
+    Scale::new("CubeControl Vbat Current", "0 to 31999.51171875 mA", (0, 65_535), (125, 0, 256));
 
-const WHEEL1_CURRENT: Scale = Scale::new("Wheel1Current", (0, 65_535), (1, 0, 100));
+const WHEEL1_CURRENT: Scale =
+    Scale::new("Wheel1Current", "0 to 655.35 mA", (0, 65_535), (1, 0, 100));
 
-const WHEEL2_CURRENT: Scale = Scale::new("Wheel2Current", (0, 65_535), (1, 0, 100));
+const WHEEL2_CURRENT: Scale =
+    Scale::new("Wheel2Current", "0 to 655.35 mA", (0, 65_535), (1, 0, 100));
 
-const WHEEL3_CURRENT: Scale = Scale::new("Wheel3Current", (0, 65_535), (1, 0, 100));
+const WHEEL3_CURRENT: Scale =
+    Scale::new("Wheel3Current", "0 to 655.35 mA", (0, 65_535), (1, 0, 100));
 
-const CUBESTAR_CURRENT: Scale = Scale::new("CubeStarCurrent", (0, 65_535), (1, 0, 100));
+const CUBESTAR_CURRENT: Scale =
+    Scale::new("CubeStarCurrent", "0 to 655.35 mA", (0, 65_535), (1, 0, 100));
 
-const MAGNETORQUER_CURRENT: Scale = Scale::new("Magnetorquer Current", (0, 65_535), (1, 0, 10));
+const MAGNETORQUER_CURRENT: Scale =
+    Scale::new("Magnetorquer Current", "0 to 6553.5 mA", (0, 65_535), (1, 0, 10));
 
 const CUBESTAR_MCU_TEMPERATURE: Scale =
-    Scale::new("CubeStar MCU temperature", (-32_768, 32_767), (1, 0, 100));
+    Scale::new("CubeStar MCU temperature", "-327.68 to 327.67 C", (-32_768, 32_767), (1, 0, 100));
 
 const MAGNETOMETER_TEMPERATURE: Scale =
-    Scale::new("Magnetometer Temperature", (-32_768, 32_767), (1, 0, 10));
+    Scale::new("Magnetometer Temperature", "-3276.8 to 3276.7 C", (-32_768, 32_767), (1, 0, 10));
 
-const REDUNDANT_MAG_TEMPERATURE: Scale =
-    Scale::new("Redundant Magnetometer Temperature", (-32_768, 32_767), (1, 0, 10));
+const REDUNDANT_MAG_TEMPERATURE: Scale = Scale::new(
+    "Redundant Magnetometer Temperature",
+    "-3276.8 to 3276.7 C",
+    (-32_768, 32_767),
+    (1, 0, 10),
+);
 
 message!(PowerAndTemperature {
     cubesense1_3v3_current: ("CubeSense1 3V3 Current", 0, 16)

@@ -73,11 +73,11 @@ impl QuaternionCovariance {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -184,14 +184,26 @@ impl QuaternionCovariance {
     }
 }
 
-const Q1_RMS: Scale =
-    Scale::new("Quaternion Covariance - Q1 RMS", (-32_768, 32_767), (1, 0, 1_000));
+const Q1_RMS: Scale = Scale::new(
+    "Quaternion Covariance - Q1 RMS",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const Q2_RMS: Scale =
-    Scale::new("Quaternion Covariance - Q2 RMS", (-32_768, 32_767), (1, 0, 1_000));
+const Q2_RMS: Scale = Scale::new(
+    "Quaternion Covariance - Q2 RMS",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const Q3_RMS: Scale =
-    Scale::new("Quaternion Covariance - Q3 RMS", (-32_768, 32_767), (1, 0, 1_000));
+const Q3_RMS: Scale = Scale::new(
+    "Quaternion Covariance - Q3 RMS",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
 message!(QuaternionCovariance {
     q1_rms: ("Quaternion Covariance - Q1 RMS", 0, 16).scale(&Q1_RMS),

@@ -68,11 +68,11 @@ impl QuaternionErrorVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -180,13 +180,13 @@ impl QuaternionErrorVector {
 }
 
 const QUATERNION_ERROR_Q1: Scale =
-    Scale::new("Quaternion Error - Q1", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Quaternion Error - Q1", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const QUATERNION_ERROR_Q2: Scale =
-    Scale::new("Quaternion Error - Q2", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Quaternion Error - Q2", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 const QUATERNION_ERROR_Q3: Scale =
-    Scale::new("Quaternion Error - Q3", (-32_768, 32_767), (1, 0, 10_000));
+    Scale::new("Quaternion Error - Q3", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(QuaternionErrorVector {
     quaternion_error_q1: ("Quaternion Error - Q1", 0, 16).scale(&QUATERNION_ERROR_Q1),

@@ -71,11 +71,11 @@ impl RateSensorRates {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -182,11 +182,14 @@ impl RateSensorRates {
     }
 }
 
-const X_ANGULAR_RATE: Scale = Scale::new("X Angular Rate", (-32_768, 32_767), (1, 0, 100));
+const X_ANGULAR_RATE: Scale =
+    Scale::new("X Angular Rate", "-327.68 to 327.67 deg/s", (-32_768, 32_767), (1, 0, 100));
 
-const Y_ANGULAR_RATE: Scale = Scale::new("Y Angular Rate", (-32_768, 32_767), (1, 0, 100));
+const Y_ANGULAR_RATE: Scale =
+    Scale::new("Y Angular Rate", "-327.68 to 327.67 deg/s", (-32_768, 32_767), (1, 0, 100));
 
-const Z_ANGULAR_RATE: Scale = Scale::new("Z Angular Rate", (-32_768, 32_767), (1, 0, 100));
+const Z_ANGULAR_RATE: Scale =
+    Scale::new("Z Angular Rate", "-327.68 to 327.67 deg/s", (-32_768, 32_767), (1, 0, 100));
 
 message!(RateSensorRates {
     x_angular_rate: ("X Angular Rate", 0, 16).unit("deg/s").scale(&X_ANGULAR_RATE),

@@ -156,11 +156,11 @@ impl RawGpsMeasurements {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 36], Error> {
         let mut bytes = [0; 36];
@@ -285,13 +285,13 @@ impl RawGpsMeasurements {
 }
 
 const X_POS_STANDARD_DEVIATION: Scale =
-    Scale::new("X-pos Standard Deviation", (0, 255), (1, 0, 10));
+    Scale::new("X-pos Standard Deviation", "0 to 25.5 m", (0, 255), (1, 0, 10));
 
 const Y_POS_STANDARD_DEVIATION: Scale =
-    Scale::new("Y-pos Standard Deviation", (0, 255), (1, 0, 10));
+    Scale::new("Y-pos Standard Deviation", "0 to 25.5 m", (0, 255), (1, 0, 10));
 
 const Z_POS_STANDARD_DEVIATION: Scale =
-    Scale::new("Z-pos Standard Deviation", (0, 255), (1, 0, 10));
+    Scale::new("Z-pos Standard Deviation", "0 to 25.5 m", (0, 255), (1, 0, 10));
 
 message!(RawGpsMeasurements {
     gps_solution_status: ("Gps Solution Status", 0, 8),

@@ -254,11 +254,11 @@ impl RawStarTracker {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 54], Error> {
         let mut bytes = [0; 54];
@@ -497,17 +497,20 @@ impl RawStarTracker {
     }
 }
 
-const X_AXIS_RATE: Scale = Scale::new("x-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
+const X_AXIS_RATE: Scale =
+    Scale::new("x-Axis rate", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const Y_AXIS_RATE: Scale = Scale::new("y-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
+const Y_AXIS_RATE: Scale =
+    Scale::new("y-Axis rate", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const Z_AXIS_RATE: Scale = Scale::new("z-Axis rate", (-32_768, 32_767), (1, 0, 10_000));
+const Z_AXIS_RATE: Scale =
+    Scale::new("z-Axis rate", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const Q0: Scale = Scale::new("Q0", (-32_768, 32_767), (1, 0, 10_000));
+const Q0: Scale = Scale::new("Q0", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const Q1: Scale = Scale::new("Q1", (-32_768, 32_767), (1, 0, 10_000));
+const Q1: Scale = Scale::new("Q1", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const Q2: Scale = Scale::new("Q2", (-32_768, 32_767), (1, 0, 10_000));
+const Q2: Scale = Scale::new("Q2", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(RawStarTracker {
     number_of_stars_detected: ("Number of stars detected", 0, 8).unit("stars"),

@@ -132,11 +132,11 @@ impl RedundantMagConfiguration {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 30], Error> {
         let mut bytes = [0; 30];
@@ -651,50 +651,110 @@ impl RedundantMagConfiguration {
     }
 }
 
-const MOUNTING_ALPHA: Scale =
-    Scale::new("Redundant Magnetometer Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+const MOUNTING_ALPHA: Scale = Scale::new(
+    "Redundant Magnetometer Mounting Transform Alpha Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const MOUNTING_BETA: Scale =
-    Scale::new("Redundant Magnetometer Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+const MOUNTING_BETA: Scale = Scale::new(
+    "Redundant Magnetometer Mounting Transform Beta Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const MOUNTING_GAMMA: Scale =
-    Scale::new("Redundant Magnetometer Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+const MOUNTING_GAMMA: Scale = Scale::new(
+    "Redundant Magnetometer Mounting Transform Gamma Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const CHANNEL_1_OFFSET: Scale =
-    Scale::new("Redundant Magnetometer Channel 1 Offset", (-32_768, 32_767), (1, 0, 1_000));
+const CHANNEL_1_OFFSET: Scale = Scale::new(
+    "Redundant Magnetometer Channel 1 Offset",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const CHANNEL_2_OFFSET: Scale =
-    Scale::new("Redundant Magnetometer Channel 2 Offset", (-32_768, 32_767), (1, 0, 1_000));
+const CHANNEL_2_OFFSET: Scale = Scale::new(
+    "Redundant Magnetometer Channel 2 Offset",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const CHANNEL_3_OFFSET: Scale =
-    Scale::new("Redundant Magnetometer Channel 3 Offset", (-32_768, 32_767), (1, 0, 1_000));
+const CHANNEL_3_OFFSET: Scale = Scale::new(
+    "Redundant Magnetometer Channel 3 Offset",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const SENSITIVITY_S11: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S11", (-32_768, 32_767), (1, 0, 1_000));
+const SENSITIVITY_S11: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S11",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const SENSITIVITY_S22: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S22", (-32_768, 32_767), (1, 0, 1_000));
+const SENSITIVITY_S22: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S22",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const SENSITIVITY_S33: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S33", (-32_768, 32_767), (1, 0, 1_000));
+const SENSITIVITY_S33: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S33",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const SENSITIVITY_S12: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S12", (-32_768, 32_767), (1, 0, 1_000));
+const SENSITIVITY_S12: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S12",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const SENSITIVITY_S13: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S13", (-32_768, 32_767), (1, 0, 1_000));
+const SENSITIVITY_S13: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S13",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const SENSITIVITY_S21: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S21", (-32_768, 32_767), (1, 0, 1_000));
+const SENSITIVITY_S21: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S21",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const SENSITIVITY_S23: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S23", (-32_768, 32_767), (1, 0, 1_000));
+const SENSITIVITY_S23: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S23",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const SENSITIVITY_S31: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S31", (-32_768, 32_767), (1, 0, 1_000));
+const SENSITIVITY_S31: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S31",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const SENSITIVITY_S32: Scale =
-    Scale::new("Redundant Magnetometer Sensitivity Matrix S32", (-32_768, 32_767), (1, 0, 1_000));
+const SENSITIVITY_S32: Scale = Scale::new(
+    "Redundant Magnetometer Sensitivity Matrix S32",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
 message!(RedundantMagConfiguration {
     mounting_alpha: ("Redundant Magnetometer Mounting Transform Alpha Angle", 0, 16)

@@ -62,11 +62,11 @@ impl SatellitePositionEci {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -173,11 +173,14 @@ impl SatellitePositionEci {
     }
 }
 
-const X_POSITION: Scale = Scale::new("X position", (-32_768, 32_767), (1, 0, 4));
+const X_POSITION: Scale =
+    Scale::new("X position", "-8192 to 8191.75 km", (-32_768, 32_767), (1, 0, 4));
 
-const Y_POSITION: Scale = Scale::new("Y position", (-32_768, 32_767), (1, 0, 4));
+const Y_POSITION: Scale =
+    Scale::new("Y position", "-8192 to 8191.75 km", (-32_768, 32_767), (1, 0, 4));
 
-const Z_POSITION: Scale = Scale::new("Z position", (-32_768, 32_767), (1, 0, 4));
+const Z_POSITION: Scale =
+    Scale::new("Z position", "-8192 to 8191.75 km", (-32_768, 32_767), (1, 0, 4));
 
 message!(SatellitePositionEci {
     x_position: ("X position", 0, 16).unit("km").scale(&X_POSITION),

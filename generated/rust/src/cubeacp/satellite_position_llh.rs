@@ -72,11 +72,11 @@ impl SatellitePositionLlh {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -183,11 +183,13 @@ impl SatellitePositionLlh {
     }
 }
 
-const LATITUDE: Scale = Scale::new("Latitude", (-32_768, 32_767), (1, 0, 100));
+const LATITUDE: Scale =
+    Scale::new("Latitude", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
 
-const LONGITUDE: Scale = Scale::new("Longitude", (-32_768, 32_767), (1, 0, 100));
+const LONGITUDE: Scale =
+    Scale::new("Longitude", "-327.68 to 327.67 deg", (-32_768, 32_767), (1, 0, 100));
 
-const ALTITUDE: Scale = Scale::new("Altitude", (0, 65_535), (1, 0, 100));
+const ALTITUDE: Scale = Scale::new("Altitude", "0 to 655.35 km", (0, 65_535), (1, 0, 100));
 
 message!(SatellitePositionLlh {
     latitude: ("Latitude", 0, 16).unit("deg").scale(&LATITUDE),

@@ -62,11 +62,11 @@ impl SatelliteVelocityEci {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -173,11 +173,14 @@ impl SatelliteVelocityEci {
     }
 }
 
-const X_VELOCITY: Scale = Scale::new("X Velocity", (-32_768, 32_767), (1, 0, 4));
+const X_VELOCITY: Scale =
+    Scale::new("X Velocity", "-8192 to 8191.75 m/s", (-32_768, 32_767), (1, 0, 4));
 
-const Y_VELOCITY: Scale = Scale::new("Y Velocity", (-32_768, 32_767), (1, 0, 4));
+const Y_VELOCITY: Scale =
+    Scale::new("Y Velocity", "-8192 to 8191.75 m/s", (-32_768, 32_767), (1, 0, 4));
 
-const Z_VELOCITY: Scale = Scale::new("Z Velocity", (-32_768, 32_767), (1, 0, 4));
+const Z_VELOCITY: Scale =
+    Scale::new("Z Velocity", "-8192 to 8191.75 m/s", (-32_768, 32_767), (1, 0, 4));
 
 message!(SatelliteVelocityEci {
     x_velocity: ("X Velocity", 0, 16).unit("m/s").scale(&X_VELOCITY),

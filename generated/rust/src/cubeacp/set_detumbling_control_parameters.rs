@@ -93,11 +93,11 @@ impl SetDetumblingControlParameters {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 14], Error> {
         let mut bytes = [0; 14];
@@ -142,7 +142,8 @@ impl SetDetumblingControlParameters {
     }
 }
 
-const SPIN_RATE: Scale = Scale::new("Reference spin rate", (-32_768, 32_767), (1, 0, 1_000));
+const SPIN_RATE: Scale =
+    Scale::new("Reference spin rate", "-32.768 to 32.767 deg/s", (-32_768, 32_767), (1, 0, 1_000));
 
 message!(SetDetumblingControlParameters {
     detumbling_spin_gain: ("Detumbling Spin Gain", 0, 32),

@@ -82,11 +82,11 @@ impl SetMagnetorquerOutput {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -193,14 +193,26 @@ impl SetMagnetorquerOutput {
     }
 }
 
-const X_DUTY_CYCLE: Scale =
-    Scale::new("Commanded X Magnetorquer duty cycle", (-32_768, 32_767), (1, 0, 1_000));
+const X_DUTY_CYCLE: Scale = Scale::new(
+    "Commanded X Magnetorquer duty cycle",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const Y_DUTY_CYCLE: Scale =
-    Scale::new("Commanded Y Magnetorquer duty cycle", (-32_768, 32_767), (1, 0, 1_000));
+const Y_DUTY_CYCLE: Scale = Scale::new(
+    "Commanded Y Magnetorquer duty cycle",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
-const Z_DUTY_CYCLE: Scale =
-    Scale::new("Commanded Z Magnetorquer duty cycle", (-32_768, 32_767), (1, 0, 1_000));
+const Z_DUTY_CYCLE: Scale = Scale::new(
+    "Commanded Z Magnetorquer duty cycle",
+    "-32.768 to 32.767",
+    (-32_768, 32_767),
+    (1, 0, 1_000),
+);
 
 message!(SetMagnetorquerOutput {
     x_duty_cycle: ("Commanded X Magnetorquer duty cycle", 0, 16).scale(&X_DUTY_CYCLE),

@@ -99,11 +99,11 @@ impl SetRateGyroConfiguration {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 10], Error> {
         let mut bytes = [0; 10];
@@ -215,13 +215,13 @@ impl SetRateGyroConfiguration {
 }
 
 const X_RATE_SENSOR_OFFSET: Scale =
-    Scale::new("X-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("X-Rate Sensor Offset", "-32.768 to 32.767 deg/s", (-32_768, 32_767), (1, 0, 1_000));
 
 const Y_RATE_SENSOR_OFFSET: Scale =
-    Scale::new("Y-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("Y-Rate Sensor Offset", "-32.768 to 32.767 deg/s", (-32_768, 32_767), (1, 0, 1_000));
 
 const Z_RATE_SENSOR_OFFSET: Scale =
-    Scale::new("Z-Rate Sensor Offset", (-32_768, 32_767), (1, 0, 1_000));
+    Scale::new("Z-Rate Sensor Offset", "-32.768 to 32.767 deg/s", (-32_768, 32_767), (1, 0, 1_000));
 
 message!(SetRateGyroConfiguration {
     gyro1_configuration: ("Gyro1 Configuration", 0, 8),

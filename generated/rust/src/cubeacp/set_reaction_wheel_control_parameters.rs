@@ -103,7 +103,7 @@ impl SetReactionWheelControlParameters {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
@@ -121,7 +121,8 @@ impl SetReactionWheelControlParameters {
     }
 }
 
-const SUN_POINTING_FACET: Scale = Scale::new("Sun-pointing Facet", (0, 127), (1, 0, 1));
+const SUN_POINTING_FACET: Scale =
+    Scale::new("Sun-pointing Facet", "AxisSelect, 0 to 127", (0, 127), (1, 0, 1));
 
 message!(SetReactionWheelControlParameters {
     rwheel_proportional_gain: ("RWheel Proportional Gain", 0, 32),

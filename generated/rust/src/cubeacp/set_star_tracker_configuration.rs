@@ -223,7 +223,7 @@ impl SetStarTrackerConfiguration {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 53], Error> {
         let mut bytes = [0; 53];
@@ -481,22 +481,38 @@ impl SetStarTrackerConfiguration {
     }
 }
 
-const MOUNTING_ALPHA: Scale =
-    Scale::new("StarTracker Mounting Transform Alpha Angle", (-32_768, 32_767), (1, 0, 100));
+const MOUNTING_ALPHA: Scale = Scale::new(
+    "StarTracker Mounting Transform Alpha Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const MOUNTING_BETA: Scale =
-    Scale::new("StarTracker Mounting Transform Beta Angle", (-32_768, 32_767), (1, 0, 100));
+const MOUNTING_BETA: Scale = Scale::new(
+    "StarTracker Mounting Transform Beta Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const MOUNTING_GAMMA: Scale =
-    Scale::new("StarTracker Mounting Transform Gamma Angle", (-32_768, 32_767), (1, 0, 100));
+const MOUNTING_GAMMA: Scale = Scale::new(
+    "StarTracker Mounting Transform Gamma Angle",
+    "-327.68 to 327.67 deg",
+    (-32_768, 32_767),
+    (1, 0, 100),
+);
 
-const ERROR_MARGIN: Scale = Scale::new("Star Tracker Error Margin", (0, 255), (1, 0, 100));
+const ERROR_MARGIN: Scale =
+    Scale::new("Star Tracker Error Margin", "0 to 2.55 %", (0, 255), (1, 0, 100));
 
-const TRACKING_MARGIN: Scale = Scale::new("Star Tracking Margin", (0, 255), (1, 0, 100));
+const TRACKING_MARGIN: Scale =
+    Scale::new("Star Tracking Margin", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const VALIDATION_MARGIN: Scale = Scale::new("Star Validation Margin", (0, 255), (1, 0, 100));
+const VALIDATION_MARGIN: Scale =
+    Scale::new("Star Validation Margin", "0 to 2.55", (0, 255), (1, 0, 100));
 
-const SEARCH_WIDTH: Scale = Scale::new("Star Tracking Search Width", (0, 255), (1, 0, 5));
+const SEARCH_WIDTH: Scale =
+    Scale::new("Star Tracking Search Width", "0 to 51", (0, 255), (1, 0, 5));
 
 message!(SetStarTrackerConfiguration {
     mounting_alpha: ("StarTracker Mounting Transform Alpha Angle", 0, 16)

@@ -75,11 +75,11 @@ impl Star1BodyVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -186,11 +186,14 @@ impl Star1BodyVector {
     }
 }
 
-const STAR1_BODY_X: Scale = Scale::new("Star1BX", (-32_768, 32_767), (1, 0, 10_000));
+const STAR1_BODY_X: Scale =
+    Scale::new("Star1BX", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_BODY_Y: Scale = Scale::new("Star1BY", (-32_768, 32_767), (1, 0, 10_000));
+const STAR1_BODY_Y: Scale =
+    Scale::new("Star1BY", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR1_BODY_Z: Scale = Scale::new("Star1BZ", (-32_768, 32_767), (1, 0, 10_000));
+const STAR1_BODY_Z: Scale =
+    Scale::new("Star1BZ", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(Star1BodyVector {
     star1_body_x: ("Star1BX", 0, 16).scale(&STAR1_BODY_X),

@@ -75,11 +75,11 @@ impl Star2OrbitVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -186,11 +186,14 @@ impl Star2OrbitVector {
     }
 }
 
-const STAR2_ORBIT_X: Scale = Scale::new("Star2OX", (-32_768, 32_767), (1, 0, 10_000));
+const STAR2_ORBIT_X: Scale =
+    Scale::new("Star2OX", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_ORBIT_Y: Scale = Scale::new("Star2OY", (-32_768, 32_767), (1, 0, 10_000));
+const STAR2_ORBIT_Y: Scale =
+    Scale::new("Star2OY", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR2_ORBIT_Z: Scale = Scale::new("Star2OZ", (-32_768, 32_767), (1, 0, 10_000));
+const STAR2_ORBIT_Z: Scale =
+    Scale::new("Star2OZ", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(Star2OrbitVector {
     star2_orbit_x: ("Star2OX", 0, 16).scale(&STAR2_ORBIT_X),

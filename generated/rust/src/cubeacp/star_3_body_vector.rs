@@ -75,11 +75,11 @@ impl Star3BodyVector {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -186,11 +186,14 @@ impl Star3BodyVector {
     }
 }
 
-const STAR3_BODY_X: Scale = Scale::new("Star3BX", (-32_768, 32_767), (1, 0, 10_000));
+const STAR3_BODY_X: Scale =
+    Scale::new("Star3BX", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_BODY_Y: Scale = Scale::new("Star3BY", (-32_768, 32_767), (1, 0, 10_000));
+const STAR3_BODY_Y: Scale =
+    Scale::new("Star3BY", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
-const STAR3_BODY_Z: Scale = Scale::new("Star3BZ", (-32_768, 32_767), (1, 0, 10_000));
+const STAR3_BODY_Z: Scale =
+    Scale::new("Star3BZ", "-3.2768 to 3.2767", (-32_768, 32_767), (1, 0, 10_000));
 
 message!(Star3BodyVector {
     star3_body_x: ("Star3BX", 0, 16).scale(&STAR3_BODY_X),

@@ -80,11 +80,11 @@ impl WheelCurrents {
         }
     }
 
-    /// Encodes the message; reserved bits are 0.
+    /// Encodes the message.
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
@@ -191,11 +191,14 @@ impl WheelCurrents {
     }
 }
 
-const WHEEL1_CURRENT: Scale = Scale::new("Wheel1Current", (0, 65_535), (1, 0, 100));
+const WHEEL1_CURRENT: Scale =
+    Scale::new("Wheel1Current", "0 to 655.35 mA", (0, 65_535), (1, 0, 100));
 
-const WHEEL2_CURRENT: Scale = Scale::new("Wheel2Current", (0, 65_535), (1, 0, 100));
+const WHEEL2_CURRENT: Scale =
+    Scale::new("Wheel2Current", "0 to 655.35 mA", (0, 65_535), (1, 0, 100));
 
-const WHEEL3_CURRENT: Scale = Scale::new("Wheel3Current", (0, 65_535), (1, 0, 100));
+const WHEEL3_CURRENT: Scale =
+    Scale::new("Wheel3Current", "0 to 655.35 mA", (0, 65_535), (1, 0, 100));
 
 message!(WheelCurrents {
     wheel1_current: ("Wheel1Current", 0, 16).unit("mA").scale(&WHEEL1_CURRENT),

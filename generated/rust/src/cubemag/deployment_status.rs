@@ -112,7 +112,7 @@ impl DeploymentStatus {
     ///
     /// # Errors
     ///
-    /// None: every value fits its field.
+    /// None: every value fits its field. It is a `Result` as that of every message is.
     #[inline]
     pub fn to_bytes(&self) -> Result<[u8; 5], Error> {
         let mut bytes = [0; 5];

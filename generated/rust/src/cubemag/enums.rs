@@ -8,6 +8,8 @@ use crate::support::enumeration;
 ///
 /// State of the CubeMag service.
 ///
+/// Held by MagSvc State in State.
+///
 /// Note MAG-008 (open): MagState has no deployed state. The service can be armed, deploying, idle
 /// or in error. A deployed boom shows as idle at best, and what a unit without a boom reports is
 /// not said.
@@ -86,6 +88,8 @@ enumeration!(MagState: u8);
 /// MntState: an enumeration. Table 59.
 ///
 /// State of a magnetometer service.
+///
+/// Held by Primary Mag State in State; Red Mag State in State.
 ///
 /// Note MAG-009 (open): MntState: Mnt is not explained. The states belong to the magnetometers by
 /// the table that uses them; Mnt stands nowhere else.

@@ -6,6 +6,8 @@ use crate::support::enumeration;
 
 /// WheelErrorState: an enumeration. Table 48.
 ///
+/// Held by Wheel Error State in Wheel Speed.
+///
 /// ```
 /// use icd::cubewheel::enums::WheelErrorState;
 ///

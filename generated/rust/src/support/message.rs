@@ -36,7 +36,7 @@ pub trait Message: Copy + Debug + Display + Sized {
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// [`Error::Range`] if a value does not fit its field; never where every value does.
     fn to_bytes(&self) -> Result<Self::Bytes, Error>;
 }
 
@@ -50,7 +50,7 @@ pub trait Message: Copy + Debug + Display + Sized {
 /// }
 /// ```
 pub trait Telemetry: Message {
-    /// The id that requests it.
+    /// The id that requests it, in 32 bits whatever the node's ids have: the constants of the type have as many as these.
     const TELEMETRY_ID: u32;
 }
 
@@ -65,7 +65,7 @@ pub trait Telemetry: Message {
 /// }
 /// ```
 pub trait Telecommand: Message {
-    /// The id that sends it.
+    /// The id that sends it, in 32 bits whatever the node's ids have: the constants of the type have as many as these.
     const TELECOMMAND_ID: u32;
 }
 

@@ -40,8 +40,11 @@ pub(crate) use self::wide::{Big, Wide};
 /// ```
 /// use icd::Error;
 ///
-/// let error = Error::Range { field: "Mode" };
-/// assert_eq!(error.to_string(), "the value does not fit `Mode`");
+/// let error = Error::Range {
+///     field: "Flow",
+///     allowed: "0 to 6553.5 m/s",
+/// };
+/// assert_eq!(error.to_string(), "`Flow` takes 0 to 6553.5 m/s");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -58,6 +61,8 @@ pub enum Error {
     Range {
         /// The field, as the ICD calls it.
         field: &'static str,
+        /// What it takes, in words.
+        allowed: &'static str,
     },
     /// The node has no message of that id in that direction.
     UnknownId {
@@ -67,6 +72,10 @@ pub enum Error {
 }
 
 impl Error {
+    pub(crate) const fn range(field: &'static str, allowed: &'static str) -> Self {
+        Self::Range { field, allowed }
+    }
+
     /// Out of line, so that it costs a decoder nothing.
     #[cold]
     #[inline(never)]
@@ -81,7 +90,7 @@ impl fmt::Display for Error {
             Self::Length { expected, actual } => {
                 write!(out, "{expected} bytes expected, {actual} given")
             }
-            Self::Range { field } => write!(out, "the value does not fit `{field}`"),
+            Self::Range { field, allowed } => write!(out, "`{field}` takes {allowed}"),
             Self::UnknownId { id } => write!(out, "there is no message of id {id}"),
         }
     }

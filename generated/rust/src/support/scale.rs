@@ -8,6 +8,7 @@ use super::Error;
 #[derive(Debug)]
 pub(crate) struct Scale {
     pub(crate) field: &'static str,
+    pub(crate) allowed: &'static str,
     pub(crate) min: i128,
     pub(crate) max: i128,
     pub(crate) factor: i128,
@@ -16,14 +17,16 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
-    /// Of `field`, for raw values from `min` to `max`, with factor, offset and divisor.
+    /// Of `field`, which takes what is `allowed`: raw values from `min` to `max`, with factor, offset and divisor.
     pub(crate) const fn new(
         field: &'static str,
+        allowed: &'static str,
         (min, max): (i128, i128),
         (factor, offset, divisor): (i128, i128, i128),
     ) -> Self {
         Self {
             field,
+            allowed,
             min,
             max,
             factor,
@@ -33,7 +36,7 @@ impl Scale {
     }
 
     const fn refusal(&self) -> Error {
-        Error::Range { field: self.field }
+        Error::range(self.field, self.allowed)
     }
 
     /// The raw value, if the field can hold it.
@@ -196,5 +199,5 @@ fn quotient(value: u128, divisor: u128, rounding: Rounding) -> f64 {
 
 /// The value of a field that must be there.
 pub(crate) fn there<T>(field: &'static str, value: Option<T>) -> Result<T, Error> {
-    value.ok_or(Error::Range { field })
+    value.ok_or(Error::range(field, "a value where its condition holds"))
 }

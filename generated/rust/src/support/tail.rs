@@ -95,7 +95,10 @@ pub(crate) fn elements(
 ) -> Result<usize, Error> {
     match count.try_into() {
         Ok(count) if (low..=high).contains(&count) => Ok(count - low),
-        _ => Err(Error::Range { field }),
+        _ => Err(Error::range(
+            field,
+            "a number of elements that a frame can have",
+        )),
     }
 }
 

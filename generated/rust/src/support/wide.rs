@@ -133,6 +133,7 @@ fn halves(value: i128) -> [u64; 2] {
 #[derive(Debug)]
 pub(crate) struct Wide {
     pub(crate) field: &'static str,
+    pub(crate) allowed: &'static str,
     pub(crate) min: i128,
     pub(crate) max: i128,
     pub(crate) factor: Big,
@@ -142,7 +143,7 @@ pub(crate) struct Wide {
 
 impl Wide {
     const fn refusal(&self) -> Error {
-        Error::Range { field: self.field }
+        Error::range(self.field, self.allowed)
     }
 
     /// The raw value, if the field can hold it.

@@ -310,7 +310,7 @@ impl<'a> Writer<'a> {
             ("milliseconds", self.form.milliseconds, milliseconds),
         ] {
             if !put_number(part_mut(out, span.at, span.bytes), value, self.little) {
-                return Err(Error::Range { field });
+                return Err(Error::range(field));
             }
         }
         let slots = out.get_mut(self.form.frames_at..).unwrap_or(&mut []);

@@ -58,7 +58,7 @@ impl DosTime {
     pub fn pack(&self, link: &Link) -> Result<u32, Error> {
         let form = form(link)?;
         if let Some(field) = self.wrong() {
-            return Err(Error::Range { field });
+            return Err(Error::range(field));
         }
         let parts = [
             ("year", &form.year, self.year),
@@ -70,7 +70,7 @@ impl DosTime {
         ];
         let mut packed = 0;
         for (field, part, value) in parts {
-            packed |= pack(part, value).ok_or(Error::Range { field })?;
+            packed |= pack(part, value).ok_or(Error::range(field))?;
         }
         Ok(packed)
     }

@@ -161,7 +161,7 @@ pub(crate) fn put_element<T>(
             *target = value;
             Ok(())
         }
-        None => Err(Error::Range { field }),
+        None => Err(Error::range(field, "an index of its elements")),
     }
 }
 

@@ -1,44 +1,53 @@
-//! Formulas that are computed in doubles: Horner's rule, every product and every sum rounded.
+//! Curves, which are computed in doubles: Horner's rule, every difference, product and sum rounded.
 
 use super::Error;
 
-/// Coefficients of a polynomial, the constant first, and what the raw value of a field may be; of a float, nothing.
+/// From a raw value on, the terms of a polynomial in what is above that, the constant first; without terms, no number.
+pub(crate) type Piece = (f64, &'static [f64]);
+
+/// Pieces in the order of their raw values, and which of these physical values lead back to; of a float, none.
 #[derive(Debug)]
 pub(crate) struct Curve {
     pub(crate) field: &'static str,
+    pub(crate) allowed: &'static str,
     pub(crate) min: i32,
     pub(crate) max: i32,
-    pub(crate) coefficients: &'static [f64],
+    pub(crate) pieces: &'static [Piece],
 }
 
 impl Curve {
-    /// Of `field`, for raw values from `min` to `max`, between which the physical ones rise or fall all along.
+    /// Of `field`, which takes what is `allowed`, for raw values from `min` to `max`, between which the physical ones rise or fall all along.
     ///
     /// Both are 0 where no physical value is set, or that of a float.
     pub(crate) const fn new(
         field: &'static str,
+        allowed: &'static str,
         (min, max): (i32, i32),
-        coefficients: &'static [f64],
+        pieces: &'static [Piece],
     ) -> Self {
         Self {
             field,
+            allowed,
             min,
             max,
-            coefficients,
+            pieces,
         }
     }
 
     const fn refusal(&self) -> Error {
-        Error::Range { field: self.field }
+        Error::range(self.field, self.allowed)
     }
 
     /// The physical value of a number; one that is none has always the same bits.
     pub(crate) fn physical(&self, raw: f64) -> f64 {
-        let mut powers = self.coefficients.iter().rev();
-        let highest = powers.next().copied().unwrap_or(0.0);
+        let before = self.pieces.partition_point(|&(start, _)| start <= raw);
+        let piece = self.pieces.get(before.saturating_sub(1));
+        let (start, terms) = piece.copied().unwrap_or((0.0, &[]));
+        let (above, mut powers) = (raw - start, terms.iter().rev());
+        let highest = powers.next().copied().unwrap_or(f64::NAN);
         #[allow(clippy::suboptimal_flops)] // one step for two would round once
-        let value = powers.fold(highest, |value, coefficient| value * raw + coefficient);
-        if value.is_nan() {
+        let value = powers.fold(highest, |value, term| value * above + term);
+        if value.is_nan() || raw.is_nan() {
             f64::NAN
         } else {
             value
@@ -94,8 +103,8 @@ impl Curve {
 
     /// The number of a line: `(physical - constant) / slope`.
     pub(crate) fn number(&self, physical: f64) -> Result<f64, Error> {
-        let found = match self.coefficients {
-            [constant, slope] if physical.is_finite() => (physical - constant) / slope,
+        let found = match self.pieces {
+            [(_, [constant, slope])] if physical.is_finite() => (physical - constant) / slope,
             _ => f64::NAN,
         };
         if found.is_finite() {

@@ -109,7 +109,7 @@ impl Field {
         })
     }
 
-    /// The physical value of a raw one, the double nearest to it but of a polynomial; None without a formula.
+    /// The physical value of a raw one, the double nearest to it but of a curve; None without a formula.
     #[must_use]
     pub fn physical(&self, raw: i64) -> Option<f64> {
         self.converted(raw.into())

@@ -6,6 +6,7 @@ use super::Error;
 #[derive(Debug)]
 pub(crate) struct Scale {
     pub(crate) field: &'static str,
+    pub(crate) allowed: &'static str,
     pub(crate) min: i128,
     pub(crate) max: i128,
     pub(crate) factor: i128,
@@ -14,14 +15,16 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
-    /// Of `field`, for raw values from `min` to `max`, with factor, offset and divisor.
+    /// Of `field`, which takes what is `allowed`: raw values from `min` to `max`, with factor, offset and divisor.
     pub(crate) const fn new(
         field: &'static str,
+        allowed: &'static str,
         (min, max): (i128, i128),
         (factor, offset, divisor): (i128, i128, i128),
     ) -> Self {
         Self {
             field,
+            allowed,
             min,
             max,
             factor,
@@ -31,7 +34,7 @@ impl Scale {
     }
 
     const fn refusal(&self) -> Error {
-        Error::Range { field: self.field }
+        Error::range(self.field, self.allowed)
     }
 
     /// The raw value, if the field can hold it.
@@ -194,5 +197,5 @@ fn quotient(value: u128, divisor: u128, rounding: Rounding) -> f64 {
 
 /// The value of a field that must be there.
 pub(crate) fn there<T>(field: &'static str, value: Option<T>) -> Result<T, Error> {
-    value.ok_or(Error::Range { field })
+    value.ok_or(Error::range(field, "a value where its condition holds"))
 }

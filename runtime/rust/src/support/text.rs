@@ -21,6 +21,6 @@ pub(crate) fn text_array<const N: usize>(
             target.copy_from_slice(text.as_bytes());
             Ok(bytes)
         }
-        _ => Err(Error::Range { field }),
+        _ => Err(Error::range(field, "ASCII without NUL, no longer than it")),
     }
 }

@@ -41,14 +41,24 @@ pub enum Error {
     Range {
         /// What it is a value of.
         field: &'static str,
+        /// What it takes, in words; empty where the field of a message does not say it.
+        allowed: &'static str,
     },
+}
+
+impl Error {
+    /// A value does not fit its place, which is none of a message.
+    pub(crate) const fn range(field: &'static str) -> Self {
+        let allowed = "";
+        Self::Range { field, allowed }
+    }
 }
 
 impl From<crate::Error> for Error {
     fn from(error: crate::Error) -> Self {
         match error {
             crate::Error::Length { expected, actual } => Self::Length { expected, actual },
-            crate::Error::Range { field } => Self::Range { field },
+            crate::Error::Range { field, allowed } => Self::Range { field, allowed },
             crate::Error::UnknownId { id } => Self::UnknownId {
                 id: u8::try_from(id).unwrap_or(u8::MAX),
             },
@@ -72,7 +82,8 @@ impl fmt::Display for Error {
                     "the checksum is {actual:#x}, of the data {expected:#x}"
                 )
             }
-            Self::Range { field } => write!(out, "the value does not fit `{field}`"),
+            Self::Range { field, allowed: "" } => write!(out, "the value does not fit `{field}`"),
+            Self::Range { field, allowed } => write!(out, "`{field}` takes {allowed}"),
         }
     }
 }

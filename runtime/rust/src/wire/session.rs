@@ -60,8 +60,8 @@ impl From<crate::Error> for Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Port(_) => out.write_str("the port failed"),
-            Self::Wire(_) => out.write_str("it cannot be asked, or what came is no such message"),
+            Self::Port(error) => write!(out, "the port failed: {error}"),
+            Self::Wire(error) => error.fmt(out),
             Self::Refused { id, code, reason } => {
                 write!(out, "request {id} is refused")?;
                 code.map_or(Ok(()), |code| write!(out, ", code {code}"))?;

@@ -10,7 +10,11 @@ __all__ = ["ProgramsList"]
 
 
 class ProgramsList(_enumeration.OpenEnum):
-    """ProgramsList: an enumeration. Table 66."""
+    """ProgramsList: an enumeration. Table 66.
+
+    Held by Program Index in Read Program Information and Program Information; Source
+    Program Index in Copy Program to Internal Flash.
+    """
 
     BOOTLOADER = 0, "Bootloader"
     """Note BOOT-009 (certain): Three enumerations of program places.

@@ -10,7 +10,10 @@ __all__ = ["BootCause"]
 
 
 class BootCause(_enumeration.OpenEnum):
-    """BootCause: an enumeration. Table 30."""
+    """BootCause: an enumeration. Table 30.
+
+    Held by Boot Cause in Boot And Running Program Status.
+    """
 
     UNEXPECTED = 0, "Unexpected"
     NOT_USED_1 = 1, "Not Used"

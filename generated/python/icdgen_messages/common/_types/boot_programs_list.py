@@ -10,7 +10,11 @@ __all__ = ["BootProgramsList"]
 
 
 class BootProgramsList(_enumeration.OpenEnum):
-    """BootProgramsList: an enumeration. Table 31."""
+    """BootProgramsList: an enumeration. Table 31.
+
+    Held by Boot Program Index in Boot And Running Program Status; Program Index in Boot
+    Index and Status.
+    """
 
     INTERNAL_FLASH_PROGRAM = 1, "Internal Flash Program"
     BOOTLOADER = 2, "Bootloader"

@@ -10,7 +10,10 @@ __all__ = ["ResetCause"]
 
 
 class ResetCause(_enumeration.OpenEnum):
-    """ResetCause: an enumeration. Table 29."""
+    """ResetCause: an enumeration. Table 29.
+
+    Held by Cause of MCU Reset in Boot And Running Program Status.
+    """
 
     POWER_ON_RESET = 0, "Power-On Reset"
     BROWN_OUT_DETECTED_ON_REGULATED_POWER = 1, "Brown-Out Detected on Regulated Power"

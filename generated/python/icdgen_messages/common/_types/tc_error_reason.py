@@ -10,7 +10,10 @@ __all__ = ["TcErrorReason"]
 
 
 class TcErrorReason(_enumeration.OpenEnum):
-    """TcErrorReason: an enumeration. Table 40."""
+    """TcErrorReason: an enumeration. Table 40.
+
+    Held by TC error status in Telecommand Acknowledge.
+    """
 
     NO_ERROR = 0, "No Error"
     INVALID_TC = 1, "Invalid TC"

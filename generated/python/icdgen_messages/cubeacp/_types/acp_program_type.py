@@ -10,7 +10,10 @@ __all__ = ["AcpProgramType"]
 
 
 class AcpProgramType(_enumeration.OpenEnum):
-    """AcpProgramType: an enumeration. Table 202."""
+    """AcpProgramType: an enumeration. Table 202.
+
+    Held by ACP Type in ADCS System Configuration.
+    """
 
     THREE_AXIS_ACP = 0, "3-Axis ACP"
     Y_MOMENTUM_ACP = 1, "Y-Momentum ACP"

@@ -10,7 +10,11 @@ __all__ = ["AdcsRunMode"]
 
 
 class AdcsRunMode(_enumeration.OpenEnum):
-    """AdcsRunMode: an enumeration. Table 75."""
+    """AdcsRunMode: an enumeration. Table 75.
+
+    Held by Enabled in ADCS Run Mode; ADCS Run Mode in Current ADCS State and ADCS
+    State.
+    """
 
     OFF = 0, "Off"
     """The loop does not run.

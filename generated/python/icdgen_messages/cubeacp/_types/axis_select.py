@@ -10,7 +10,15 @@ __all__ = ["AxisSelect"]
 
 
 class AxisSelect(_enumeration.OpenEnum):
-    """AxisSelect: an enumeration. Table 180."""
+    """AxisSelect: an enumeration. Table 180.
+
+    Held by Magnetorquer 1 Configuration in Set Magnetorquer Configuration and ADCS
+    Configuration; Magnetorquer 2 Configuration in Set Magnetorquer Configuration and
+    ADCS Configuration; Magnetorquer 3 Configuration in Set Magnetorquer Configuration
+    and ADCS Configuration; RW1 Configuration in Set Wheel Configuration and ADCS
+    Configuration; RW2 Configuration in Set Wheel Configuration and ADCS Configuration;
+    17 other fields.
+    """
 
     POSITIVE_X = 0, "Positive X"
     NEGATIVE_X = 1, "Negative X"

@@ -12,6 +12,9 @@ __all__ = ["ConModeSelect"]
 class ConModeSelect(_enumeration.OpenEnum):
     """ConModeSelect: an enumeration. Table 78.
 
+    Held by Control Mode in Set Attitude Control Mode, Current ADCS State and ADCS
+    State.
+
     Note ACP-024 (open): Control modes that are named and not listed. An inertial
     pointing control mode has a reference vector, and GEO tracking, inertial and two sun
     pointing modes are special selections. The list of control modes has none of them.

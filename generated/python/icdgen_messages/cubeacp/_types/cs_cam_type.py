@@ -10,7 +10,11 @@ __all__ = ["CsCamType"]
 
 
 class CsCamType(_enumeration.OpenEnum):
-    """CsCamType: an enumeration. Table 204."""
+    """CsCamType: an enumeration. Table 204.
+
+    Held by CubeSense1 Camera Type in ADCS System Configuration; CubeSense2 Camera Type
+    in ADCS System Configuration.
+    """
 
     SUN_SENSOR = 0, "Sun Sensor"
     NADIR_SENSOR = 1, "Nadir Sensor"

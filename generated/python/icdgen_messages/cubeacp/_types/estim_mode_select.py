@@ -10,7 +10,11 @@ __all__ = ["EstimModeSelect"]
 
 
 class EstimModeSelect(_enumeration.OpenEnum):
-    """EstimModeSelect: an enumeration. Table 80."""
+    """EstimModeSelect: an enumeration. Table 80.
+
+    Held by Attitude Estimation Mode in Set Attitude Estimation Mode, Current ADCS State
+    and ADCS State.
+    """
 
     NO_ATTITUDE_ESTIMATION = 0, "No attitude estimation"
     MEMS_RATE_SENSING = 1, "MEMS rate sensing"

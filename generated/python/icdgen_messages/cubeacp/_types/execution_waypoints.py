@@ -10,7 +10,10 @@ __all__ = ["ExecutionWaypoints"]
 
 
 class ExecutionWaypoints(_enumeration.OpenEnum):
-    """ExecutionWaypoints: an enumeration. Table 168."""
+    """ExecutionWaypoints: an enumeration. Table 168.
+
+    Held by Current Execution Point in ACP Execution State.
+    """
 
     INIT = 0, "Init"
     IDLE = 1, "Idle"

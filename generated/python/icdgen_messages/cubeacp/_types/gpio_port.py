@@ -10,7 +10,13 @@ __all__ = ["GpioPort"]
 
 
 class GpioPort(_enumeration.OpenEnum):
-    """GpioPort: an enumeration. Table 206."""
+    """GpioPort: an enumeration. Table 206.
+
+    Held by CC Signal Enable Port in ADCS System Configuration; CC Motor Enable Port in
+    ADCS System Configuration; CC Common Enable Port in ADCS System Configuration;
+    CubeSense1 Enable Port in ADCS System Configuration; CubeSense2 Enable Port in ADCS
+    System Configuration; 4 other fields.
+    """
 
     PORT_A = 0, "Port A"
     PORT_B = 1, "Port B"

@@ -10,7 +10,13 @@ __all__ = ["GpioPortPin"]
 
 
 class GpioPortPin(_enumeration.OpenEnum):
-    """GpioPortPin: an enumeration. Table 207."""
+    """GpioPortPin: an enumeration. Table 207.
+
+    Held by CC Signal Enable Pin in ADCS System Configuration; CC Motor Enable Pin in
+    ADCS System Configuration; CC Common Enable Pin in ADCS System Configuration;
+    CubeSense1 Enable Pin in ADCS System Configuration; CubeSense2 Enable Pin in ADCS
+    System Configuration; 4 other fields.
+    """
 
     PIN_0 = 0, "Pin 0"
     PIN_1 = 1, "Pin 1"

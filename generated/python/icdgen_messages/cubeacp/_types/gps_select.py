@@ -10,7 +10,10 @@ __all__ = ["GpsSelect"]
 
 
 class GpsSelect(_enumeration.OpenEnum):
-    """GpsSelect: an enumeration. Table 205."""
+    """GpsSelect: an enumeration. Table 205.
+
+    Held by GPS Type in ADCS System Configuration.
+    """
 
     NO_GPS_SUPPORT = 0, "No GPS Support"
     NOVATEL_GPS = 1, "Novatel GPS"

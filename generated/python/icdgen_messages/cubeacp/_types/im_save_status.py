@@ -10,7 +10,10 @@ __all__ = ["ImSaveStatus"]
 
 
 class ImSaveStatus(_enumeration.OpenEnum):
-    """ImSaveStatus: an enumeration. Table 177."""
+    """ImSaveStatus: an enumeration. Table 177.
+
+    Held by Status in Status of Image Capture and Save Operation.
+    """
 
     NO_ERROR = 0, "No Error"
     SENSOR_TIMEOUT = 1, "Timeout waiting for sensor to become available"

@@ -10,7 +10,10 @@ __all__ = ["ImSize"]
 
 
 class ImSize(_enumeration.OpenEnum):
-    """ImSize: an enumeration. Table 96."""
+    """ImSize: an enumeration. Table 96.
+
+    Held by Image Size in Save Image.
+    """
 
     SIZE_0 = 0, "Size 0"
     """1024 x 1024 pixels."""

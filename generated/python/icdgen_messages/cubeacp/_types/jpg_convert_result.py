@@ -10,7 +10,10 @@ __all__ = ["JpgConvertResult"]
 
 
 class JpgConvertResult(_enumeration.OpenEnum):
-    """JpgConvertResult: an enumeration. Table 100."""
+    """JpgConvertResult: an enumeration. Table 100.
+
+    Held by Conversion Result in JPG Conversion Progress.
+    """
 
     NOTHING_CONVERTED_YET = 0, "Nothing Converted Yet"
     SUCCESS = 1, "Success"

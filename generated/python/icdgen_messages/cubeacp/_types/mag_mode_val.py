@@ -14,6 +14,11 @@ class MagModeVal(_enumeration.OpenEnum):
 
     MTM is the magnetometer, Signal and Motor are the microcontrollers that sample it.
 
+    Held by Magnetometer Mode in Set Mode of Magnetometer Operation, ADCS Configuration
+    and Estimation Parameters; Current Magnetometer Sampling Mode in ADCS State and
+    Current ADCS State 2; Magnetometer Selection for RAW MTM TLM in ADCS Configuration
+    and Estimation Parameters.
+
     Note ACP-050 (open): MagModeVal: one combination is missing, and None is not
     explained. The redundant magnetometer cannot be sampled through the motor
     controller, the main one can. What None does to estimation and control is not said.

@@ -10,7 +10,13 @@ __all__ = ["PowerSelect"]
 
 
 class PowerSelect(_enumeration.OpenEnum):
-    """PowerSelect: an enumeration. Table 185."""
+    """PowerSelect: an enumeration. Table 185.
+
+    Held by CubeControl Signal Power Selection in ADCS Power Control; CubeControl Motor
+    Power Selection in ADCS Power Control; CubeSense1 Power Selection in ADCS Power
+    Control; CubeSense2 Power Selection in ADCS Power Control; CubeStarPower Power
+    Selection in ADCS Power Control; 5 other fields.
+    """
 
     OFF = 0, "Off"
     ON = 1, "On"

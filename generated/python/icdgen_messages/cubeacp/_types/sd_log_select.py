@@ -10,7 +10,10 @@ __all__ = ["SdLogSelect"]
 
 
 class SdLogSelect(_enumeration.OpenEnum):
-    """SdLogSelect: an enumeration. Table 211."""
+    """SdLogSelect: an enumeration. Table 211.
+
+    Held by Log Destination in SD Log1 Configuration and SD Log2 Configuration.
+    """
 
     PRIMARY_SD_CARD = 0, "Primary SD Card"
     """On board."""

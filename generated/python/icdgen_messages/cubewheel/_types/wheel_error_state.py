@@ -10,7 +10,10 @@ __all__ = ["WheelErrorState"]
 
 
 class WheelErrorState(_enumeration.OpenEnum):
-    """WheelErrorState: an enumeration. Table 48."""
+    """WheelErrorState: an enumeration. Table 48.
+
+    Held by Wheel Error State in Wheel Speed.
+    """
 
     DATA_VALID = 0, "Data Valid"
     ENCODER_NO_RESPONSE = 1, "Encoder No Response"

@@ -55,9 +55,7 @@ impl<'a> Splitter<'a> {
         let id = can.identifier(number, message);
         Ok(Self {
             data: message.data,
-            id: id.ok_or(Error::Range {
-                field: "identifier",
-            })?,
+            id: id.ok_or(Error::range("identifier"))?,
             extended,
             count,
             next: 0,

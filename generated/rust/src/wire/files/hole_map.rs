@@ -75,7 +75,7 @@ impl HoleMap {
 
     fn empty(files: &Files, form: &HoleMapForm, packets: usize) -> Result<Self, Error> {
         if packets > form.bytes.saturating_mul(8) {
-            return Err(Error::Range { field: "packets" });
+            return Err(Error::range("packets"));
         }
         Ok(Self {
             bytes: [0; MAP_BYTES],
@@ -94,7 +94,7 @@ impl HoleMap {
     ///
     /// [`Error::Range`] if the block does not have this packet.
     pub fn set(&mut self, number: u32) -> Result<(), Error> {
-        let error = Error::Range { field: "number" };
+        let error = Error::range("number");
         let bit = index(number.checked_sub(self.first).ok_or(error)?);
         if bit >= self.packets {
             return Err(error);

@@ -104,7 +104,7 @@ impl IndexEntry<'_> {
         ] {
             let place = part_mut(out, span.at, span.bytes);
             if !put_number(place, value.into(), link.little) {
-                return Err(Error::Range { field });
+                return Err(Error::range(field));
             }
         }
         let (expected, actual) = (form.meta.bytes, self.meta.len());

@@ -172,7 +172,7 @@ impl Core {
 pub(super) fn allowed(numbers: &[u8], number: u8, field: &'static str) -> Result<(), Error> {
     // Not `contains`, which indexes for bytes, and Rust 1.63 does not see that it stays in range.
     if !numbers.is_empty() && numbers.iter().all(|one| *one != number) {
-        Err(Error::Range { field })
+        Err(Error::range(field))
     } else {
         Ok(())
     }

@@ -35,6 +35,7 @@ pub struct Decoder<const N: usize, const S: usize> {
     limit: usize,
     buffer: [u8; N],
     length: usize,
+    needed: usize, // bytes in the buffer with which the next thing is decided, where a field tells the length
     sequences: Sequences<S>,
     pending: u64,
     discarded: u64,
@@ -78,6 +79,7 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
             limit: actual.min(link.longest),
             buffer: [0; N],
             length: 0,
+            needed: 0,
             sequences: Sequences::new(),
             pending: 0,
             discarded: 0,
@@ -104,12 +106,7 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
     pub fn feed(&mut self, bytes: &[u8], mut on_event: impl FnMut(Event<'_>)) {
         let end = match self.form.delimited_by {
             Delimiter::Packet => return self.packet(bytes, &mut on_event),
-            Delimiter::Length => {
-                for byte in bytes {
-                    self.append(*byte, &mut on_event);
-                }
-                return;
-            }
+            Delimiter::Length => return self.append(bytes, &mut on_event),
             Delimiter::Slip => SLIP_END,
             Delimiter::Hdlc => HDLC_FLAG,
             Delimiter::Cobs => 0,
@@ -142,21 +139,40 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
         self.discarded = self.discarded.wrapping_add(count);
     }
 
-    /// A byte where a field of the length delimits messages. A full buffer is always decided.
-    fn append(&mut self, byte: u8, on_event: &mut dyn FnMut(Event<'_>)) {
-        if let Some(place) = self.buffer.get_mut(self.length) {
-            *place = byte;
-            self.length += 1;
+    /// Bytes where a field of the length delimits messages. A full buffer is always decided.
+    fn append(&mut self, bytes: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            let wanted = self
+                .needed
+                .saturating_sub(self.length)
+                .max(1)
+                .min(rest.len());
+            let free = self.buffer.iter_mut().skip(self.length);
+            for (place, byte) in free.zip(rest.iter().take(wanted)) {
+                *place = *byte;
+            }
+            self.length += wanted;
+            rest = rest.get(wanted..).unwrap_or(&[]);
+            if self.length >= self.needed {
+                self.decide(on_event);
+            }
         }
+        self.pending = u64::try_from(self.length).unwrap_or(0);
+    }
+
+    /// Takes out of the buffer all that can be said something of.
+    fn decide(&mut self, on_event: &mut dyn FnMut(Event<'_>)) {
         let mut at = 0;
+        self.needed = 0;
         while let Some(count) = self.front(at, on_event) {
             at += count;
+            self.needed = 0;
         }
         if at > 0 {
             self.buffer.copy_within(at..self.length, 0);
             self.length -= at;
         }
-        self.pending = u64::try_from(self.length).unwrap_or(0);
     }
 
     /// What the buffer has from `at` on: bytes to go on, none while that is not decided.
@@ -186,6 +202,9 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
             });
             self.drop_bytes(1);
             return Some(1);
+        }
+        if frame.len() < size {
+            self.needed = size;
         }
         let whole = frame.get(..size)?;
         let verdict = judge.judge(whole, &mut self.sequences, on_event);

@@ -53,7 +53,7 @@ impl From<icd::Error> for Refusal {
     fn from(error: icd::Error) -> Self {
         Self(match error {
             icd::Error::Length { expected, actual } => counted("length", expected, actual),
-            icd::Error::Range { field } => ranged(field),
+            icd::Error::Range { field, .. } => ranged(field),
             _ => "unknown-id".into(),
         })
     }

@@ -26,7 +26,7 @@ pub fn explained(error: &Error) -> String {
         Error::Checksum { expected, actual } => {
             format!("checksum expected={expected} actual={actual}")
         }
-        Error::Range { field } => ranged(field),
+        Error::Range { field, .. } => ranged(field),
         _ => "other".into(),
     }
 }

@@ -1,0 +1,249 @@
+"""Models of SunSpec (JSON): blocks of Modbus registers of 16 bits, the most significant byte and word first."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from decimal import Decimal
+from typing import Any, NamedTuple
+
+from icdgen.definitions.enumerations import Enumerations, members
+from icdgen.definitions.frames import BIG, ORDERS
+from icdgen.definitions.model import Definitions, Item, Network, NotHeld, unreadable
+from icdgen.definitions.wording import formula, line, node_name, printed, summary, unit
+from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
+
+RAW_ONLY = "IMP078"
+_REGISTER = 16  # bits
+_MOST_DEPTH = 8  # of groups within groups
+_MOST_POINTS = 20_000  # of a file
+_MOST_REGISTERS = MOST_BYTES // 2
+_LONGEST = 2048  # bytes of a model in which a group is repeated any number of times
+_HEAD = 2 * _REGISTER  # id and length, which each model has
+# Units that are another spelling of one that is built in.
+_SPELLED = {"Secs": "s", "mSecs": "ms", "Degrees": "deg", "Pct": "%", "HPa": "hPa", "mps": "m/s"}
+_NONE, _NOT_COUNTED = "not implemented", "not accumulated"
+
+
+class _Kind(NamedTuple):
+    """How a type of points is held. ``registers`` is 0 where the point says it; ``none`` is the value that is none."""
+
+    type: str
+    registers: int
+    none: int | str | None = None
+
+
+_KINDS = {
+    **{f"int{bits}": _Kind("int", bits // 16, -(1 << bits - 1)) for bits in (16, 32, 64)},
+    **{f"uint{bits}": _Kind("uint", bits // 16, (1 << bits) - 1) for bits in (16, 32, 64)},
+    **{f"acc{bits}": _Kind("uint", bits // 16, 0) for bits in (16, 32, 64)},
+    **{f"enum{bits}": _Kind("uint", bits // 16, (1 << bits) - 1) for bits in (16, 32)},
+    **{f"bitfield{bits}": _Kind("uint", bits // 16, (1 << bits) - 1) for bits in (16, 32, 64)},
+    **{f"float{bits}": _Kind("float", bits // 16, "nan") for bits in (32, 64)},
+    "raw16": _Kind("uint", 1),
+    "count": _Kind("uint", 1, 0xFFFF),
+    "sunssf": _Kind("int", 1, -0x8000),
+    "pad": _Kind("uint", 1),
+    "string": _Kind("text", 0),
+    "ipaddr": _Kind("bytes", 2),
+    "ipv6addr": _Kind("bytes", 8),
+    "eui48": _Kind("bytes", 4),
+}
+
+
+class SunSpec:
+    """A model, or a list of those that a device has."""
+
+    name = "sunspec"
+    title = "a SunSpec model"
+    needs: tuple[str, ...] = ()
+
+    def knows(self, start: str) -> bool:
+        return start.lstrip()[:1] in ("{", "[") and all(f'"{key}"' in start for key in ("group", "points", "name"))
+
+    def read(self, file: str, data: bytes) -> Definitions:
+        """Raises `Findings` for what is no JSON, or no model."""
+        models = _parse(file, data)
+        to = Definitions(file)
+        title = _text(models[0]["group"], "label") if len(models) == 1 else ""
+        network = Network(node_name(file), title or node_name(file), {**ORDERS[BIG], "id_bits": _REGISTER})
+        to.networks.append(network)
+        enums = Enumerations()
+        left = [_MOST_POINTS]
+        for tree in sorted(models, key=lambda one: int(one["id"])):
+            to.total += 1
+            model = _Model(tree, enums, to, left, {one["name"] for one in network.structs})
+            try:
+                network.messages.append(model.message())
+            except NotHeld as why:
+                to.left_out(model.name, why)
+            else:
+                network.structs += model.structs
+        declared = enums.declared()
+        used = {one.get("enum") for owner in (*network.messages, *network.structs) for one in owner["fields"]}
+        network.enums = [one for one in declared if one["name"] in used]
+        return to
+
+
+def _parse(file: str, data: bytes) -> list[dict[str, Any]]:
+    """The models. Raises `Findings`."""
+    try:
+        tree = json.loads(data.decode("utf-8-sig"))
+    except json.JSONDecodeError as error:
+        raise unreadable(file, f"not JSON: {error.msg}", "correct the file", error.lineno) from None
+    except (UnicodeDecodeError, RecursionError, ValueError):
+        raise unreadable(file, "not JSON", "a model is a JSON object with `id` and `group`") from None
+    models = tree if isinstance(tree, list) else [tree]
+    for one in models:
+        group = one.get("group") if isinstance(one, dict) else None
+        if not isinstance(group, dict) or type(one.get("id")) is not int or one["id"] >> _REGISTER:
+            raise unreadable(
+                file, "not a model of SunSpec, nor a list of them", "a model has an `id` of 16 bits and a `group`"
+            )
+    if not models:
+        raise unreadable(file, "the list holds no model", "a model has an `id` and a `group`")
+    return models
+
+
+class _Model:
+    """A model on its way to a message; what is declared for it on the way are ``structs``."""
+
+    def __init__(
+        self, tree: dict[str, Any], enums: Enumerations, to: Definitions, left: list[int], taken: set[str]
+    ) -> None:
+        self.id, self.group = int(tree["id"]), tree["group"]
+        self.name = _text(self.group, "name") or f"model {self.id}"
+        self.enums, self.to, self.left, self.taken = enums, to, left, taken
+        self.structs: list[Item] = []
+        self.scaled: list[str] = []
+
+    def message(self) -> Item:
+        """Raises `NotHeld`."""
+        fields: list[Item] = []
+        end = self.block(self.group, fields, 0, "", 0)
+        if not fields:
+            raise NotHeld("it has no points")
+        told: Item = {"name": self.name, "id": self.id, "kind": "telemetry", "length": end // 8} | _said(self.group)
+        if self.scaled:
+            shown = ", ".join(f"`{name}`" for name in self.scaled[:3]) + (" ..." if len(self.scaled) > 3 else "")
+            self.to.warn(
+                RAW_ONLY,
+                f"message `{self.name}`: the factors of {len(self.scaled)} points stand in other registers: {shown}",
+                "raw values are held; their summaries say what to multiply them by",
+                severity="info",
+            )
+        return {**told, "fields": fields}
+
+    def block(self, group: dict[str, Any], fields: list[Item], at: int, before: str, depth: int) -> int:
+        """Appends the points of a group and of those in it; the bit where what has a fixed place ends. Raises `NotHeld`."""
+        if depth > _MOST_DEPTH:
+            raise NotHeld(f"groups stand in each other more than {_MOST_DEPTH} deep")
+        for point in _list(group, "points"):
+            fields.append(self.point(point, before, at, is_head=not depth and at < _HEAD))
+            at += fields[-1]["bits"]
+        for inner in _list(group, "groups"):
+            if fields and "up_to" in fields[-1]:
+                raise NotHeld(f"`{_text(inner, 'name')}` follows a group that is there any number of times")
+            if inner.get("count", 1) == 1 and type(inner.get("count", 1)) is int:
+                at = self.block(inner, fields, at, f"{before}{_text(inner, 'name')} ", depth + 1)
+            else:
+                fields.append(self.repeated(inner, fields, at, before, depth))
+                last = fields[-1]
+                at += 0 if "up_to" in last else 8 * self.structs[-1]["length"] * last["count"]
+        return at
+
+    def repeated(self, group: dict[str, Any], fields: list[Item], at: int, before: str, depth: int) -> Item:
+        """A group that is there several times, as a struct. Raises `NotHeld`."""
+        count, name = group["count"], _text(group, "name")
+        is_open = type(count) is not int or count <= 0
+        if is_open and depth:
+            raise NotHeld(f"`{name}`, which is there any number of times, stands in another group")
+        parts: list[Item] = []
+        length = self.block(group, parts, 0, "", depth + 1) // 8
+        if not length:
+            raise NotHeld(f"`{name}` has no points")
+        called = f"{before}{name}"
+        called = f"{self.name} {called}" if called in self.taken else called
+        self.taken.add(called)
+        struct: Item = {"name": called, **_said(group), "length": length, "fields": parts}
+        self.structs.append(struct)
+        one = {"at": at, "name": f"{before}{name}", "struct": struct["name"]}
+        if not is_open:
+            return {**one, "count": count}
+        if count != 0 and not any(part["name"] == count for part in fields):
+            raise NotHeld(f"`{name}` is counted by `{line(str(count), 60)}`, which does not stand in front of it")
+        count = count or REST
+        return {**one, "count": count, "up_to": max(1, min((_LONGEST - at // 8) // length, MOST_ELEMENTS))}
+
+    def point(self, point: dict[str, Any], before: str, at: int, is_head: bool) -> Item:
+        """A point as a field. Raises `NotHeld`."""
+        self.left[0] -= 1
+        if self.left[0] < 0:
+            raise NotHeld(f"the file has more than {_MOST_POINTS:,} points")
+        name, said = f"{before}{_text(point, 'name')}", _text(point, "type")
+        kind = _KINDS.get(said)
+        size = point.get("size")
+        registers = kind.registers or size if kind else 0
+        if kind is None or type(registers) is not int or not 0 < registers <= _MOST_REGISTERS:
+            raise NotHeld(
+                f"`{line(name, 80)}` is of the type `{line(said, 40)}`" + (f" and size {size}" if kind else "")
+            )
+        one: Item = {"at": at, "bits": _REGISTER * registers, "name": name, "type": kind.type}
+        none = _special(kind, said) if not is_head else {}
+        symbols = _symbols(point, is_bits=said.startswith("bitfield"))
+        if type(point.get("value")) is int and kind.type in ("int", "uint") and not symbols:
+            one |= {"const": point["value"], **_said(point)}
+            return one
+        if symbols and kind.type == "uint":
+            self.enums.give(one, name, self.name, members(symbols, 0, (1 << one["bits"]) - 1, f"`{name}`", self.to))
+            one["type"] = "enum"
+            none = none if none and none["special"][0]["value"] not in symbols else {}
+        one |= {**none, **(self.scale(point, name, kind) if one["type"] != "enum" else _said(point))}
+        return one  # the same mapping: an enumeration is named in it later
+
+    def scale(self, point: dict[str, Any], name: str, kind: _Kind) -> Item:
+        """Unit, formula and summary. Where another register has the factor, only the summary tells of both."""
+        power, symbol, said = point.get("sf"), _text(point, "units"), _said(point)
+        symbol = _SPELLED.get(symbol, symbol)
+        if isinstance(power, str) and kind.type in ("int", "uint"):
+            self.scaled.append(name)
+            told = f"{f'In {symbol} times' if symbol else 'Times'} 10 to the power of {line(power, 60)}."
+            return summary(f"{said['summary'].rstrip('. ')}. {told}" if said else told)
+        if kind.type not in ("int", "uint", "float"):
+            return said
+        is_power = type(power) is int and -20 <= power <= 20 and kind.type != "float"
+        scaled = formula(printed(Decimal(10) ** power)) if is_power and power is not None else {}
+        return {**unit(symbol), **scaled, **said}
+
+
+def _symbols(point: dict[str, Any], is_bits: bool) -> dict[int, str]:
+    """The names of values; of bits those of the values that have this bit alone."""
+    found: dict[int, str] = {}
+    for one in _list(point, "symbols"):
+        value = one.get("value")
+        if type(value) is int and 0 <= value < 1 << 32 and (not is_bits or value < 64):
+            found.setdefault(1 << value if is_bits else value, _text(one, "name"))
+    return found
+
+
+def _special(kind: _Kind, said: str) -> Item:
+    if kind.none is None:
+        return {}
+    return {"special": [{"value": kind.none, "meaning": _NOT_COUNTED if said.startswith("acc") else _NONE}]}
+
+
+def _said(of: dict[str, Any]) -> dict[str, str]:
+    """The key of a label and a description, each once."""
+    label, text = _text(of, "label"), _text(of, "desc")
+    same = label.casefold() in text.casefold()
+    return summary(text if same else f"{label}. {text}" if text else label)
+
+
+def _list(of: dict[str, Any], key: str) -> Iterator[dict[str, Any]]:
+    found = of.get(key)
+    yield from (one for one in found if isinstance(one, dict)) if isinstance(found, list) else ()
+
+
+def _text(of: dict[str, Any], key: str) -> str:
+    found = of.get(key)
+    return line(found) if isinstance(found, str) else ""

@@ -1,0 +1,157 @@
+"""Models of SunSpec become ICDs: points as fields, groups that are there several times as structs.
+
+What is read of random blocks is compared with pysunspec2's reading in tests/devices.
+"""
+
+from __future__ import annotations
+
+import copy
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from icdgen.definitions import kinds, run, sunspec
+from icdgen.definitions.model import Definitions
+from icdgen.diagnostics import Findings
+from tests.definitions.test_can import FILES, field, message
+
+MODELS = json.loads((FILES / "charger.json").read_text())
+
+
+@pytest.fixture(scope="module")
+def charger():
+    reader = kinds.of(FILES / "charger.json")
+    assert isinstance(reader, sunspec.SunSpec)
+    return run.read(FILES / "charger.json", reader)
+
+
+def test_models_of_a_device_are_messages_whose_points_follow_each_other(charger):
+    (tree,) = charger.trees.values()
+    assert tree["node"] | {"name": "", "title": ""} == {
+        "name": "", "title": "", "byte_order": "big", "bit_order": "msb0", "id_bits": 16,
+    }  # fmt: skip
+    assert [(one["name"], one["id"], one["length"]) for one in tree["messages"]] == [
+        ("charger", 65001, 64), ("sockets", 65002, 4),
+    ]  # fmt: skip
+    places = [(one["at"] // 16, one["name"]) for one in message(charger, "charger")["fields"]]
+    assert places[:6] == [(0, "ID"), (1, "L"), (2, "W"), (3, "W_SF"), (4, "Lat"), (6, "Wh")]
+    assert places[-3:] == [(29, "Dial Pos"), (30, "Lamp"), (32, "Socket")]
+    assert field(charger, "charger", "ID")["const"] == 65001 and "special" not in field(charger, "charger", "L")
+    assert message(charger, "charger")["summary"] == "A charger with sockets"
+
+
+def test_a_value_has_its_unit_and_factor_and_where_another_register_has_the_factor_its_summary_says_so(charger):
+    lat, power = field(charger, "charger", "Lat"), field(charger, "charger", "W")
+    assert (lat["unit"], lat["formula"], lat["summary"]) == ("deg", "raw*1e-7", "Latitude, north is positive")
+    assert power["summary"] == "Power. In W times 10 to the power of W_SF."
+    assert "unit" not in power and "formula" not in power
+    (said,) = (one for one in charger.definitions.troubles if one.code == "IMP078")
+    assert said.message == "message `charger`: the factors of 1 points stand in other registers: `W`"
+    assert said.severity == "info"
+
+
+def test_what_is_not_implemented_is_a_special_value_of_each_type(charger):
+    told = {
+        one["name"]: one["special"][0]["value"] for one in message(charger, "charger")["fields"] if "special" in one
+    }
+    assert told == {
+        "W": -0x8000, "W_SF": -0x8000, "Lat": -0x80000000, "Wh": 0, "St": 0xFFFF, "Evt": 0xFFFFFFFF, "Hz": "nan", "N": 0xFFFF,
+        "Dial Pos": 0xFFFF,
+    }  # fmt: skip
+
+
+def test_symbols_are_enumerations_and_those_of_bits_the_values_of_these_bits(charger):
+    (tree,) = charger.trees.values()
+    named = {one["name"]: [(member["value"], member["name"]) for member in one["members"]] for one in tree["enums"]}
+    assert named == {"St": [(0, "OFF"), (3, "ON")], "Evt": [(1, "HOT"), (1 << 31, "LOST")]}
+    assert (field(charger, "charger", "Nam")["type"], field(charger, "charger", "MAC")["type"]) == ("text", "bytes")
+
+
+def test_groups_that_are_there_several_times_are_structs(charger):
+    (tree,) = charger.trees.values()
+    assert [(one["name"], one["length"], [part["name"] for part in one["fields"]]) for one in tree["structs"]] == [
+        ("Lamp", 2, ["Lux"]), ("Socket", 4, ["A", "Lock Is"]), ("sockets Socket", 2, ["V"]),
+    ]  # fmt: skip
+    ends = [message(charger, name)["fields"][-1] for name in ("charger", "sockets")]
+    assert [(one["count"], one["up_to"]) for one in ends] == [("N", (2048 - 64) // 4), ("rest", (2048 - 4) // 2)]
+    assert field(charger, "charger", "Lamp")["count"] == 2
+
+
+def test_a_model_that_cannot_be_held_is_named_with_the_reason_and_the_others_are_held(charger):
+    (said,) = (one for one in charger.definitions.troubles if one.severity == "error")
+    assert said.message == (
+        "message `curves` is not held: `Pt`, which is there any number of times, stands in another group"
+    )
+    assert (charger.held, charger.definitions.total) == (2, 3)
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"type": "fixed16"}, "`W` is of the type `fixed16`"),
+        ({"type": "string", "size": 0}, "`W` is of the type `string` and size 0"),
+        ({"type": "string", "size": "8"}, "`W` is of the type `string` and size 8"),
+    ],
+)
+def test_a_point_that_is_none_leaves_its_model_out(tmp_path, change, why):
+    models = copy.deepcopy(MODELS)
+    models[0]["group"]["points"][2] |= change
+    (tmp_path / "models.json").write_text(json.dumps(models))
+    read = run.read(tmp_path / "models.json", sunspec.SunSpec())
+    assert why in [one.message.split(": ", 1)[1] for one in read.definitions.troubles if one.severity == "error"]
+    assert read.held == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "message"),
+    [
+        ('[\n{"id": 1, "group": {"name": "a", "points": [}}]', 2, "not JSON: Expecting value"),
+        ('{"group": {"name": "a", "points": []}}', 1, "not a model of SunSpec, nor a list of them"),
+        ('{"id": 70000, "group": {"name": "a", "points": []}}', 1, "not a model of SunSpec, nor a list of them"),
+        ("[]", 1, "the list holds no model"),
+        ("[" * 100_000, 1, "not JSON"),
+        ('{"id": 1, "group": {"name": "a", "points": []}}', 1, "no message can be held"),
+    ],
+)
+def test_what_is_no_model_is_refused_where_it_stands(tmp_path, text, line, message):
+    (tmp_path / "wrong.json").write_text(text)
+    with pytest.raises(Findings) as refused:
+        run.read(tmp_path / "wrong.json", sunspec.SunSpec())
+    (finding,) = refused.value.findings
+    assert (finding.code, finding.place.line) == ("IMP005", line) and finding.message.startswith(message)
+
+
+def test_groups_without_end_are_left_out():
+    deep = {"name": "a", "points": []}
+    for _ in range(50):
+        deep = {"name": "a", "points": [], "groups": [deep]}
+    made = sunspec.SunSpec().read("deep.json", json.dumps({"id": 1, "group": deep}).encode())
+    assert "groups stand in each other more than 8 deep" in made.troubles[0].message
+
+
+VALUES = (
+    st.none() | st.booleans() | st.integers(-5, 1 << 40) | st.floats() | st.text(max_size=5) | st.just([]) | st.just({})
+)
+
+
+@given(st.data())
+def test_whatever_stands_in_a_model_is_held_or_said(data):
+    models = copy.deepcopy(MODELS)
+    owners = list(_objects(models))
+    for _ in range(data.draw(st.integers(1, 3))):
+        owner = data.draw(st.sampled_from(owners))
+        owner[data.draw(st.sampled_from([*owner, "count", "sf"]))] = data.draw(VALUES)
+    try:
+        made = sunspec.SunSpec().read("some.json", json.dumps(models).encode())
+    except Findings:
+        return
+    assert isinstance(made, Definitions) and made.total >= len(made.networks[0].messages)
+
+
+def _objects(of):
+    if isinstance(of, dict):
+        yield of
+    for one in of.values() if isinstance(of, dict) else of if isinstance(of, list) else ():
+        yield from _objects(one)

@@ -1,0 +1,105 @@
+/* libFuzzer harness on the decoders of envelopes. See README.md. */
+
+#include "testee.h"
+
+#include <icdgen_wire.h>
+#include <stdlib.h>
+
+const icd_link_t *testee_link(size_t node);
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(bool holds)
+{
+    if (!holds) {
+        abort();
+    }
+}
+
+/* Memory of just that size, so that touching anything beyond it is noticed. */
+static void *memory(size_t size)
+{
+    void *found = malloc(size != 0u ? size : 1u);
+    require(found != NULL);
+    return found;
+}
+
+/* What the events of a run say. */
+typedef struct {
+    const icd_link_t *link;
+    icd_direction_t direction;
+    uint32_t digest;
+    size_t on_line; /* bytes that the messages take, sent again */
+} seen_t;
+
+static void note(seen_t *seen, const void *data, size_t length)
+{
+    const uint8_t *bytes = (const uint8_t *)data;
+    size_t i;
+    for (i = 0; i < length; i++) {
+        seen->digest = (seen->digest ^ bytes[i]) * 16777619u;
+    }
+}
+
+static void on_event(void *context, const icd_stream_event_t *event)
+{
+    seen_t *seen = (seen_t *)context;
+    const uint32_t told[3] = {(uint32_t)event->kind, event->has_id ? event->id : 0u, event->missing};
+    note(seen, told, sizeof told);
+    note(seen, event->data, event->length);
+    if (event->kind == ICD_STREAM_MESSAGE) {
+        const size_t room = 2u * (event->length + 600u);
+        uint8_t *line = (uint8_t *)memory(room);
+        size_t written = 0;
+        note(seen, &event->values, sizeof event->values);
+        require(icd_stream_encode(
+                    seen->link, seen->direction, event->id, event->data, event->length, &event->values, line, room,
+                    &written) == ICD_OK);
+        seen->on_line += written;
+        free(line);
+    }
+}
+
+/* Feeds all in pieces of a size that `cut` says, or at once if it is 0. */
+static seen_t fed(const icd_link_t *link, icd_direction_t direction, const uint8_t *stream, size_t size, uint8_t room, uint8_t cut)
+{
+    const size_t limit = link->longest - (room < link->longest ? room : 0u);
+    const size_t count = room % 3u;
+    uint8_t *buffer = (uint8_t *)memory(limit);
+    uint32_t *sequences = (uint32_t *)memory(count * sizeof *sequences);
+    seen_t seen = {link, direction, 1, 0};
+    icd_stream_decoder_t decoder;
+    size_t at, step = cut == 0u ? size : cut;
+    if (icd_stream_decoder_init(&decoder, link, direction, buffer, limit, sequences, count) == ICD_OK) {
+        for (at = 0; at < size; at += step, step = cut == 0u ? size : ((step * cut) % 23u) + 1u) {
+            step = step < size - at ? step : size - at;
+            icd_stream_feed(&decoder, stream + at, step, on_event, &seen);
+        }
+        require(decoder.pending + decoder.discarded <= size);
+        require(decoder.length <= limit && decoder.pending <= size);
+        if (link->stream->delimited_by == ICD_DELIMITED_BY_LENGTH) {
+            require(decoder.pending + decoder.discarded + seen.on_line == size);
+        }
+    }
+    free(sequences);
+    free(buffer);
+    return seen;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    const icd_link_t *link = size < 4u ? NULL : testee_link(data[0] % testee_node_count);
+    if (link != NULL && link->stream != NULL) {
+        const icd_direction_t direction = (data[1] & 1u) != 0u ? ICD_TELEMETRY : ICD_TELECOMMAND;
+        uint8_t *stream = (uint8_t *)memory(size - 4u);
+        seen_t whole, pieces;
+        memcpy(stream, data + 4, size - 4u);
+        whole = fed(link, direction, stream, size - 4u, data[2], 0);
+        if (link->stream->delimited_by != ICD_DELIMITED_BY_PACKET) {
+            pieces = fed(link, direction, stream, size - 4u, data[2], (uint8_t)(data[3] | 1u));
+            require(whole.digest == pieces.digest && whole.on_line == pieces.on_line);
+        }
+        free(stream);
+    }
+    return 0;
+}
