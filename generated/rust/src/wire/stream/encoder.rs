@@ -54,8 +54,7 @@ impl Values {
         for field in form.fields {
             let value = self.place(field.role).map_or(0, |value| *value);
             if value > field.mask() {
-                let field = name(field.role);
-                return Err(Error::Range { field });
+                return Err(Error::range(name(field.role)));
             }
         }
         Ok(())
