@@ -1342,7 +1342,7 @@ ICDGEN_API size_t icd_stream_client_bytes(const icd_link_t *link, size_t request
  * Begins a client that has as many requests under way as there are `slots`, with the times and the values of the ICD.
  * `sequences` are twice NODE_SEQUENCES numbers; with less, some messages are not counted. ICD_ERROR_UNSUPPORTED if the
  * ICD describes no envelope, ICD_ERROR_LENGTH if the buffer is smaller than icd_stream_client_bytes(); it refuses every
- * request then. NODE_client_init() begins one that takes the messages of the node only.
+ * request then.
  */
 ICDGEN_API icd_status_t icd_stream_client_init(
     icd_stream_client_t *client,
@@ -1371,10 +1371,10 @@ ICDGEN_API icd_status_t icd_stream_client_start(
     icd_stream_event_fn *on_event,
     void *context);
 
-/** Asks for telemetry by the telecommand that it answers. NODE_request_MESSAGE() does so by name. */
+/** Asks for telemetry by the telecommand that it answers. */
 ICDGEN_API icd_status_t icd_stream_client_request(icd_stream_client_t *client, uint32_t now, uint32_t id);
 
-/** Sends a telecommand, which is answered as the ICD says. NODE_send_MESSAGE() does so by name. */
+/** Sends a telecommand, which is answered as the ICD says. */
 ICDGEN_API icd_status_t icd_stream_client_send(
     icd_stream_client_t *client,
     uint32_t now,
