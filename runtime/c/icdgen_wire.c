@@ -42,6 +42,8 @@
 
 #include "wire/client_input.c"
 
+#include "wire/stream_client.c"
+
 #include "wire/procedure.c"
 
 #include "wire/list.c"

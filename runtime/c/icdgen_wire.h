@@ -52,6 +52,8 @@
 
 #include "wire/client_input.h"
 
+#include "wire/stream_client.h"
+
 #include "wire/sizes.h"
 
 #include "wire/procedure.h"

@@ -63,6 +63,39 @@ def test_fields_that_are_not_always_there_and_open_ends_of_structs_travel_in_env
     assert event.of(node.Points) == points
 
 
+def test_requests_that_different_telemetry_answers_are_under_way_together(package, node, stream):
+    client, events = package.module("wire.envelope_client").EnvelopeClient(node.LINK), package.module("wire.events")
+    asked = node.Order()
+    assert client.send(0, asked, reply=node.ShortLevel) == client.send(1, asked, reply=node.Least) == []
+    with pytest.raises(package.module("wire.errors").BusyError, match="telemetry 3"):
+        client.send(2, asked, reply=node.LevelOfTheFirst)  # another message of the same id
+    assert client.output() and client.output() and not client.output()
+
+    def comes(now, message):
+        return client.received(now, stream.stream_encode(node.LINK, message, direction="telemetry"))
+
+    (done,) = comes(3, node.Least())
+    assert isinstance(done, events.Done) and done.message == node.Least() and client.busy
+    (other,) = comes(4, node.LevelOfTheFirst(level=1000))
+    assert isinstance(other, events.Arrived)
+    (done,) = comes(5, node.ShortLevel(level=7))
+    assert isinstance(done, events.Done) and done.of(node.ShortLevel).level == 7 and done.reply == 3
+    assert not client.busy and client.deadline is None
+
+
+def test_a_request_is_given_up_alone_and_what_was_not_taken_is_not_sent(package, node):
+    client = package.module("wire.envelope_client").EnvelopeClient(node.LINK, requests=2)
+    asked = node.Order()
+    client.send(0, asked, reply=node.ShortLevel)
+    client.send(1, node.Points(), reply=node.Least)
+    with pytest.raises(package.module("wire.errors").BusyError, match="as many"):
+        client.send(2, asked)
+    client.cancel("telecommand", node.Points.IDS[0])
+    first = client.deadline
+    assert client.output() and not client.output() and client.busy
+    assert client.tick(first) and not client.busy
+
+
 ASKING = """\
 from collections.abc import Iterator
 

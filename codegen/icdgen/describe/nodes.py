@@ -150,7 +150,7 @@ class NodeDescription:
 
     @property
     def has_client(self) -> bool:
-        """Whether requests can be sent on its link, which is not so of an envelope."""
+        """Whether its link has messages with an id of one byte: the client, procedures and logs are for such."""
         return self.is_linked and "stream" not in self._description.icd.protocol_of(self.model)
 
     @property

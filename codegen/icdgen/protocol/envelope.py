@@ -95,6 +95,11 @@ class Stream:
         return max((row.most for row in (*self.telecommands, *self.telemetry)), default=0)
 
     @property
+    def longest_request(self) -> int:
+        """Most bytes of data of a telecommand."""
+        return max((row.most for row in self.telecommands), default=0)
+
+    @property
     def longest(self) -> int:
         """Bytes of the longest message, with its envelope but without what delimits it."""
         return self.header_bytes + self.longest_data + self.trailer_bytes

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from icdgen.icd.model import Icd
-from icdgen.protocol import can, crc, errors, facts, files, i2c, logs, scripts, stream, times, uart
+from icdgen.protocol import can, crc, errors, facts, files, i2c, logs, scripts, stream, stream_client, times, uart
 from icdgen.protocol.envelope import DIRECTIONS, GIVEN, Stream
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.request_keys import Refusal, Request, flag, mappings, number, octets, rows, text
@@ -250,7 +250,7 @@ def stream_events(known: Facts, request: Request) -> dict[str, Any]:
     limit = number(request, "limit", form.header_bytes + form.trailer_bytes, form.longest, form.longest)
     chunks = [_hex(chunk) for chunk in rows(request, "chunks")]
     decoder = stream.Decoder(form, direction, limit)
-    events = [_stream_event(event) for chunk in chunks for event in decoder.feed(chunk)]
+    events = [stream_client.told(event) for chunk in chunks for event in decoder.feed(chunk)]
     return {"events": events, "discarded": decoder.discarded, "pending": decoder.pending}
 
 
@@ -261,23 +261,12 @@ def _envelope(known: Facts, request: Request) -> tuple[Stream, str]:
     return facts.need(known.stream, "stream"), direction
 
 
-def _stream_event(event: stream.Event) -> dict[str, Any]:
-    row: dict[str, Any] = {"event": event.event}
-    if event.id is not None:
-        row["id"] = event.id
-    if event.event == stream.MESSAGE:
-        row |= {"bytes": event.data.hex(), **dict(event.values)}
-    if event.event == stream.GAP:
-        row["missing"] = event.missing
-    return row
-
-
 OPS: dict[str, Callable[[Facts, Request], dict[str, Any]]] = {
     op.__name__: op
     for op in (
         crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
         log_encode, log_message_decode, log_message_encode, dos_time, hole_map, index_decode, index_encode, identify,
         link_data, scripts.client, scripts.file,
-        stream_encode, stream_events,
+        stream_encode, stream_events, scripts.stream_client,
     )
 }  # fmt: skip

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.protocol import can, programs, transfer
+from icdgen.protocol import stream_client as enveloped
 from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Client, Request
 from icdgen.protocol.errors import BusyError, LengthError, UnknownIdError
-from icdgen.protocol.facts import Facts
+from icdgen.protocol.facts import Facts, Unsupported
 from icdgen.protocol.request_keys import Refusal, flag, hex_bytes, mappings, number, octets, text
 from icdgen.protocol.sections import CAN, I2C, UART, Settings
 
 BUSES = (UART, I2C, CAN)
+MOST_REQUESTS = 3  # that are under way together
 LONGEST = 1 << 20  # how often the bytes of an upload are repeated at most
 
 
@@ -82,6 +84,41 @@ def _sent(bus: str, one: Any) -> object:
     if bus == CAN:
         return {"id": one.id, "bytes": one.data.hex()}
     return {"write": one[0].hex(), "read": one[1]}
+
+
+def stream_client(known: Facts, request: dict[str, Any]) -> dict[str, Any]:
+    """The op ``stream_client``."""
+    talking = enveloped.Client(known, number(request, "requests", 1, MOST_REQUESTS, 1), _settings(known, request))
+    return {"steps": [_stream_step(talking, row) for row in mappings(request, "script")]}
+
+
+def _stream_step(talking: enveloped.Client, row: dict[str, Any]) -> dict[str, Any]:
+    now = number(row, "at")
+    step: dict[str, object] = {}
+    events: list[dict[str, Any]] = []
+    kind = next((kind for kind in (TELECOMMAND, TELEMETRY) if kind in row), None)
+    id = number(row, kind) if kind else None
+    try:
+        if flag(row, "cancel"):
+            talking.cancel(kind, id)
+        elif kind and id is not None:
+            data = octets(row) if kind == TELECOMMAND else b""
+            reply = number(row, "reply") if "reply" in row else None
+            events = talking.start(now, enveloped.Request(kind, id, data, flag(row, "repeat"), reply))
+        elif "receive" in row:
+            events = talking.received(now, hex_bytes(row["receive"]))
+        else:
+            events = talking.tick(now)
+    except BusyError:
+        step = {"error": "busy"}
+    except Unsupported:
+        step = {"error": "unsupported"}
+    except UnknownIdError:
+        step = {"error": "unknown-id"}
+    except LengthError as error:
+        step = {"error": "length", "expected": error.expected, "actual": error.actual}
+    out = [] if flag(row, "untaken") else [line.hex() for line in talking.output()]
+    return {**step, "out": out, "events": events, "deadline": talking.deadline}
 
 
 def file(known: Facts, request: dict[str, Any]) -> dict[str, Any]:

@@ -11,7 +11,19 @@ from icdgen import __version__
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts, ops
 from icdgen.protocol.facts import Facts
-from icdgen.vectors.wire import clients, envelopes, files, i2c, logs, operations, packets, procedures, streams, waits
+from icdgen.vectors.wire import (
+    asking,
+    clients,
+    envelopes,
+    files,
+    i2c,
+    logs,
+    operations,
+    packets,
+    procedures,
+    streams,
+    waits,
+)
 
 FORMAT = 1
 
@@ -58,6 +70,7 @@ def _requests(known: Facts) -> Iterator[tuple[str, dict[str, Any]]]:
     yield "facts that nothing but a user's own code reads", {"op": "link_data"}
     if known.stream:
         yield from envelopes.requests(known, source)
+        yield from asking.scripts(known)
         return
     yield from streams.checksums(known, source)
     if known.framing:

@@ -69,10 +69,12 @@ typedef enum {
     ICD_STREAM_LENGTH = 3,     /**< Dropped: no message, or not that one, has such a length. */
     ICD_STREAM_UNKNOWN_ID = 4, /**< Dropped: the node has no such message. */
     ICD_STREAM_OVERRUN = 5,    /**< Dropped: longer than the buffer. */
-    ICD_STREAM_FRAMING = 6     /**< Dropped: a constant or a delimiter is not what it must be. */
+    ICD_STREAM_FRAMING = 6,    /**< Dropped: a constant or a delimiter is not what it must be. */
+    ICD_STREAM_DONE = 7,       /**< Client: the request succeeded; with its reply, if it has one. */
+    ICD_STREAM_TIMEOUT = 8     /**< Client: no reply. */
 } icd_stream_kind_t;
 
-/** What a decoder found, valid during the call that tells of it. */
+/** What a decoder or a client found, valid during the call that tells of it. */
 typedef struct {
     icd_stream_kind_t kind;
     bool has_id; /**< Whether so much of it could be read. */
@@ -81,6 +83,11 @@ typedef struct {
     size_t length;
     icd_envelope_values_t values;
     uint32_t missing;
+    const icd_link_t *link;    /**< Of a client: that of the node, else NULL. */
+    icd_direction_t direction; /**< Of DONE and TIMEOUT: that of the request, and so the id. */
+    uint32_t attempts;         /**< Of DONE and TIMEOUT: how often it was sent. */
+    bool has_reply;            /**< Of DONE: whether telemetry answered it, ... */
+    uint32_t reply;            /**< ... its id. */
 } icd_stream_event_t;
 
 typedef void icd_stream_event_fn(void *context, const icd_stream_event_t *event);

@@ -84,6 +84,37 @@ def _messages(stream: bytes, escape: int, end: int) -> Iterator[str]:
         yield stream[start:].hex()
 
 
+def stream_client(to: Asking, request: Request) -> Answer:
+    requests, (timeout, retries, *_) = number(request, "requests", 1, 3, 1), _settings(request)
+    words = [word for row in mappings(request, "script") for word in _stream_row(row)]
+    reply = to.ask("stream_client", requests, timeout, retries, *words)
+    steps = []
+    for _step, rows in _steps(reply):
+        found: Answer = {"deadline": None, "out": [], "events": []}
+        for kind, row in rows:
+            if kind == "stream":
+                found["out"].append(row["bytes"])
+            elif kind in ("until", "error"):
+                found |= typed(row)
+            else:
+                found["events"].append(event(kind, row))
+        steps.append(found)
+    return {"steps": steps}
+
+
+def _stream_row(row: Request) -> tuple[object, ...]:
+    start = (number(row, "at"), int(not flag(row, "untaken")))
+    kind = next((kind for kind in ("telecommand", "telemetry") if kind in row), None)
+    if flag(row, "cancel"):
+        return (*start, "cancel", kind, number(row, kind)) if kind else (*start, "cancel", "all")
+    if kind == "telecommand":
+        reply = (1, number(row, "reply")) if "reply" in row else (0, "")
+        return *start, kind, number(row, kind), int(flag(row, "repeat")), *reply, octets(row).hex()
+    if kind:
+        return *start, kind, number(row, kind)
+    return (*start, "received", hex_bytes(row["receive"]).hex()) if "receive" in row else (*start, "tick")
+
+
 def file(to: Asking, request: Request) -> Answer:
     what, start = _procedure(request)
     words = [word for row in mappings(request, "script") for word in (number(row, "at"), *_outcome(row.get("event")))]
@@ -158,4 +189,4 @@ def _steps(reply: Reply) -> list[tuple[Facts, list[tuple[str, Facts]]]]:
     return found
 
 
-OPS: dict[str, Callable[[Asking, Request], Answer]] = {"client": client, "file": file}
+OPS: dict[str, Callable[[Asking, Request], Answer]] = {"client": client, "stream_client": stream_client, "file": file}

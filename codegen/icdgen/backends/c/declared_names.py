@@ -21,6 +21,7 @@ _SIZES = (
     "LONGEST",
     "CAN_SLOT_BYTES",
     "CLIENT_BYTES",
+    "REQUEST_BYTES",
     "LOG_BYTES",
     "BLOCK_BYTES",
     "BLOCK_BITMAP_BYTES",

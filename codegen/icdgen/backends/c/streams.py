@@ -33,4 +33,9 @@ def sizes(form: Stream) -> list[tuple[str, int, str]]:
         ("LONGEST", form.longest, "Bytes of a decoder's buffer: the longest message with its envelope."),
         ("LINE_BYTES", form.longest_line, "Most bytes of a message on the line."),
         ("SEQUENCES", form.sequences, "Numbers that a decoder remembers to notice gaps."),
+        (
+            "REQUEST_BYTES",
+            form.longest_request,
+            "Bytes of a client's buffer for each request, beside the longest message.",
+        ),
     ]

@@ -3,21 +3,38 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Generic, Literal, Optional
 
 from .._base import Message
 from .._errors import LengthError, UnknownIdError
 from .._hints import Buffer, KindOf, N, SpokenBy, class_of, message_of
 from .client import Request
-from .envelope import StreamRow
+from .envelope import Direction, StreamRow
 from .errors import BusyError, UnsupportedError, need
 from .events import Arrived, Done, Event, Gap, LineError, Timeout
 from .link import Link, Settings
 from .sender import Sender
 from .spoken import requested, sent
 from .stream import StreamDecoder, StreamEvent
+
+_NOTHING = Request("telecommand", 0)
+
+
+@dataclass(eq=False)
+class _Slot:
+    """Room for a request, and the memory of the one before that may still be answered."""
+
+    asked: Request = _NOTHING
+    state: Literal["idle", "hold", "wait"] = "idle"
+    sent: int = 0  # id of the telecommand that asks
+    reply: Optional[int] = None  # id of the telemetry that is waited for
+    kind: Optional[type[Message]] = None  # what it must be, if that was said
+    attempts: int = 0
+    until: float = 0
+    was_taken: bool = False  # by whoever sends
+    late: Optional[tuple[int, float]] = None  # id that may still come
 
 
 class EnvelopeClient(Generic[N]):
@@ -28,8 +45,10 @@ class EnvelopeClient(Generic[N]):
     `output`, a message at a time.
 
     Telemetry that comes unasked is `Arrived`. A telecommand that the ICD names no reply to
-    is `Done` when it is sent; another one when the reply has come. ``values``: of the fields
-    of the envelope that the sender chooses, such as ``source``; see `Sender`.
+    is `Done` when it is sent; another one when the reply has come. Requests are told apart
+    by the ids of their replies: those that wait for different ones are under way together,
+    ``requests`` of them at most. ``values``: of the fields of the envelope that the sender
+    chooses, such as ``source``; see `Sender`.
     """
 
     def __init__(
@@ -37,31 +56,27 @@ class EnvelopeClient(Generic[N]):
         link: Link[N],
         settings: Optional[Settings] = None,
         values: Optional[Mapping[str, int]] = None,
+        requests: Optional[int] = None,
     ) -> None:
         self.link = link
         self.settings = settings or link.settings
         self._form = need(link.stream, "stream")
         self._sender = Sender(link, "telecommand", values)
         self._decoder = StreamDecoder(link)
-        self._output: deque[bytes] = deque()
-        self._state: Literal["idle", "hold", "wait"] = "idle"
-        self._asked = Request("telecommand", 0)
-        self._sent = (0, b"")  # id and data of the telecommand that asks
-        self._reply: Optional[int] = None  # id of the telemetry that is waited for
-        self._kind: Optional[type[Message]] = None  # what it must be, if that was said
-        self._attempts = 0
-        self._until: float = 0
-        self._late: Optional[tuple[int, float]] = None  # id that may still come
+        self._most = requests
+        self._slots: list[_Slot] = []
+        self._untaken: list[_Slot] = []
 
     @property
     def busy(self) -> bool:
         """Whether a request is going on."""
-        return self._state != "idle"
+        return any(slot.state != "idle" for slot in self._slots)
 
     @property
     def deadline(self) -> Optional[float]:
         """When `tick` wants to be called at the latest; None: not at all."""
-        return self._until if self.busy else None
+        ends = (slot.until for slot in self._slots if slot.state != "idle")
+        return min(ends, default=None)
 
     @property
     def discarded(self) -> int:
@@ -71,7 +86,7 @@ class EnvelopeClient(Generic[N]):
     def request(self, now: float, message: KindOf[N, Message]) -> list[Event]:
         """Asks for telemetry, with the telecommand that the ICD names for it. See `start`."""
         request = Request("telemetry", requested(self.link, message))
-        return self._begin(now, request, class_of(message))
+        return self._begin(now, request, kind=class_of(message))
 
     def send(
         self,
@@ -88,39 +103,51 @@ class EnvelopeClient(Generic[N]):
         request = Request("telecommand", id, data, repeat)
         if reply is None:
             return self._begin(now, request)
-        requested(self.link, reply)
-        return self._begin(now, request, class_of(reply))
+        return self._begin(now, request, requested(self.link, reply), class_of(reply))
 
-    def start(self, now: float, request: Request) -> list[Event]:
-        """Begins a request.
+    def start(
+        self, now: float, request: Request, reply: Optional[int] = None
+    ) -> list[Event]:
+        """Begins a request; ``reply`` is the id of the telemetry that answers a telecommand.
 
-        Raises `UnknownIdError`, `LengthError`, `BusyError` while another one is going on or
-        its output has not been taken, and `UnsupportedError` for telemetry that no
+        Raises `UnknownIdError`, `LengthError`, `BusyError` while another one waits for the
+        same reply or no more may be under way, and `UnsupportedError` for telemetry that no
         telecommand without parameters is answered with.
         """
-        return self._begin(now, request)
+        return self._begin(now, request, reply)
 
     def output(self) -> bytes:
         """The next message to be sent, once; nothing if there is none."""
-        return self._output.popleft() if self._output else b""
+        if not self._untaken:
+            return b""
+        slot = self._untaken.pop(0)
+        slot.was_taken = True
+        return self._sender.encode(slot.sent, slot.asked.data)
 
-    def cancel(self) -> None:
-        """Gives up the request, without an event, and what of it was not taken."""
-        self._output.clear()
-        if self._attempts and self._reply is not None and self.busy:
-            self._late = self._reply, self._until + self.settings.reply_timeout
-        self._state = "idle"
+    def cancel(
+        self, kind: Optional[Direction] = None, id: Optional[int] = None
+    ) -> None:
+        """Gives up a request, or all, without an event, and what of it was not taken."""
+        for slot in self._slots:
+            if kind in (None, slot.asked.kind) and id in (None, slot.asked.id):
+                self._drop(slot)
+                if slot.state != "idle":
+                    self._remember(slot, slot.until)
+                slot.state = "idle"
 
     def tick(self, now: float) -> list[Event]:
         """Lets time pass."""
-        if not self.busy or now < self._until:
-            return []
-        if self._state == "hold":
-            return self._transmit(now)
-        if self._asked.repeat and self._attempts <= self.settings.retries:
-            return self._transmit(now)
-        self._end(now, True)
-        return [Timeout(self._asked.id, self._attempts)]
+        events: list[Event] = []
+        for slot in self._slots:
+            if slot.state == "idle" or now < slot.until:
+                continue
+            is_left = slot.asked.repeat and slot.attempts <= self.settings.retries
+            if slot.state == "hold" or is_left:
+                events += self._transmit(now, slot)
+            else:
+                self._end(now, slot, True)
+                events.append(Timeout(slot.asked.id, slot.attempts))
+        return events
 
     def received(self, now: float, data: Buffer) -> list[Event]:
         """The next bytes of the stream, or a packet."""
@@ -134,30 +161,40 @@ class EnvelopeClient(Generic[N]):
             return Gap(found.id, found.missing)
         if found.event != "message" or found.id is None:
             return LineError(found.event, found.id)
-        is_awaited = self._state == "wait" and found.id == self._reply
-        if is_awaited and self._kind in (None, found.kind):
-            self._end(now, self._attempts > 1)
-            return Done(self._asked.id, self._attempts, found.data, found.kind)
+        for slot in self._slots:
+            is_asked = slot.state == "wait" and slot.was_taken
+            is_awaited = is_asked and slot.reply == found.id
+            if is_awaited and slot.kind in (None, found.kind):
+                self._end(now, slot, slot.attempts > 1)
+                id, attempts = slot.asked.id, slot.attempts
+                return Done(id, attempts, found.data, found.kind, found.id)
         return Arrived(found.id, found.data, found.values, found.kind)
 
     def _begin(
-        self, now: float, request: Request, kind: Optional[type[Message]] = None
+        self,
+        now: float,
+        request: Request,
+        reply: Optional[int] = None,
+        kind: Optional[type[Message]] = None,
     ) -> list[Event]:
         row = self._row(request)
-        if self.busy or self._output:
-            raise BusyError("a request is going on")
         if request.kind == "telemetry":
-            request = Request("telemetry", request.id, b"", True)
-        elif not row.least <= len(request.data) <= row.most:
+            reply, request = request.id, Request("telemetry", request.id, b"", True)
+        elif reply is None:
+            reply = row.reply
+        elif all(one.id != reply for one in self._form.telemetry):
+            raise UnknownIdError(self.link.node, "telemetry", reply)
+        slot = self._free(reply)
+        if not row.least <= len(request.data) <= row.most:
             nearest = row.most if len(request.data) > row.most else row.least
             raise LengthError(f"telecommand {row.id}", nearest, len(request.data))
-        self._asked, self._attempts = request, 0
-        self._sent = row.id, request.data
-        self._kind, self._reply = kind, kind.IDS[-1] if kind else row.reply
-        if self._late and self._late[0] == self._reply and now < self._late[1]:
-            self._state, self._until = "hold", self._late[1]
+        slot.asked, slot.sent, slot.reply, slot.kind = request, row.id, reply, kind
+        slot.attempts, slot.was_taken = 0, False
+        late = [one.late[1] for one in self._slots if one.late and one.late[0] == reply]
+        if now < max(late, default=now):
+            slot.state, slot.until = "hold", max(late)
             return []
-        return self._transmit(now)
+        return self._transmit(now, slot)
 
     def _row(self, request: Request) -> StreamRow:
         """The telecommand that is sent."""
@@ -176,17 +213,42 @@ class EnvelopeClient(Generic[N]):
             raise UnknownIdError(self.link.node, request.kind, id)
         return row
 
-    def _transmit(self, now: float) -> list[Event]:
+    def _free(self, reply: Optional[int]) -> _Slot:
+        """Room for a request with that reply, which no other one waits for."""
+        waiting = (slot.reply for slot in self._slots if slot.state != "idle")
+        if reply is not None and reply in waiting:
+            raise BusyError(f"a request waits for telemetry {reply} already")
+        for slot in self._slots:
+            if slot.state == "idle" and slot not in self._untaken:
+                return slot
+        if self._most is not None and len(self._slots) >= self._most:
+            raise BusyError("as many requests are going on as there may be")
+        self._slots.append(_Slot())
+        return self._slots[-1]
+
+    def _transmit(self, now: float, slot: _Slot) -> list[Event]:
         """Sends the request, for the first time or again."""
-        self._attempts += 1
-        self._output.append(self._sender.encode(*self._sent))
-        if self._reply is None:
-            self._end(now, False)
-            return [Done(self._asked.id, self._attempts)]
-        self._state, self._until = "wait", now + self.settings.reply_timeout
+        slot.attempts += 1
+        if slot not in self._untaken:
+            self._untaken.append(slot)
+        if slot.reply is None:
+            slot.state = "idle"
+            return [Done(slot.asked.id, slot.attempts)]
+        slot.state, slot.until = "wait", now + self.settings.reply_timeout
         return []
 
-    def _end(self, now: float, may_be_answered_again: bool) -> None:
-        self._state, self._late = "idle", None
-        if may_be_answered_again and self._reply is not None:
-            self._late = self._reply, now + self.settings.reply_timeout
+    def _end(self, now: float, slot: _Slot, may_be_answered_again: bool) -> None:
+        slot.state = "idle"
+        self._drop(slot)
+        if may_be_answered_again:
+            self._remember(slot, now)
+
+    def _drop(self, slot: _Slot) -> None:
+        """Takes back what was not taken."""
+        if slot in self._untaken:
+            self._untaken.remove(slot)
+
+    def _remember(self, slot: _Slot, since: float) -> None:
+        """That the reply may still come, or come again."""
+        if slot.was_taken and slot.reply is not None:
+            slot.late = slot.reply, since + self.settings.reply_timeout

@@ -19,13 +19,15 @@ R_co = TypeVar("R_co", bound=Optional[Message], covariant=True)
 class Done(Generic[R_co]):
     """A request was executed: a telecommand, or telemetry with the frame in ``data``.
 
-    ``Done[EstimatedAttitudeAngles]`` has such a message, ``Done[None]`` none.
+    ``Done[EstimatedAttitudeAngles]`` has such a message, ``Done[None]`` none. ``reply``: in
+    envelopes, the id of the telemetry that answered.
     """
 
     id: int
     attempts: int
     data: bytes = b""
     type: Optional[MessageClass] = None
+    reply: Optional[int] = None
 
     @property
     def message(self) -> R_co:

@@ -49,6 +49,17 @@ impl Values {
         values
     }
 
+    /// Whether each fits its field.
+    pub(super) fn check(mut self, form: &Stream) -> Result<(), Error> {
+        for field in form.fields {
+            let value = self.place(field.role).map_or(0, |value| *value);
+            if value > field.mask() {
+                return Err(Error::range(name(field.role)));
+            }
+        }
+        Ok(())
+    }
+
     pub(super) fn place(&mut self, role: EnvelopeRole) -> Option<&mut u32> {
         match role {
             EnvelopeRole::Sequence => Some(&mut self.sequence),

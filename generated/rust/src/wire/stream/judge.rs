@@ -7,7 +7,7 @@ use super::encoder::Values;
 use crate::wire::link::{EnvelopeField, EnvelopeRole, Stream, StreamRow};
 use crate::wire::Direction;
 
-/// A message, or what was dropped and why.
+/// A message, or what was dropped and why; and how a request of a client ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Event<'a> {
@@ -46,6 +46,30 @@ pub enum Event<'a> {
     Overrun,
     /// A constant or a delimiter is not what it must be.
     Framing,
+    /// Client: the reply came.
+    Done {
+        /// What was asked.
+        direction: Direction,
+        /// The id of that.
+        id: u32,
+        /// How often it was sent.
+        attempts: u16,
+        /// The id of the telemetry that answered.
+        reply: u32,
+        /// Its data.
+        data: &'a [u8],
+        /// The fields that its sender chose.
+        values: Values,
+    },
+    /// Client: no reply came.
+    Timeout {
+        /// What was asked.
+        direction: Direction,
+        /// The id of that.
+        id: u32,
+        /// How often it was sent.
+        attempts: u16,
+    },
 }
 
 /// What a frame turned out to be.

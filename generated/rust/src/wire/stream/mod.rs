@@ -3,13 +3,18 @@
 //! Messages in the envelope that the ICD describes, in a stream of bytes or in packets.
 
 mod check;
+mod client;
 mod decoder;
 mod encoder;
 mod field;
 mod judge;
+mod request;
 mod sender;
+mod slots;
 
+pub use self::client::{Client, NodeEvent};
 pub use self::decoder::Decoder;
 pub use self::encoder::{encode, Values};
 pub use self::judge::Event;
+pub use self::request::Request;
 pub use self::sender::Sender;

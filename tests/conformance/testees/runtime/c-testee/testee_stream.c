@@ -25,14 +25,16 @@ static void refuse_range(const icd_link_t *link, const icd_envelope_values_t *va
     refuse_status(ICD_ERROR_RANGE);
 }
 
-static void refuse_data(const icd_link_t *link, icd_direction_t direction, uint32_t id, size_t length)
+/* The length that is nearest. */
+static size_t nearest(const icd_link_t *link, icd_direction_t direction, uint32_t id, size_t length)
 {
     for (size_t i = 0; i < link->stream->row_counts[direction]; ++i) {
         const icd_stream_row_t *row = &link->stream->rows[direction][i];
         if (row->id == id) {
-            refuse_length("length", length > row->most ? row->most : row->least, length);
+            return length > row->most ? row->most : row->least;
         }
     }
+    return length;
 }
 
 static void stream_encode(void)
@@ -53,7 +55,7 @@ static void stream_encode(void)
     if (status == ICD_ERROR_RANGE) {
         refuse_range(link, &values);
     } else if (status == ICD_ERROR_LENGTH) {
-        refuse_data(link, direction, id, data.length);
+        refuse_length("length", nearest(link, direction, id, data.length), data.length);
     } else if (answers(status)) {
         uint8_t *exact = memory(written);
         size_t again = 0;
@@ -69,11 +71,21 @@ static void stream_encode(void)
 
 static void on_stream_event(void *context, const icd_stream_event_t *event)
 {
-    static const char *const names[] = {"message", "gap", "checksum", "length", "unknown_id", "overrun", "framing"};
+    static const char *const names[] = {"message", "gap",     "checksum", "length", "unknown_id",
+                                        "overrun", "framing", "done",     "timeout"};
     const icd_link_t *link = context;
     put_row(names[event->kind]);
     if (event->has_id) {
         put_number("id", event->id);
+    }
+    if (event->kind == ICD_STREAM_DONE || event->kind == ICD_STREAM_TIMEOUT) {
+        put_number("attempts", event->attempts);
+    }
+    if (event->kind == ICD_STREAM_DONE) {
+        put_octets("bytes", event->data, event->length);
+    }
+    if (event->has_reply) {
+        put_number("reply", event->reply);
     }
     if (event->kind == ICD_STREAM_GAP) {
         put_number("missing", event->missing);
@@ -124,8 +136,104 @@ static void stream_events(void)
     put_number("pending", decoder.pending);
 }
 
+/* Room for requests, with just the memory that they need. */
+static bool begin_stream_client(icd_stream_client_t *client, const icd_link_t *link, size_t requests)
+{
+    const bool known = link != NULL && link->stream != NULL;
+    const size_t size = known ? icd_stream_client_bytes(link, requests) : 0u;
+    const size_t count = known ? 2u * (link->stream->row_counts[0] + link->stream->row_counts[1] + 1u) : 0u;
+    icd_stream_slot_t *slots = memory(requests * sizeof *slots);
+    uint32_t *sequences = memory(count * sizeof *sequences);
+    return answers(
+        link == NULL ? ICD_ERROR_UNSUPPORTED
+                     : icd_stream_client_init(client, link, slots, requests, memory(size), size, sequences, count));
+}
+
+static void start_stream(icd_stream_client_t *client, uint32_t now, icd_direction_t direction, void *context)
+{
+    icd_stream_request_t request;
+    memset(&request, 0, sizeof request);
+    request.direction = direction;
+    request.id = next_number();
+    if (direction == ICD_TELECOMMAND) {
+        request.repeat = next_number() != 0u;
+        request.has_reply = next_number() != 0u;
+        request.reply = next_or(0);
+        const octets_t octets = next_octets();
+        request.data = octets.data;
+        request.length = octets.length;
+    }
+    const icd_status_t status = icd_stream_client_start(client, now, &request, on_stream_event, context);
+    if (status == ICD_ERROR_LENGTH) {
+        put_row("error");
+        put_word("error", "length");
+        put_number("expected", nearest(client->link, direction, request.id, request.length));
+        put_number("actual", request.length);
+    } else if (status != ICD_OK) {
+        put_row("error");
+        put_word("error", status == ICD_ERROR_BUSY ? "busy"
+                     : status == ICD_ERROR_UNSUPPORTED ? "unsupported" : "unknown-id");
+    }
+}
+
+static void happen_to_stream(icd_stream_client_t *client, uint32_t now, const char *what, void *context)
+{
+    if (is_word(what, "telecommand")) {
+        start_stream(client, now, ICD_TELECOMMAND, context);
+    } else if (is_word(what, "telemetry")) {
+        start_stream(client, now, ICD_TELEMETRY, context);
+    } else if (is_word(what, "received")) {
+        const octets_t octets = next_octets();
+        icd_stream_client_received(client, now, octets.data, octets.length, on_stream_event, context);
+    } else if (is_word(what, "cancel")) {
+        const char *kind = next_word();
+        if (is_word(kind, "all")) {
+            icd_stream_client_cancel(client);
+        } else {
+            const icd_direction_t direction = is_word(kind, "telemetry") ? ICD_TELEMETRY : ICD_TELECOMMAND;
+            icd_stream_client_cancel_request(client, direction, next_number());
+        }
+    } else {
+        icd_stream_client_tick(client, now, on_stream_event, context);
+    }
+}
+
+static void stream_client(void)
+{
+    union {
+        const icd_link_t *link;
+        void *context;
+    } to = {next_link()};
+    const size_t requests = next_number();
+    icd_stream_client_t *client = (icd_stream_client_t *)memory(sizeof *client);
+    uint32_t deadline;
+    if (!begin_stream_client(client, to.link, requests)) {
+        return;
+    }
+    client->settings.reply_timeout = next_or(client->settings.reply_timeout);
+    client->settings.retries = (uint8_t)next_or(client->settings.retries);
+    while (has_words()) {
+        const uint32_t now = next_number();
+        const bool takes = next_number() != 0u;
+        const size_t capacity = 2u * client->link->longest + 8u;
+        uint8_t *line = memory(capacity);
+        size_t written = 0;
+        put_row("step");
+        happen_to_stream(client, now, next_word(), to.context);
+        while (takes && icd_stream_client_output(client, line, capacity, &written)) {
+            put_row("stream");
+            put_octets("bytes", line, written);
+        }
+        if (icd_stream_client_deadline(client, &deadline)) {
+            put_row("until");
+            put_number("deadline", deadline);
+        }
+    }
+}
+
 const testee_op_t testee_stream_ops[] = {
     {"stream_encode", stream_encode},
     {"stream_events", stream_events},
+    {"stream_client", stream_client},
     {NULL, NULL},
 };

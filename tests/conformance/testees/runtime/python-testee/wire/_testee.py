@@ -278,6 +278,7 @@ _OPERATIONS = {
     "link_data": _link_data,
     "stream_encode": _stream_encode,
     "stream_events": _stream_events,
+    "stream_client": _testee_scripts.stream_client,
     "client": _testee_scripts.client,
     "file": _testee_scripts.file,
 }

@@ -9,8 +9,9 @@ from .._errors import LengthError, UnknownIdError
 from .._testee_words import Words, counted, maybe, number, octets, row
 from .can import CanPacket
 from .client import Client, Request
-from .errors import BusyError
-from .events import Done, Event, LineError, Packet, Refused, Timeout
+from .envelope_client import EnvelopeClient
+from .errors import BusyError, UnsupportedError
+from .events import Arrived, Done, Event, LineError, Packet, Refused, Timeout
 from .link import Bus, Link, Settings
 from .procedures import Procedure
 from .programs import ProgramCopy, ProgramInformation
@@ -41,6 +42,52 @@ def client(link: Link, words: Words) -> str:
         if tested.deadline is not None:
             said.append(f" until deadline={int(tested.deadline)}")
     return "".join(said)
+
+
+def stream_client(link: Link, words: Words) -> str:
+    """What a client over envelopes does in a script."""
+    requests, times = number(words), {"reply_timeout": maybe(words), "retries": maybe(words)}
+    known = {key: value for key, value in times.items() if value is not None}
+    tested = EnvelopeClient(link, link.settings._replace(**known), requests=requests)
+    said = []
+    for at in words:
+        said.append(" step")
+        takes, action = number(words) == 1, next(words)
+        try:
+            said += map(_shown, _asked(tested, int(at), action, words))
+        except BusyError:
+            said.append(" error error=busy")
+        except UnsupportedError:
+            said.append(" error error=unsupported")
+        except UnknownIdError:
+            said.append(" error error=unknown-id")
+        except LengthError as error:
+            said.append(f" error error={counted('length', error)}")
+        while takes and (line := tested.output()):
+            said.append(row("stream", bytes=line))
+        if tested.deadline is not None:
+            said.append(f" until deadline={int(tested.deadline)}")
+    return "".join(said)
+
+
+def _asked(tested: EnvelopeClient, now: int, action: str, words: Words) -> list[Event]:
+    if action == "telecommand":
+        id, repeat = number(words), number(words) == 1
+        _is_named, reply = number(words), maybe(words)
+        request = Request("telecommand", id, octets(words), repeat)
+        return tested.start(now, request, reply)
+    if action == "telemetry":
+        return tested.start(now, Request("telemetry", number(words)))
+    if action == "received":
+        return tested.received(now, octets(words))
+    if action == "cancel":
+        kind = next(words)
+        if kind == "all":
+            tested.cancel()
+        else:
+            tested.cancel("telemetry" if kind == "telemetry" else "telecommand", number(words))
+        return []
+    return tested.tick(now)
 
 
 def _bus(words: Words) -> Bus:
@@ -81,6 +128,8 @@ def _output(tested: Client) -> str:
 def _shown(event: Event) -> str:
     if isinstance(event, LineError):
         return row(event.error, id=event.id)
+    if isinstance(event, Arrived):
+        return row("message", id=event.id, bytes=event.data, **event.values)
     known = [one.name for one in fields(event) if one.name not in ("type", "log")]
     facts = {"bytes" if key == "data" else key: getattr(event, key) for key in known}
     return row(type(event).__name__.lower(), **facts)

@@ -2,9 +2,10 @@
 
 use crate::line::{hex, Answer, Words};
 use crate::nodes::LONGEST;
+use crate::wire::explained;
 use icd::wire::link::{EnvelopeRole, Link, Stream};
-use icd::wire::stream::{encode, Decoder, Event, Values};
-use icd::wire::{Direction, Error};
+use icd::wire::stream::{encode, Client, Decoder, Event, NodeEvent, Request, Values};
+use icd::wire::{Direction, Error, Settings, Started};
 use std::fmt::Write;
 
 const SEQUENCES: usize = 64;
@@ -83,6 +84,94 @@ fn shown(form: &Stream, event: &Event<'_>) -> String {
         Event::UnknownId { id } => format!(" unknown_id id={id}"),
         Event::Overrun => " overrun".into(),
         Event::Framing => " framing".into(),
+        Event::Done {
+            id,
+            attempts,
+            reply,
+            data,
+            ..
+        } => {
+            let bytes = hex(data);
+            format!(" done id={id} attempts={attempts} bytes={bytes} reply={reply}")
+        }
+        Event::Timeout { id, attempts, .. } => format!(" timeout id={id} attempts={attempts}"),
         _ => " other".into(),
+    }
+}
+
+pub fn stream_client(link: &'static Link, words: &mut Words) -> Answer {
+    match words.number() {
+        1 => scripted::<1>(link, words),
+        2 => scripted::<2>(link, words),
+        _ => scripted::<3>(link, words),
+    }
+}
+
+fn scripted<const R: usize>(link: &'static Link, words: &mut Words) -> Answer {
+    let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
+    let settings = Settings {
+        reply_timeout_ms: words.maybe().unwrap_or(link.client.reply_timeout_ms),
+        retries: words.maybe().unwrap_or(link.client.retries),
+        ..link.client
+    };
+    let client = Client::<(), LONGEST, SEQUENCES, R>::new(link)?;
+    let mut client = client.with_settings(settings);
+    let mut answer = String::new();
+    let mut room = vec![0; 2 * LONGEST + 8];
+    while words.more() {
+        let (now, takes) = (words.number(), words.flag());
+        answer += " step";
+        happen(&mut client, form, now, words, &mut answer);
+        if takes {
+            while let Some(bytes) = client.output(&mut room)? {
+                let _ = write!(answer, " stream bytes={}", hex(bytes));
+            }
+        }
+        if let Some(deadline) = client.deadline() {
+            let _ = write!(answer, " until deadline={deadline}");
+        }
+    }
+    Ok(answer)
+}
+
+fn happen<const R: usize>(
+    client: &mut Client<(), LONGEST, SEQUENCES, R>,
+    form: &Stream,
+    now: u32,
+    words: &mut Words,
+    answer: &mut String,
+) {
+    let on_event = |event: NodeEvent<'_, ()>| *answer += &shown(form, &event);
+    match words.word() {
+        "telecommand" => {
+            let (id, repeat, is_named) = (words.number(), words.flag(), words.flag());
+            let reply: Option<u32> = words.maybe().filter(|_| is_named);
+            let data = words.octets();
+            let request = Request {
+                repeat,
+                reply,
+                ..Request::telecommand(id, &data)
+            };
+            *answer += &begun(client.start(now, &request), id);
+        }
+        "telemetry" => {
+            let id = words.number();
+            *answer += &begun(client.start(now, &Request::telemetry(id)), id);
+        }
+        "received" => client.received(now, &words.octets(), on_event),
+        "cancel" => match words.word() {
+            "telecommand" => client.cancel_request(Direction::Telecommand, words.number()),
+            "telemetry" => client.cancel_request(Direction::Telemetry, words.number()),
+            _ => client.cancel(),
+        },
+        _ => client.tick(now, on_event),
+    }
+}
+
+fn begun(started: Result<Started, Error>, id: u32) -> String {
+    match started {
+        Ok(Started::Waiting) => String::new(),
+        Ok(Started::Done) => format!(" done id={id} attempts=1 bytes="),
+        Err(error) => format!(" error error={}", explained(&error)),
     }
 }

@@ -59,6 +59,7 @@ pub fn answer(op: &str, words: &mut Words) -> Answer {
         "file" => scripts::file,
         "stream_encode" => stream::stream_encode,
         "stream_events" => stream::stream_events,
+        "stream_client" => stream::stream_client,
         _ => return Err(Refusal("request".into())),
     };
     answer(link(words.number()).ok_or(Error::Unsupported)?, words)

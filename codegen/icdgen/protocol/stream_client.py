@@ -1,0 +1,187 @@
+"""The client over envelopes: requests that different telemetry answers are under way together. The reference.
+
+A step machine without clock and without I/O, as `client.Client`: every call is given the time in milliseconds. Events
+are those of the decoder, as mappings, ``done`` and ``timeout``; a ``message`` is what nobody waits for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from icdgen.protocol import stream
+from icdgen.protocol.client import HOLD, IDLE, TELECOMMAND, TELEMETRY, WAIT, Event
+from icdgen.protocol.envelope import Stream, StreamRow
+from icdgen.protocol.errors import BusyError, LengthError, UnknownIdError
+from icdgen.protocol.facts import Facts, Unsupported, need
+from icdgen.protocol.sections import Settings
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """``reply``: id of the telemetry that answers a telecommand, where the ICD does not say so."""
+
+    kind: str
+    id: int
+    data: bytes = b""
+    repeat: bool = False
+    reply: int | None = None
+
+
+@dataclass(slots=True, eq=False)
+class Slot:
+    """Room for a request, and the memory of the one before that may still be answered."""
+
+    request: Request = Request(TELECOMMAND, 0)
+    state: str = IDLE
+    sent: int = 0  # id of the telecommand
+    data: bytes = b""
+    reply: int | None = None
+    repeat: bool = False
+    attempts: int = 0
+    until: int = 0  # when the state ends by itself
+    was_taken: bool = False  # by whoever sends
+    late: int | None = None  # id of telemetry that may still come
+    late_until: int = 0
+
+
+class Client:
+    """As many requests together as ``requests`` says, each from sending to its outcome."""
+
+    def __init__(self, known: Facts, requests: int, settings: Settings | None = None) -> None:
+        self.form: Stream = need(known.stream, "stream")
+        self.settings = settings or known.client
+        self._decoder = stream.Decoder(self.form, TELEMETRY)
+        self._slots = [Slot() for _ in range(requests)]
+        self._untaken: list[Slot] = []
+        self._next: dict[int | None, int] = {}  # sequence numbers
+
+    @property
+    def deadline(self) -> int | None:
+        """When `tick` wants to be called at the latest; None: not at all."""
+        return min((slot.until for slot in self._slots if slot.state != IDLE), default=None)
+
+    def start(self, now: int, request: Request) -> list[Event]:
+        """Begins a request. Raises `UnknownIdError`, `Unsupported`, `BusyError`, `LengthError`."""
+        row = self._row(request)
+        reply = request.id if request.kind == TELEMETRY else row.reply
+        if request.reply is not None:
+            reply = request.reply
+            if all(one.id != reply for one in self.form.telemetry):
+                raise UnknownIdError(f"no telemetry has the id {reply}")
+        slot = self._free(reply)
+        if not row.least <= len(request.data) <= row.most:
+            raise LengthError(row.most if len(request.data) > row.most else row.least, len(request.data))
+        slot.request, slot.sent, slot.data, slot.reply = request, row.id, request.data, reply
+        slot.repeat = request.repeat or request.kind == TELEMETRY
+        slot.attempts, slot.was_taken = 0, False
+        late = [one.late_until for one in self._slots if one.late is not None and one.late == reply]
+        if now < max(late, default=now):
+            slot.state, slot.until = HOLD, max(late)
+            return []
+        return list(self._transmit(now, slot))
+
+    def output(self) -> list[bytes]:
+        """The messages to be sent, once."""
+        taken, self._untaken = self._untaken, []
+        for slot in taken:
+            slot.was_taken = True
+        return [self._line(slot) for slot in taken]
+
+    def cancel(self, kind: str | None = None, id: int | None = None) -> None:
+        """Gives up a request, or all, without an event, and what of it was not taken."""
+        for slot in self._slots:
+            if kind in (None, slot.request.kind) and id in (None, slot.request.id):
+                self._drop(slot)
+                if slot.state != IDLE and slot.was_taken:
+                    slot.late, slot.late_until = slot.reply, slot.until + self.settings.reply_timeout
+                slot.state = IDLE
+
+    def tick(self, now: int) -> list[Event]:
+        """Lets time pass."""
+        events: list[Event] = []
+        for slot in self._slots:
+            if slot.state == IDLE or now < slot.until:
+                continue
+            if slot.state == HOLD or (slot.repeat and slot.attempts <= self.settings.retries):
+                events += self._transmit(now, slot)
+            else:
+                events.append(self._end(now, slot, "timeout"))
+        return events
+
+    def received(self, now: int, data: bytes) -> list[Event]:
+        """The next bytes of the stream, or a packet."""
+        return self.tick(now) + [self._found(now, event) for event in self._decoder.feed(data)]
+
+    def _found(self, now: int, event: stream.Event) -> Event:
+        if event.event == stream.MESSAGE:
+            for slot in self._slots:
+                if slot.state == WAIT and slot.was_taken and slot.reply == event.id:
+                    return self._end(now, slot, "done") | {"reply": event.id, "bytes": event.data.hex()}
+        return told(event)
+
+    def _row(self, request: Request) -> StreamRow:
+        """The telecommand that is sent."""
+        id, rows = request.id, self.form.telecommands
+        if request.kind == TELEMETRY:
+            rows = tuple(row for row in rows if row.reply == id and row.least == 0)
+            if not rows and any(row.id == id for row in self.form.telemetry):
+                raise Unsupported(f"telemetry {id} is sent unasked")
+        else:
+            rows = tuple(row for row in rows if row.id == id)
+        if not rows:
+            raise UnknownIdError(f"there is no {request.kind} of id {id}")
+        return rows[0]
+
+    def _free(self, reply: int | None) -> Slot:
+        """Room for a request with that reply, which no other one waits for."""
+        if reply is not None and any(slot.state != IDLE and slot.reply == reply for slot in self._slots):
+            raise BusyError
+        for slot in self._slots:
+            if slot.state == IDLE and slot not in self._untaken:
+                return slot
+        raise BusyError
+
+    def _transmit(self, now: int, slot: Slot) -> Iterator[Event]:
+        """Sends the request, for the first time or again."""
+        slot.attempts += 1
+        if slot not in self._untaken:
+            self._untaken.append(slot)
+        if slot.reply is None:
+            slot.state = IDLE
+            yield {"event": "done", "id": slot.request.id, "attempts": 1, "bytes": ""}
+        else:
+            slot.state, slot.until = WAIT, now + self.settings.reply_timeout
+
+    def _end(self, now: int, slot: Slot, outcome: str) -> Event:
+        slot.state = IDLE
+        self._drop(slot)
+        if slot.was_taken and (slot.attempts > 1 or outcome == "timeout"):
+            slot.late, slot.late_until = slot.reply, now + self.settings.reply_timeout
+        return {"event": outcome, "id": slot.request.id, "attempts": slot.attempts}
+
+    def _drop(self, slot: Slot) -> None:
+        if slot in self._untaken:
+            self._untaken.remove(slot)
+
+    def _line(self, slot: Slot) -> bytes:
+        field = self.form.of("sequence")
+        if field is None:
+            return stream.encode(self.form, TELECOMMAND, slot.sent, slot.data)
+        key = slot.sent if self.form.per_id else None
+        number = self._next.get(key, field.values[0])
+        self._next[key] = number + 1 & field.mask
+        return stream.encode(self.form, TELECOMMAND, slot.sent, slot.data, {"sequence": number})
+
+
+def told(event: stream.Event) -> Event:
+    """What a decoder found, as a mapping."""
+    row: dict[str, Any] = {"event": event.event}
+    if event.id is not None:
+        row["id"] = event.id
+    if event.event == stream.MESSAGE:
+        row |= {"bytes": event.data.hex(), **dict(event.values)}
+    if event.event == stream.GAP:
+        row["missing"] = event.missing
+    return row

@@ -1,0 +1,179 @@
+"""What is asked over an envelope is answered: two requests together, one of them lost, in C and Rust as docs/wire.md shows it."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+
+from tests.c import harness as c
+from tests.conformance.icds import icd_of
+from tests.conftest import ROOT
+from tests.rust import harness as rust
+from tests.rust.tools import Toolchain, run
+
+ICD = icd_of([ROOT / "examples" / "links" / "ubx.yaml"])
+SHOWN = (
+    (ROOT / "docs" / "wire.md").read_text(encoding="utf-8").split("**Client.**")[1].split("## Links to begin with")[0]
+)
+
+C = """
+#include "receiver.h"
+#include <stdio.h>
+
+static void on_event(void *context, const icd_stream_event_t *event)
+{
+    receiver_navigation_clock_t clock;
+    const unsigned long id = event->id;
+    (void)context;
+    if (event->kind == ICD_STREAM_TIMEOUT) {
+        (void)printf("timeout %%lu\\n", id);
+    }
+    if (event->kind == ICD_STREAM_DONE && !event->has_reply) {
+        (void)printf("done %%lu\\n", id);
+    }
+    if (icd_is_telemetry(event, RECEIVER_NODE, RECEIVER_NAVIGATION_CLOCK_ID) &&
+        receiver_navigation_clock_decode(&clock, event->data, event->length) == ICD_OK) {
+        (void)printf(
+            "%%s %%lu %%ld\\n", event->kind == ICD_STREAM_DONE ? "done" : "unasked", id, (long)clock.clock_bias);
+    }
+}
+
+static size_t answer(uint8_t *line, size_t capacity, int32_t bias)
+{
+    receiver_navigation_clock_t clock;
+    uint8_t data[RECEIVER_NAVIGATION_CLOCK_LENGTH];
+    size_t count = 0;
+    receiver_navigation_clock_init(&clock);
+    clock.clock_bias = bias;
+    (void)receiver_navigation_clock_encode(&clock, data, sizeof data);
+    (void)icd_stream_encode(
+        receiver_link(), ICD_TELEMETRY, RECEIVER_NAVIGATION_CLOCK_ID, data, sizeof data, NULL, line, capacity, &count);
+    return count;
+}
+
+static void send(icd_stream_client_t *client)
+{
+    uint8_t line[RECEIVER_LINE_BYTES];
+    size_t count = 0;
+    while (icd_stream_client_output(client, line, sizeof line, &count)) {
+        (void)printf("sent %%02x%%02x %%lu\\n", line[2], line[3], (unsigned long)count);
+    }
+}
+
+int main(void)
+{
+%s
+    send(&client);
+    icd_stream_client_tick(&client, 10 + client.settings.reply_timeout, on_event, NULL);
+    send(&client);
+    count = answer(line, sizeof line, 5);
+    icd_stream_client_received(&client, 2000, line, count, on_event, NULL);
+    count = answer(line, sizeof line, 6);
+    icd_stream_client_received(&client, 2001, line, count, on_event, NULL);
+    uint32_t deadline = 0;
+    if (icd_stream_client_deadline(&client, &deadline)) {
+        return 1;
+    }
+    if (icd_stream_client_request(&client, 9000, RECEIVER_NAVIGATION_CLOCK_ID) != ICD_OK ||
+        icd_stream_client_request(&client, 9000, RECEIVER_NAVIGATION_CLOCK_ID) != ICD_ERROR_BUSY ||
+        icd_stream_client_request(&client, 9000, RECEIVER_END_OF_EPOCH_ID) != ICD_ERROR_UNSUPPORTED) {
+        return 2;
+    }
+    send(&client);
+    while (icd_stream_client_deadline(&client, &deadline)) {
+        icd_stream_client_tick(&client, deadline, on_event, NULL);
+    }
+    return 0;
+}
+"""
+C_BEGIN = """
+    const uint32_t now = 10;
+    receiver_set_message_rate_t rate;
+    uint8_t data[RECEIVER_SET_MESSAGE_RATE_LENGTH];
+    size_t count = 0;
+    void *const context = NULL;
+    receiver_set_message_rate_init(&rate);
+    (void)receiver_set_message_rate_encode(&rate, data, sizeof data);
+"""
+EXPECTED = [
+    "done 1537", "sent 0122 8", "sent 0601 11", "sent 0122 8", "done 290 5", "unasked 290 6", "sent 0122 8", "timeout 290",
+]  # fmt: skip
+
+RUST = """
+use icd::receiver::{self, NavigationClock, SetMessageRate};
+use icd::wire::{stream, Direction, Error, Started};
+
+fn answer(bias: i32) -> Vec<u8> {
+    let link = &receiver::LINK;
+    let (mut clock, mut line) = (NavigationClock::default(), [0; 600]);
+    clock.clock_bias = bias;
+    let values = stream::Values::new(link, Direction::Telemetry);
+    let data = icd::Message::to_bytes(&clock).unwrap();
+    let size = stream::encode(link, Direction::Telemetry, 0x0122, data.as_ref(), &values, &mut line).unwrap();
+    line[..size].to_vec()
+}
+
+fn told(event: stream::NodeEvent<'_, receiver::Node>) {
+    match (*event, event.message::<NavigationClock>()) {
+        (stream::Event::Timeout { id, .. }, _) => println!("timeout {id}"),
+        (stream::Event::Done { id, .. }, Some(clock)) => println!("done {id} {}", clock.clock_bias),
+        (stream::Event::Message { id, .. }, Some(clock)) => println!("unasked {id} {}", clock.clock_bias),
+        _ => println!("something else"),
+    }
+}
+
+fn main() -> Result<(), Error> {
+    let (now, mut line) = (10, [0; receiver::LONGEST]);
+    %s
+    if client.send(now, &SetMessageRate { rate: 1, ..SetMessageRate::default() })? == Started::Done {
+        println!("done 1537");
+    }
+    while let Some(bytes) = client.output(&mut line)? {
+        println!("sent {:02x}{:02x} {}", bytes[2], bytes[3], bytes.len());
+    }
+    client.tick(now + receiver::LINK.client.reply_timeout_ms, told);
+    while let Some(bytes) = client.output(&mut line)? {
+        println!("sent {:02x}{:02x} {}", bytes[2], bytes[3], bytes.len());
+    }
+    client.received(2000, &answer(5), told);
+    client.received(2001, &answer(6), told);
+    assert_eq!(client.deadline(), None);
+    client.request::<NavigationClock>(9000)?;
+    assert_eq!(client.request::<NavigationClock>(9000), Err(Error::Busy));
+    assert_eq!(client.request::<receiver::EndOfEpoch>(9000), Err(Error::Unsupported));
+    while let Some(bytes) = client.output(&mut line)? {
+        println!("sent {:02x}{:02x} {}", bytes[2], bytes[3], bytes.len());
+    }
+    while let Some(deadline) = client.deadline() {
+        client.tick(deadline, told);
+    }
+    Ok(())
+}
+"""
+
+
+def shown(language: str, first: str, last: str) -> str:
+    """The lines of an example, from one to another."""
+    found = re.search(rf"```{language}\n(.*?)```", SHOWN, re.S)
+    assert found
+    lines = found[1].splitlines()
+    begin = next(number for number, line in enumerate(lines) if first in line)
+    end = next(number for number, line in enumerate(lines) if last in line)
+    return "\n".join(lines[begin : end + 1])
+
+
+def test_c_asks_and_is_answered(tmp_path):
+    folder = c.generate(ICD, tmp_path)
+    body = C_BEGIN + shown("c", "icd_stream_client_t client", "RECEIVER_SET_MESSAGE_RATE_ID")
+    (tmp_path / "ask.c").write_text(C % body)
+    options = ("-std=c99", *c.WARNINGS, *c.SANITIZERS, f"-I{folder}")
+    program = c.compile(tmp_path / "ask.c", *options, output=tmp_path / "ask")
+    done = subprocess.run([program], capture_output=True, text=True)
+    assert (done.returncode, done.stdout.splitlines()) == (0, EXPECTED), done.stderr
+
+
+def test_rust_asks_and_is_answered(tmp_path):
+    tools, crate = Toolchain("default"), rust.generate(ICD, tmp_path)
+    (tmp_path / "ask.rs").write_text(RUST % shown("rust", "stream::Client::<", "client.request::<"))
+    program = tools.program(tmp_path / "ask.rs", tools.library(crate, "0"), tmp_path / "ask")
+    assert run(program).splitlines() == EXPECTED
