@@ -6,9 +6,9 @@
 #ifndef ICDGEN_NO_DOUBLE
 
 /*
- * Physical values by curves, which are made of pieces: from a raw value on, a polynomial in what is above that. Horner's
- * rule, where every difference, product and sum is a double of its own. That the steps are volatile keeps compilers from
- * making one of two, and from reckoning with more digits in between.
+ * Physical values by curves, which are made of pieces: from a raw value on, a polynomial in what is above that.
+ * Horner's rule, where every difference, product and sum is a double of its own. That the steps are volatile keeps
+ * compilers from making one of two, and from reckoning with more digits in between.
  */
 typedef struct {
     double start;

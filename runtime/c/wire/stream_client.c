@@ -62,13 +62,15 @@ ICDGEN_API icd_status_t icd_stream_client_init(
 ICDGEN_API bool icd_stream_client_deadline(const icd_stream_client_t *client, uint32_t *deadline)
 {
     bool waits = false;
+    uint32_t first = 0;
     for (size_t i = 0; i < client->slot_count; ++i) {
         const icd_stream_slot_t *const slot = &client->slots[i];
         if (slot->state != ICD_CLIENT_IDLE) {
-            *deadline = waits && icdgen_reached(slot->until, *deadline) ? *deadline : slot->until;
+            first = waits && icdgen_reached(slot->until, first) ? first : slot->until;
             waits = true;
         }
     }
+    *deadline = first;
     return waits;
 }
 

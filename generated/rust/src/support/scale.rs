@@ -199,5 +199,5 @@ fn quotient(value: u128, divisor: u128, rounding: Rounding) -> f64 {
 
 /// The value of a field that must be there.
 pub(crate) fn there<T>(field: &'static str, value: Option<T>) -> Result<T, Error> {
-    value.ok_or(Error::range(field, "a value where its condition holds"))
+    value.ok_or_else(|| Error::range(field, "a value where its condition holds"))
 }

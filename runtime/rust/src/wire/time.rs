@@ -68,7 +68,7 @@ impl DosTime {
         ];
         let mut packed = 0;
         for (field, part, value) in parts {
-            packed |= pack(part, value).ok_or(Error::range(field))?;
+            packed |= pack(part, value).ok_or_else(|| Error::range(field))?;
         }
         Ok(packed)
     }

@@ -132,7 +132,7 @@ pub fn encode(
         };
         let fitting = u32::try_from(value).ok();
         let value = fitting.filter(|value| *value <= field.mask());
-        let value = value.ok_or(Error::range(name(field.role)))?;
+        let value = value.ok_or_else(|| Error::range(name(field.role)))?;
         let into = if field.in_trailer {
             &mut trailer
         } else {

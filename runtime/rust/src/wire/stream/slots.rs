@@ -106,7 +106,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         let reply = match request.reply {
             Some(named) if !asks => {
                 form.row(Direction::Telemetry, named)
-                    .ok_or(unknown(named))?;
+                    .ok_or_else(|| unknown(named))?;
                 Some(named)
             }
             _ => row.reply,
@@ -265,7 +265,7 @@ fn telecommand(form: &Stream, request: &Request<'_>) -> Result<&'static StreamRo
     let id = request.id;
     if request.direction == Direction::Telecommand {
         let row = form.row(Direction::Telecommand, id);
-        return row.map(|(_, row)| row).ok_or(unknown(id));
+        return row.map(|(_, row)| row).ok_or_else(|| unknown(id));
     }
     let mut rows = form.telecommands.iter();
     let asking = rows.find(|row| row.reply == Some(id) && row.least == 0);

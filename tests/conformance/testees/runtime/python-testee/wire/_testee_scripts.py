@@ -46,7 +46,10 @@ def client(link: Link, words: Words) -> str:
 
 def stream_client(link: Link, words: Words) -> str:
     """What a client over envelopes does in a script."""
-    requests, times = number(words), {"reply_timeout": maybe(words), "retries": maybe(words)}
+    requests, times = number(words), {
+        "reply_timeout": maybe(words),
+        "retries": maybe(words),
+    }
     known = {key: value for key, value in times.items() if value is not None}
     tested = EnvelopeClient(link, link.settings._replace(**known), requests=requests)
     said = []
@@ -85,7 +88,9 @@ def _asked(tested: EnvelopeClient, now: int, action: str, words: Words) -> list[
         if kind == "all":
             tested.cancel()
         else:
-            tested.cancel("telemetry" if kind == "telemetry" else "telecommand", number(words))
+            tested.cancel(
+                "telemetry" if kind == "telemetry" else "telecommand", number(words)
+            )
         return []
     return tested.tick(now)
 
