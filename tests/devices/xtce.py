@@ -57,6 +57,8 @@ def _definitions(path: Path, tree: dict, missing: list[str]) -> Definitions:
             type_.enumeration = _Any(type_.enumeration)
         if hasattr(type_.encoding, "leading_length_size"):
             type_.encoding.encoding = "latin-1"
+        if hasattr(getattr(type_.encoding, "default_calibrator", None), "extrapolate"):
+            type_.encoding.default_calibrator.extrapolate = True
     tree["messages"] = [one for one in tree["messages"] if one["kind"] == "telemetry"]
     used = {one.get("enum") for message in tree["messages"] for one in message.get("fields", ())}
     tree["enums"] = [one for one in tree.get("enums", ()) if one["name"] in used]
