@@ -7,8 +7,11 @@ from icdgen.describe.comments import Comment, enum_comment, member_comment
 from icdgen.describe.errata import Thing, tellers, told_elsewhere
 from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding
+from icdgen.icd.kept import kept
 from icdgen.icd.model import Enum, Icd, Member, Message, Node, Struct
 from icdgen.once import cached_property
+
+Users = dict[str, list[str]]  # by the names of fields, the messages and structs in which they stand
 
 
 def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
@@ -26,12 +29,25 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
     return found
 
 
+@kept
+def holders(icd: Icd, node: Node) -> dict[tuple[str, str], Users]:
+    """Of each enumeration, by its node and its name, what of a node holds it."""
+    found: dict[tuple[str, str], Users] = {}
+    every: tuple[Struct | Message, ...] = (*node.structs, *node.messages)
+    for one in every:
+        for field in one.members:
+            if field.enum is not None:
+                users = found.setdefault((field.enum.node, field.enum.name), {})
+                users.setdefault(field.name, []).append(one.name)
+    return found
+
+
 class EnumDescription(Named[Enum]):
     """An enumeration of ``node``; ``storage`` holds every value of it, named or not."""
 
-    def __init__(self, enum: Enum, node: Node, bits: int) -> None:
+    def __init__(self, enum: Enum, node: Node, bits: int, icd: Icd) -> None:
         super().__init__(enum, node.vocabulary, f"enumeration `{enum.name}`")
-        self.node, self.storage = node, Storage(holding(bits), enum.signed)
+        self.icd, self.node, self.storage = icd, node, Storage(holding(bits), enum.signed)
 
     @cached_property
     def members(self) -> tuple[MemberDescription, ...]:
@@ -56,17 +72,10 @@ class EnumDescription(Named[Enum]):
     def comment(self) -> Comment:
         return enum_comment(self.model, self.users)
 
-    @cached_property
-    def users(self) -> dict[str, list[str]]:
+    @property
+    def users(self) -> Users:
         """By the names of the fields of its node that hold it: the messages and structs in which they stand."""
-        found: dict[str, list[str]] = {}
-        every: tuple[Struct | Message, ...] = (*self.node.structs, *self.node.messages)
-        key = self.model.node, self.model.name
-        for one in every:
-            for field in one.members:
-                if field.enum is not None and (field.enum.node, field.enum.name) == key:
-                    found.setdefault(field.name, []).append(one.name)
-        return found
+        return holders(self.icd, self.node).get((self.model.node, self.model.name), {})
 
     def member(self, value: int) -> MemberDescription | None:
         """The first member of a value, if one has it."""

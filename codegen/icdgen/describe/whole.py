@@ -67,7 +67,7 @@ class Description:
         key = enum.node, enum.name
         found = self._enums.get(key)
         if found is None or found.model is not enum:
-            found = self._enums[key] = EnumDescription(enum, self.icd.node(enum.node), self._enum_bits[key])
+            found = self._enums[key] = EnumDescription(enum, self.icd.node(enum.node), self._enum_bits[key], self.icd)
         return found
 
 
