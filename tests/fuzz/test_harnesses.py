@@ -18,7 +18,6 @@ from tests.fuzz.__main__ import HERE, c_stream_seeds, c_wire_seeds, seeds, sourc
 from tests.fuzz.python_dispatch import Dispatch
 from tests.fuzz.python_streams import Streams
 
-
 DEVICES = [ROOT / "examples" / "devices" / name / f"{name}.yaml" for name in ("mavlink", "ublox")]
 
 
