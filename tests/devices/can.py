@@ -79,7 +79,7 @@ def _reader(message: Any, fields: list[dict]) -> tuple[Callable[[bytes, bool], V
     parts, head = [message], (message.frame_id, message.name, message.length)
     names = {one["name"] for one in fields}
     known = [one for one in message.signals if one.name in names]
-    selecting = {one.multiplexer_signal for one in known} - {None}  # a file may not mark it, and it stands for itself as well
+    selecting = {one.multiplexer_signal for one in known} - {None}  # a file may not mark them
     if selecting or any("view" in one for one in fields) or len(known) < len(message.signals):
         selectors = {one.name: _said_of(one, is_multiplexer=True) for one in known if one.name in selecting}
         alone = [_said_of(one, is_multiplexer=False) for one in known]
