@@ -29,6 +29,7 @@ class Column:
     length: int
     byte_order: str
     pieces: tuple[Piece, ...]  # of a number, in the entry
+    operands: tuple[Column, ...] = ()  # of what is derived, the fields
 
     @property
     def at(self) -> int:
@@ -97,14 +98,19 @@ def _columns(icd: Icd, known: Facts, slot: LogBit, start: int) -> Iterator[Colum
         return
     owner = icd.node(message.node)
     frame = _snake(message.identifier or message.name, owner.vocabulary)
+    made: dict[str, Column] = {}
     for field in message.fields:
-        if field.at + field.bits > slot.length * 8:
+        of = field.derived.fields if field.derived is not None else ()
+        if not made.keys() >= set(of) or (not of and field.at + field.bits > slot.length * 8):
             continue  # the slot does not hold it
         name = f"{frame}__{_snake(field.alias or field.name, owner.vocabulary)}"
         if field.unit:
             name += f"_{naming.snake(naming.words(field.unit.identifier))}"
         pieces = tuple(p._replace(byte=p.byte + start) for p in layout.pieces(field, owner))
-        yield Column(name, message.name, message, field, start, slot.length, field.orders(owner)[0], pieces)
+        operands = tuple(made[one] for one in of)
+        order = field.orders(owner)[0]
+        made[field.name] = Column(name, message.name, message, field, start, slot.length, order, pieces, operands)
+        yield made[field.name]
 
 
 def _snake(name: str, vocabulary: tuple[str, ...]) -> str:
