@@ -1041,7 +1041,7 @@ static inline icd_status_t icdgen_set_curve_f32(float *raw, double value, const 
  */
 
 /* A value that is no number has always the same bits. */
-static inline double icdgen_number(double value)
+static inline double icdgen_quiet(double value)
 {
     double result = value;
     if (icdgen_is_nan(value)) {

@@ -11,7 +11,7 @@
  */
 
 /* A value that is no number has always the same bits. */
-static inline double icdgen_number(double value)
+static inline double icdgen_quiet(double value)
 {
     double result = value;
     if (icdgen_is_nan(value)) {

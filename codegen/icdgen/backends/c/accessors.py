@@ -50,7 +50,7 @@ def _derived(field: FieldDescription) -> Accessor:
         value = f"icdgen_power({left}, {right})" if operator == "^" else f"{left} {operator} {right}"
         lines.append(_constant(f"const volatile double {name}", value))
     about = " ".join(field.comment.paragraphs)
-    return Accessor(field.name, "double", about, "", f"icdgen_number({found.result})", "", declared=tuple(lines))
+    return Accessor(field.name, "double", about, "", f"icdgen_quiet({found.result})", "", declared=tuple(lines))
 
 
 def _constant(head: str, value: str) -> str:
