@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from icdgen.definitions.frames import LITTLE, Place, laid_out
-from icdgen.definitions.model import Definitions, Item, NotHeld
+from icdgen.definitions.model import Definitions, Item, NotHeld, again
 from icdgen.definitions.wording import line
 from icdgen.definitions.xtce_calibration import fixed, number
 from icdgen.definitions.xtce_names import Names
@@ -131,7 +131,7 @@ class Layout:
             raise NotHeld(f"`{name}` stands behind `{self.parts[-1].item['name']}`, whose size is not fixed")
         if piece.order == LITTLE and self.at % 8:
             raise NotHeld(f"the least significant byte of `{name}` is sent first, and it begins within a byte")
-        self.parts.append(Part(of, _again(piece.item, {"name": name, **piece.item, **said}), piece, self.at))
+        self.parts.append(Part(of, again(piece.item, {"name": name, **piece.item, **said}), piece, self.at))
         self.at += piece.bits
 
     def _fixed(self, entry: Element) -> None:
@@ -229,7 +229,7 @@ class Layout:
             for one in closed:
                 little = {"byte_order": LITTLE} if one.piece.order == LITTLE and one.piece.bits > 8 else {}
                 place = {"at": one.at - start, "bits": one.piece.bits}
-                fields.append(_again(one.item, {**place, **one.item, **little}))
+                fields.append(again(one.item, {**place, **one.item, **little}))
         for one in parts:
             if not one.piece.bits:
                 if end % 8:
@@ -240,13 +240,6 @@ class Layout:
                 room = MOST_BYTES - message["length"]
                 fields.append({"at": end, **one.item, "up_to": min(room, one.item["up_to"])})
         return {**message, "fields": fields} if fields else message
-
-
-def _again(item: Item, said: Item) -> Item:
-    """The same mapping with other keys: an enumeration is named in it later."""
-    item.clear()
-    item |= said
-    return item
 
 
 def _named(entry: Element) -> str:
