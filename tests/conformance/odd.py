@@ -33,6 +33,13 @@ messages:
       - {at: 240, bits: 9, name: Ninth, type: int, special: [{value: -256, meaning: none at all}], min: -100, max: 100.5}
       - {at: 249, bits: 1, name: One Bit, type: int}
       - {at: 250, bits: 1, name: One Unsigned Bit, type: uint, formula: -raw*3}
+  - name: Ends of 64 Bits
+    id: 9
+    kind: telecommand
+    length: 16
+    fields:
+      - {at: 0, bits: 64, name: Least, type: int, min: -9223372036854775808, max: 9223372036854775806}
+      - {at: 64, bits: 64, name: Most, type: uint, min: 9223372036854775808, max: 18446744073709551614}
   - {name: Nothing, id: 0, kind: telecommand, length: 0}
 """
 

@@ -1,5 +1,7 @@
 """A line and a log, for ICDs that have none: what the simulator and the logs need to know."""
 
+from __future__ import annotations
+
 LINK = """\
 enums:
   - name: Refusal of the line
@@ -40,3 +42,20 @@ protocol:
       - {byte: 4, bytes: 2, name: Milliseconds, role: milliseconds, type: uint, unit: ms}
     frames_byte: 6
 """
+
+
+def envelope(id_bits: int) -> dict[str, object]:
+    """The link of a node whose messages do not fit that line: with longer ids, or of several lengths."""
+    header = [
+        {"at": 0, "bits": 8, "role": "sync", "value": 0x55},
+        {"at": 8, "bits": 16, "role": "length"},
+        {"at": 24, "bits": id_bits, "role": "id"},
+    ]
+    trailer = [{"at": 0, "bits": 8, "role": "checksum", "checksum": "parity"}]
+    parity = {"kind": "xor", "width": 8, "covers": {"from": "length", "to": "data"}}
+    return {
+        "protocol": {
+            "stream": {"delimited_by": "length", "header": header, "trailer": trailer},
+            "checksums": {"parity": parity},
+        }
+    }

@@ -39,12 +39,12 @@ def row(feature: Feature, folder: Path) -> dict[str, Cell]:
     cells = {name: _cell(name, example, changed) for name in SAYS}
     cells["javascript"] = cells["site"]  # the codec of the site works on what stands in its pages
     for name in BUILT:
-        if cells[name].has and not feature.places(_trees("conformance")):
+        if cells[name].has and not feature.places(_tried()):
             cells[name] = Cell(False, "no ICD of the conformance run has it")
     draws = 1 if "random" in feature.without else DRAWS
     cells["random"] = Cell(any(feature.places(_random(number)) for number in range(draws)))
     cells["mutation"] = Cell(_mutated(feature, icd))
-    cells["fuzz"] = Cell(bool(feature.places(_trees("fuzz"))))
+    cells["fuzz"] = Cell(bool(feature.places(_tried())))
     cells["fmt"] = Cell(laid_out(example))
     cells["check"] = _check(feature, folder)
     cells["diff"] = Cell(differs(example, changed))
@@ -89,12 +89,11 @@ def _mutated(feature: Feature, icd: Icd) -> bool:
 
 
 @cache
-def _trees(what: str) -> list[object]:
-    """The ICDs that are tried elsewhere, as trees: those of the tests of conformance and of fuzzing."""
-    files = sorted(SHIPPED.glob("*.yaml"))
+def _tried() -> list[object]:
+    """The ICDs of the conformance run, on which the fuzz harnesses are run in the tests as well, as trees."""
     with tempfile.TemporaryDirectory() as folder:
-        if what == "conformance":
-            files += sorted((*odd.write(Path(folder)).glob("*.yaml"), *LINKS.glob("*.yaml")))
+        odds = odd.write(Path(folder)).glob("*.yaml")
+        files = sorted((*SHIPPED.glob("*.yaml"), *odds, *LINKS.glob("*.yaml")))
         return [yaml.load(file.read_bytes(), yaml.CSafeLoader) for file in files]
 
 

@@ -7,10 +7,11 @@ import json
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import count, takewhile
 from pathlib import Path
+from typing import Any
 
 import yaml
 
@@ -22,7 +23,8 @@ from icdgen.icd.fmt import format_text
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.variants import ids_of
 from icdgen.loading import load
-from icdgen.logfile import parquet, source, text
+from icdgen.logfile import text
+from icdgen.logfile.log import open_log
 from icdgen.protocol import facts, logs
 from icdgen.recognize import recognize
 from icdgen.show import machine, people
@@ -35,8 +37,9 @@ from icdgen.values.encode import encode
 from icdgen.values.frame import frame
 from icdgen.vectors.make import make
 from tests.conformance.build import renderer
+from tests.features import enveloped
 from tests.features.data import Feature
-from tests.features.link import LINK
+from tests.features.link import LINK, envelope
 from tests.python import packages
 
 FRAMES = 30  # of the vectors of each message
@@ -80,8 +83,24 @@ class Subject:
 
     @cached_property
     def linked(self) -> tuple[Icd, str]:
-        """The ICD with a line on which it is spoken and a log; what does not fit these is not in the log. Raises `Refused`."""
-        tree, link = yaml.safe_load(self.content), yaml.safe_load(LINK)
+        """The ICD with a link on which it is spoken: its own; else a line and a log; else one with envelopes. Raises `Refused`."""
+        tree = yaml.safe_load(self.content)
+        if "protocol" in tree:
+            return self.icd, tree["node"]["name"]
+        with suppress(Refused):
+            return self._with_log(tree)
+        tree |= envelope(tree["node"].get("id_bits", 8))
+        return icd_of(json.dumps(tree), self.folder), tree["node"]["name"]
+
+    @cached_property
+    def has_envelopes(self) -> bool:
+        """Whether that link has."""
+        icd, name = self.linked
+        return facts.of(icd, icd.node(name)).stream is not None
+
+    def _with_log(self, tree: dict[str, Any]) -> tuple[Icd, str]:
+        """With a line and a log; what does not fit these is not in the log. Raises `Refused`."""
+        tree, link = dict(tree), yaml.safe_load(LINK)
         spoken = [one for one in tree["messages"] if one["kind"] != "telecommand"]
         size = next((one["length"] for one in spoken if self.feature.places({"messages": [one]})), None)
         size = size or next((one["length"] for one in spoken), 1)
@@ -206,6 +225,8 @@ def _simulator(subject: Subject) -> object:
     """What it answers after its values were set, and after it was sent what was made for the example."""
     icd, name = subject.linked
     node = icd.node(name)
+    if subject.has_envelopes:
+        return enveloped.simulator(icd, node, subject.frames, subject.words)
     program = Program(icd, node, Storage(), Settings(strict=True), 0)
     said: list[object] = []
     for message, data in subject.messages():
@@ -229,8 +250,12 @@ def _answers(program: Program, now: int) -> list[bytes | None]:
 
 
 def _log(subject: Subject) -> tuple[object, object]:
-    """As CSV and as Parquet."""
+    """As CSV and as Parquet; of envelopes what is made of the bytes that the example sends."""
     icd, name = subject.linked
+    if subject.has_envelopes:
+        example = replace(subject, content=subject.feature.example)
+        sent = enveloped.recorded(example.linked[0], example.linked[0].node(name), subject.frames)
+        return enveloped.log(icd, icd.node(name), sent, subject.folder)
     known = facts.of(icd, icd.node(name))
     mask = bytes([(1 << len(known.mask.bits)) - 1, 0])
     slots = known.mask.selected(mask)
@@ -242,10 +267,10 @@ def _log(subject: Subject) -> tuple[object, object]:
         entries.append((1_600_000_000, number, cut))
     file = Path(tempfile.mkdtemp(dir=subject.folder)) / "log.bin"
     file.write_bytes(logs.encode(known, mask, entries))
-    opened = source.open_log(icd, icd.node(name), file)
+    opened = open_log(icd, icd.node(name), file, "telemetry", [])
     written = io.StringIO()
-    text.to_csv(opened, written, None, lambda _: None)
-    parquet.to_parquet(opened, file.with_suffix(".parquet"), None, lambda _: None)
+    text.to_csv(opened.names, opened.rows(None, lambda _: None), written)
+    opened.to_parquet(file.with_suffix(".parquet"), None, lambda _: None)
     import pyarrow.parquet
 
     table = pyarrow.parquet.read_table(file.with_suffix(".parquet"))

@@ -18,6 +18,8 @@ from tests.fuzz.__main__ import HERE, c_stream_seeds, c_wire_seeds, seeds, sourc
 from tests.fuzz.python_dispatch import Dispatch
 from tests.fuzz.python_streams import Streams
 
+DEVICES = [ROOT / "examples" / "devices" / name / f"{name}.yaml" for name in ("mavlink", "ublox")]
+
 
 @pytest.fixture(scope="module")
 def icd():
@@ -26,8 +28,8 @@ def icd():
 
 @pytest.fixture(scope="module")
 def odd_icd(tmp_path_factory):
-    """Messages of variable length, shared ids, conditions: what the shipped ICDs do not have."""
-    return icd_of(odd.variable(tmp_path_factory.mktemp("odd")))
+    """What the shipped ICDs do not have: wide ids, variable length, shared ids, conditions, curves ..."""
+    return icd_of([odd.write(tmp_path_factory.mktemp("odd")), *DEVICES])
 
 
 @pytest.fixture(scope="module")
@@ -158,4 +160,4 @@ def test_the_python_harness_notices_a_codec_that_is_wrong():
     from tests.fuzz.python_dispatch import check
 
     with pytest.raises(AssertionError):
-        check(Wrong(), b"\0")
+        check(Wrong(), b"\0", None)

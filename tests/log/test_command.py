@@ -91,7 +91,7 @@ def test_what_cannot_be_is_said_and_nothing_is_left_behind(write, everything, tm
         ((tmp_path,), "is a folder"),
         ((path, "--out", "x.doc"), "tells no format"),
         ((path, "--format", "parquet"), "does not go to standard output"),
-        ((path, "--node", "cubemag"), "describes no log files"),
+        ((path, "--node", "cubemag"), "describes no logs"),
         ((path, "--out", tmp_path / "no" / "x.csv"), "cannot write"),
         ((path, "--out", tmp_path / "no" / "x.parquet"), "cannot write"),
         ((path, "--head", "1"), "--head needs"),

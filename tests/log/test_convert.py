@@ -12,7 +12,9 @@ from datetime import datetime
 import pytest
 
 from icdgen import codec
-from icdgen.logfile import parquet, source, text
+from icdgen.logfile import parquet, text
+from icdgen.logfile.log import open_log
+from icdgen.logfile.source import open_source
 from icdgen.values.frame import Row
 
 COUNT = 300
@@ -55,17 +57,22 @@ def milliseconds(text: str) -> int:
     return round(datetime.fromisoformat(text).timestamp() * 1000)
 
 
+def converted(write, icd, known, path, head=None) -> str:
+    """What is written of a log."""
+    file, found = io.StringIO(), open_log(icd, known.node, path, "telemetry", [])
+    write(found.names, found.rows(head, lambda size: None), file)
+    return file.getvalue()
+
+
 @pytest.fixture
 def log(icd, known, everything, write):
     path, entries = write(everything, COUNT, b"cut off")
-    return source.open_log(icd, known.node, path), entries
+    return open_source(icd, known.node, path), entries
 
 
 def test_csv(icd, known, log):
     found, entries = log
-    file = io.StringIO()
-    text.to_csv(found, file, None, lambda size: None)
-    head, *rows = csv.reader(io.StringIO(file.getvalue()))
+    head, *rows = csv.reader(io.StringIO(converted(text.to_csv, icd, known, found.path)))
     assert head == ["time", *(column.name for column in found.plan.columns)]
     assert [milliseconds(row[0]) for row in rows] == times(entries)
     shown = [[str(v).lower() if isinstance(v, bool) else str(v) for v in row] for row in expected(icd, known, entries)]
@@ -74,9 +81,7 @@ def test_csv(icd, known, log):
 
 def test_json_lines(icd, known, log):
     found, entries = log
-    file = io.StringIO()
-    text.to_json_lines(found, file, None, lambda size: None)
-    rows = [json.loads(line) for line in file.getvalue().splitlines()]
+    rows = [json.loads(line) for line in converted(text.to_json_lines, icd, known, found.path).splitlines()]
     assert [milliseconds(row.pop("time")) for row in rows] == times(entries)
     assert [list(row.values()) for row in rows] == expected(icd, known, entries)
 
@@ -107,9 +112,7 @@ def test_only_the_first_entries(icd, known, log, tmp_path):
     found, _ = log
     parquet.to_parquet(found, tmp_path / "log.parquet", 7, lambda size: None)
     assert pq.read_table(tmp_path / "log.parquet").num_rows == 7
-    file = io.StringIO()
-    text.to_csv(found, file, 7, lambda size: None)
-    assert file.getvalue().count("\n") == 8
+    assert converted(text.to_csv, icd, known, found.path, 7).count("\n") == 8
 
 
 def test_a_log_without_entries_or_frames_is_a_table_too(icd, known, everything, write, tmp_path):
@@ -117,7 +120,7 @@ def test_a_log_without_entries_or_frames_is_a_table_too(icd, known, everything, 
 
     for mask, count in ((everything, 0), (bytes(known.mask.size), 3)):
         path, _ = write(mask, count)
-        found = source.open_log(icd, known.node, path)
+        found = open_source(icd, known.node, path)
         parquet.to_parquet(found, tmp_path / "log.parquet", None, lambda size: None)
         assert pq.read_table(tmp_path / "log.parquet").num_rows == count
 
@@ -181,16 +184,15 @@ def test_every_type_in_both_byte_orders(tmp_path, text_of_icd):
     entries = [(n, 0, [random.randbytes(36)]) for n in range(200)]
     data = logs.encode(known, b"\x40", entries)
     (tmp_path / "log").write_bytes(data)
-    found = source.open_log(icd, known.node, tmp_path / "log")
+    found = open_source(icd, known.node, tmp_path / "log")
     parquet.to_parquet(found, tmp_path / "log.parquet", None, lambda size: None)
     table = pq.read_table(tmp_path / "log.parquet")
     wanted = expected(icd, known, logs.decode(known, data).entries)
     rows = zip(*(table[column.name].to_pylist() for column in found.plan.columns), strict=True)
     got = [[v.hex() if isinstance(v, bytes) else v for v in row] for row in rows]
     assert [list(map(_same, row)) for row in got] == [list(map(_same, row)) for row in wanted]
-    file = io.StringIO()
-    text.to_json_lines(found, file, None, lambda size: None)
-    lines = [list(json.loads(line).values())[1:] for line in file.getvalue().splitlines()]
+    written = converted(text.to_json_lines, icd, known, found.path)
+    lines = [list(json.loads(line).values())[1:] for line in written.splitlines()]
     numbers = [
         index for index, column in enumerate(found.plan.columns) if column.kind != "float"
     ]  # floats are printed short

@@ -173,7 +173,9 @@ def _frames_in(file: BinaryIO, name: str) -> str | bytes:
     """Text if it is that; a file that is no text holds the bytes themselves."""
     data = file.read(_MOST + 1)
     if len(data) > _MOST:
-        raise UserError(f"{name} holds more than {_MOST:,} bytes", "give fewer frames, as text or as they are")
+        raise UserError(
+            f"{name} holds more than {_MOST:,} bytes", "give fewer frames; `icdgen log` takes recordings of any size"
+        )
     if all(byte in b"\t\n\r" or 32 <= byte < 127 for byte in data):
         return data.decode("ascii")
     return data

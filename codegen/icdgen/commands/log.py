@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -14,44 +14,74 @@ from icdgen.commands.common import PATH, icd_option, load_or_exit
 from icdgen.errors import UserError
 
 if TYPE_CHECKING:
-    from icdgen.logfile.source import Source
+    from icdgen.icd.model import Icd, Message, Node
+    from icdgen.logfile.log import Log
 
 _SUFFIXES = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "parquet", ".pq": "parquet"}
 
 
 @click.command()
-@click.argument("file", type=PATH)
-@click.option("--node", "name", help="Whose log it is, if several nodes of the ICDs have logs.")
+@click.argument("words", nargs=-1, required=True, metavar="[NODE] FILE [MESSAGE]...")
+@click.option("--node", "name", help="The same as NODE.")
 @click.option("--out", "-o", type=PATH, metavar="FILE", help="Convert to this file, whose ending tells the format.")
 @click.option("--format", "form", type=click.Choice(["csv", "jsonl", "parquet"]), help="Convert to this format.")
-@click.option("--head", type=click.IntRange(0), metavar="N", help="Only the first N entries.")
+@click.option("--head", type=click.IntRange(0), metavar="N", help="Only the first N rows.")
+@click.option(
+    "--direction",
+    type=click.Choice(["telemetry", "telecommand"]),
+    default="telemetry",
+    show_default=True,
+    help="What was recorded of a link with envelopes.",
+)
 @icd_option
 def log(
-    file: Path, name: str | None, out: Path | None, form: str | None, head: int | None, icds: tuple[Path, ...]
+    words: tuple[str, ...],
+    name: str | None,
+    out: Path | None,
+    form: str | None,
+    head: int | None,
+    direction: Literal["telemetry", "telecommand"],
+    icds: tuple[Path, ...],
 ) -> None:
-    """List what a telemetry log holds, or convert it to CSV, JSON lines or Parquet.
+    """List what a telemetry log or a recorded link holds, or convert it to CSV, JSON lines or Parquet.
 
-    A row is an entry, a column a field: `frame__field_unit`, holding physical values and names of members. Without --out the
-    conversion goes to standard output (not that to Parquet). A last entry that was cut off is left out, and reported.
+    FILE is a log as NODE writes it, or, where its messages travel in envelopes, the bytes that came, as receivers write them to
+    files. Of a log a row is an entry; of a recording it is a message. A column is a field: `frame__field_unit`, holding physical
+    values and names of members; MESSAGEs, by id or name, are the only ones that are wanted. Without --out the conversion goes to
+    standard output (not that to Parquet). What is cut off, damaged or not known is left out, and reported.
     """
-    from icdgen import tables
-    from icdgen.logfile import listing, source
+    from icdgen.logfile.log import open_log
 
     form = form or _form_of(out)
     icd = load_or_exit(icds).icd
-    found = source.open_log(icd, source.node_of(icd, name), file)
+    node, file, messages = _taken_apart(icd, words, name)
+    found = open_log(icd, node, file, direction, messages)
     if form is None:
+        from icdgen import tables
+
         if head is not None:
             raise click.UsageError("--head needs --format or --out")
-        click.echo(listing.to_text(found, tables.width_of(sys.stdout)), nl=False)
+        with _progress(file.name, found.steps(None)) as done:
+            text = found.listing(tables.width_of(sys.stdout), done)
+        click.echo(text, nl=False)
         return
-    for doubt in found.doubts():
-        click.echo(f"icdgen: {file}: {doubt}", err=True)
-    if found.truncated:
-        click.echo(f"icdgen: {file}: the last {found.truncated} bytes belong to no whole entry", err=True)
-    entries = found.entries if head is None else min(head, found.entries)
-    with _progress(file.name, entries * found.plan.entry_bytes) as done:
+    with _progress(file.name, found.steps(head)) as done:
+        for note in found.prepare(head, done):
+            click.echo(f"icdgen: {file}: {note}", err=True)
         _convert(found, form, out, head, done)
+
+
+def _taken_apart(icd: Icd, words: Sequence[str], name: str | None) -> tuple[Node, Path, list[Message]]:
+    """Node, file and messages."""
+    from icdgen.logfile.source import node_of
+    from icdgen.values.find import find_message
+
+    names = {node.name for node in icd.nodes}
+    first = words[0].strip().lower() if name is None and len(words) > 1 else ""
+    if first in names:
+        name, words = first, words[1:]
+    node = node_of(icd, name)
+    return node, Path(words[0]), [find_message(icd, node.name, word) for word in words[1:]]
 
 
 def _form_of(out: Path | None) -> str | None:
@@ -62,23 +92,23 @@ def _form_of(out: Path | None) -> str | None:
     return _SUFFIXES[out.suffix.lower()]
 
 
-def _convert(found: Source, form: str, out: Path | None, head: int | None, done: Callable[[int], None]) -> None:
-    from icdgen.logfile import parquet, text
+def _convert(found: Log, form: str, out: Path | None, head: int | None, done: Callable[[int], None]) -> None:
+    from icdgen.logfile import text
 
     if form == "parquet":
         if out is None:
             raise UserError("Parquet does not go to standard output", "--out FILE.parquet")
         with _whole(out) as partial:
-            parquet.to_parquet(found, partial, head, done)
+            found.to_parquet(partial, head, done)
         return
     convert = {"csv": text.to_csv, "jsonl": text.to_json_lines}[form]
     if out is None:
         if sys.stdout is None:
             raise UserError("standard output is closed", "--out FILE")
-        convert(found, sys.stdout, head, done)
+        convert(found.names, found.rows(head, done), sys.stdout)
         return
     with _whole(out) as partial, open(partial, "w", encoding="utf-8", newline="", buffering=1 << 20) as stream:
-        convert(found, stream, head, done)
+        convert(found.names, found.rows(head, done), stream)
 
 
 @contextmanager

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from icdgen import layout, naming
@@ -86,7 +86,7 @@ def plan(icd: Icd, known: Facts, mask: bytes) -> Plan:
         form.seconds,
         form.milliseconds,
         "little" if known.little else "big",
-        tuple(_unique(columns)),
+        tuple(unique(columns)),
     )
 
 
@@ -95,25 +95,29 @@ def _columns(icd: Icd, known: Facts, slot: LogBit, start: int) -> Iterator[Colum
     if message is None:
         yield Column(f"bit_{slot.bit}", slot.name or f"bit {slot.bit}", None, None, start, slot.length, "", ())
         return
-    owner = icd.node(message.node)
+    yield from columns_of(icd, message, start, slot.length)
+
+
+def columns_of(icd: Icd, message: Message, start: int = 0, length: int | None = None) -> Iterator[Column]:
+    """The fields of a message whose bytes begin at ``start``; ``length``: those that lie in so many."""
+    owner, size = icd.node(message.node), message.length if length is None else length
     frame = _snake(message.identifier or message.name, owner.vocabulary)
     for field in message.fields:
-        if field.at + field.bits > slot.length * 8:
-            continue  # the slot does not hold it
+        if field.implied or field.at + field.bits > size * 8:
+            continue
         name = f"{frame}__{_snake(field.alias or field.name, owner.vocabulary)}"
         if field.unit:
             name += f"_{naming.snake(naming.words(field.unit.identifier))}"
         pieces = tuple(p._replace(byte=p.byte + start) for p in layout.pieces(field, owner))
-        yield Column(name, message.name, message, field, start, slot.length, field.orders(owner)[0], pieces)
+        yield Column(name, message.name, message, field, start, size, field.orders(owner)[0], pieces)
 
 
 def _snake(name: str, vocabulary: tuple[str, ...]) -> str:
     return naming.snake(naming.words(name, vocabulary)) or "unnamed"
 
 
-def _unique(columns: list[Column]) -> Iterator[Column]:
-    from dataclasses import replace
-
+def unique(columns: Iterable[Column]) -> Iterator[Column]:
+    """The columns, each under a name of its own."""
     seen: set[str] = {TIME}
     for column in columns:
         name, number = column.name, 1

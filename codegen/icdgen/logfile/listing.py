@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from icdgen.describe.numbers import byte_count
+from icdgen.logfile.recording import Recording, Tally
 from icdgen.logfile.rows import time_text
 from icdgen.logfile.source import Source
 from icdgen.tables import Column, clean, render
@@ -13,6 +15,29 @@ _COLUMNS = [
     Column("bytes", right=True),
     Column("fields", right=True),
 ]
+
+_MESSAGES = [
+    Column("id", right=True),
+    Column("message"),
+    Column("times", right=True),
+    Column("bytes", right=True),
+    Column("fields", right=True),
+]
+
+
+def recording_text(recording: Recording, tally: Tally, width: int | None) -> str:
+    """Messages that came, how often, and what was wrong."""
+    times = sum(tally.messages.values())
+    line = f"{recording.path}: {recording.direction} of {recording.node.name}, {byte_count(recording.size)}, "
+    rows = []
+    for name, message in recording.messages.items():
+        if tally.messages[name]:
+            id = message.telemetry_id if recording.direction == "telemetry" else message.telecommand_id
+            said = (f"{tally.messages[name]:,}", f"{tally.sizes[name]:,}", str(len(message.fields)))
+            rows.append((str(id), message.name, *said))
+    text = clean(f"{line}{times:,} message{'' if times == 1 else 's'}") + "\n"
+    text += "\n" + render(_MESSAGES, rows, width) if rows else ""
+    return text + "".join(f"\nnote: {note}\n" for note in tally.notes())
 
 
 def to_text(source: Source, width: int | None) -> str:

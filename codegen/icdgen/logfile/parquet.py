@@ -26,16 +26,23 @@ GROUP = 24 << 20  # bytes of the log that become a row group, about
 
 def to_parquet(source: Source, path: Path, head: int | None, done: Callable[[int], None]) -> None:
     """Writes the file; units and names stand in the metadata of each column. Raises `icdgen.errors.UserError`."""
-    try:
-        import numpy  # noqa: F401
-        import pyarrow.parquet as pq
-    except ImportError:
-        raise UserError("pyarrow and numpy are not installed", "pip install 'icdgen[arrow]'") from None
+    check_installed()
+    import pyarrow.parquet as pq
+
     decoder = Decoder(source.plan)
     tables = _ahead(_groups(source, decoder, head, done))
     with pq.ParquetWriter(path, decoder.schema, compression="lz4", write_page_index=True) as writer:
         for table in tables:
             writer.write_table(table, row_group_size=table.num_rows)
+
+
+def check_installed() -> None:
+    """Raises `icdgen.errors.UserError` where numpy or pyarrow is not there."""
+    try:
+        import numpy  # noqa: F401
+        import pyarrow.parquet  # noqa: F401
+    except ImportError:
+        raise UserError("pyarrow and numpy are not installed", "pip install 'icdgen[arrow]'") from None
 
 
 def _groups(source: Source, decoder: Decoder, head: int | None, done: Callable[[int], None]) -> Iterator[pa.Table]:
@@ -69,7 +76,7 @@ class Decoder:
         import pyarrow as pa
 
         self.plan = plan
-        self.columns = [_Reader(column, plan.entry_bytes) for column in plan.columns]
+        self.columns = [ColumnReader(column, plan.entry_bytes) for column in plan.columns]
         time = pa.field(TIME, pa.timestamp("ms", tz="UTC"), nullable=False)
         metadata = {"icdgen.node": plan.node.name, "icdgen.icd_sha256": plan.node.digest}
         self.schema = pa.schema([time, *(reader.field for reader in self.columns)], metadata)
@@ -87,8 +94,8 @@ class Decoder:
         return pa.RecordBatch.from_arrays(arrays, schema=self.schema)
 
 
-class _Reader:
-    """A column of Arrow."""
+class ColumnReader:
+    """A column of Arrow, of entries of so many bytes."""
 
     def __init__(self, column: Column, entry_bytes: int) -> None:
         import pyarrow as pa

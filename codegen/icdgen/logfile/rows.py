@@ -12,17 +12,18 @@ from icdgen import codec
 from icdgen.logfile.columns import Column
 from icdgen.logfile.source import Source
 
-Value = int | float | str | bool
+Value = int | float | str | bool | None  # None: it is not there
+Done = Callable[[int], None]  # is told how many bytes have been read
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
-def rows(source: Source, head: int | None, done: Callable[[int], None]) -> Iterator[tuple[str, list[Value]]]:
-    """Time and values of each entry. ``done`` is told how many bytes have been read."""
+def rows(source: Source, head: int | None, done: Done) -> Iterator[list[Value]]:
+    """Time and values of each entry."""
     readers, size = [reader(column) for column in source.plan.columns], source.plan.entry_bytes
     for piece in source.pieces(head, 1 << 18):
         for at in range(0, len(piece), size):
             entry = piece[at : at + size]
-            yield time_text(source.time(entry)), [read(entry) for read in readers]
+            yield [time_text(source.time(entry)), *(read(entry) for read in readers)]
         done(len(piece))
 
 

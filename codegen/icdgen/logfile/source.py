@@ -49,7 +49,7 @@ class Source:
                     yield data[: whole * one]
                     left -= whole
         except OSError as error:
-            raise _unreadable(self.path, error) from None
+            raise unreadable(self.path, error) from None
 
     def time(self, entry: bytes) -> int:
         """Milliseconds since 1970."""
@@ -64,7 +64,7 @@ class Source:
                 file.seek(self.header_bytes + number * self.plan.entry_bytes)
                 return file.read(self.plan.entry_bytes)
         except OSError as error:
-            raise _unreadable(self.path, error) from None
+            raise unreadable(self.path, error) from None
 
     def doubts(self) -> list[str]:
         """What a log of this node would not have: any file of some length can be read as one. Raises `icdgen.errors.UserError`."""
@@ -83,21 +83,25 @@ def node_of(icd: Icd, name: str | None) -> Node:
     """The node that is meant; without a name the only one that has logs. Raises `icdgen.errors.UserError`."""
     if name is not None:
         return find_node(icd, name)
-    able = [node for node in icd.nodes if facts.of(icd, node).log_file is not None]
+    able = [node for node in icd.nodes if (known := facts.of(icd, node)).log_file or known.stream]
     if len(able) == 1:
         return able[0]
     names = ", ".join(node.name for node in able)
     raise UserError(
-        "it is not said whose log it is" if able else "the ICDs describe no log files",
-        f"--node NAME; nodes: {names}" if able else "`protocol.telemetry_log` describes them, see docs/icd-format.md",
+        "it is not said whose log it is" if able else "the ICDs describe no logs",
+        (
+            f"name the node; nodes: {names}"
+            if able
+            else "`protocol.telemetry_log` describes files, and `protocol.stream` what can be recorded of a link"
+        ),
     )
 
 
-def open_log(icd: Icd, node: Node, path: Path) -> Source:
+def open_source(icd: Icd, node: Node, path: Path) -> Source:
     """The log file. Raises `icdgen.errors.UserError`."""
     known = facts.of(icd, node)
     if known.log_file is None or known.mask is None:
-        raise UserError(f"the ICD of {node.name} describes no log files", "--node names another one")
+        raise UserError(f"the ICD of {node.name} describes no logs", "name another node")
     header = known.log_file.header_bytes
     try:
         if path.is_dir():
@@ -105,7 +109,7 @@ def open_log(icd: Icd, node: Node, path: Path) -> Source:
         with path.open("rb") as file:
             head, size = file.read(header), file.seek(0, 2)
     except OSError as error:
-        raise _unreadable(path, error) from None
+        raise unreadable(path, error) from None
     if len(head) < header:
         raise UserError(f"{path} is no log: it has {size} bytes, the header alone has {header}", "is it whole?")
     mask = head[known.log_file.mask_at : known.log_file.mask_at + known.mask.size]
@@ -125,5 +129,6 @@ def _impossible(source: Source) -> str:
     return "its entries have no times, their milliseconds are above 999" if wrong * 2 > len(entries) else ""
 
 
-def _unreadable(path: Path, error: OSError) -> UserError:
+def unreadable(path: Path, error: OSError) -> UserError:
+    """What is said of a file that cannot be read."""
     return UserError(f"cannot read {path}: {error.strerror}", "check the path")

@@ -5,30 +5,26 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Iterable, Sequence
 from typing import TextIO
 
-from icdgen.logfile.columns import TIME
-from icdgen.logfile.rows import Value, rows
-from icdgen.logfile.source import Source
-
-Done = Callable[[int], None]
+from icdgen.logfile.rows import Value
 
 
-def to_csv(source: Source, file: TextIO, head: int | None, done: Done) -> None:
-    """A line with the names of the columns, then one for each entry (RFC 4180, but for LF)."""
+def to_csv(names: Sequence[str], rows: Iterable[Sequence[Value]], file: TextIO) -> None:
+    """A line with the names of the columns, then one for each row (RFC 4180, but for LF). What is not there is empty."""
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow([TIME, *(column.name for column in source.plan.columns)])
-    for time, values in rows(source, head, done):
-        writer.writerow([time, *(_shown(value) for value in values)])
+    writer.writerow(names)
+    for values in rows:
+        writer.writerow([_shown(value) for value in values])
 
 
-def to_json_lines(source: Source, file: TextIO, head: int | None, done: Done) -> None:
-    """An object for each entry. JSON has no NaN and no infinity: null."""
-    names = [column.name for column in source.plan.columns]
-    for time, values in rows(source, head, done):
-        finite = (None if isinstance(v, float) and not math.isfinite(v) else v for v in values)
-        file.write(json.dumps({TIME: time, **dict(zip(names, finite, strict=True))}, ensure_ascii=False) + "\n")
+def to_json_lines(names: Sequence[str], rows: Iterable[Sequence[Value]], file: TextIO) -> None:
+    """An object for each row, without what is not there. JSON has no NaN and no infinity: null."""
+    for values in rows:
+        there = ((name, value) for name, value in zip(names, values, strict=True) if value is not None)
+        told = {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in there}
+        file.write(json.dumps(told, ensure_ascii=False) + "\n")
 
 
 def _shown(value: Value) -> Value:

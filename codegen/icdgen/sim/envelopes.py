@@ -94,7 +94,11 @@ class EnvelopeLine:
 
     def _is_taken(self, message: Message, data: bytes) -> bool:
         program = self.computer.program
-        return program.misfit(message, codec.decode(program.icd.node(message.node), message, data)) is None
+        try:
+            raw = codec.decode(program.icd.node(message.node), message, data)
+        except codec.LengthError:
+            return False  # it has not as many elements as it says
+        return program.misfit(message, raw) is None
 
     def _send(self, now: int, on: str, message: Message) -> None:
         assert message.telemetry_id is not None

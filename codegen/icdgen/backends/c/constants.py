@@ -32,6 +32,8 @@ def _value(one: Constant, field: FieldDescription) -> str:
     if one.is_raw and field.storage.signed and one.value == -(1 << field.storage.bits - 1):
         return f"INT{field.storage.bits}_MIN"  # of 64 bits it cannot be written: what `-` stands before is too large
     text = exact_text(one.value)
+    if one.is_raw and one.value >= 1 << 63 and text.isdigit():
+        return f"UINT64_C({text})"  # without it, what no signed type holds draws a warning
     if not one.is_raw and text.lstrip("-").isdigit():
         text += ".0"  # a physical value is a double
     return f"({text})" if one.value < 0 and one.key not in ("const", "special") else text

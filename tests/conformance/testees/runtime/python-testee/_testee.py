@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, Optional
 
 from . import _compiled, _floats
 from ._base import FieldInfo, Message
+from ._curves import on_curve
 from ._errors import LengthError, RangeError, UnknownIdError
 from ._testee_order import ORDER
 from ._testee_words import Refusal, Words, counted
@@ -211,12 +212,12 @@ class Element:
             is_cut = info.is_open and attribute == info.attribute
             return value.ljust(info.bits // 8, b"\0") if is_cut else value
         if self.index < len(value):
-            return value[self.index]
-        _, c, q = info.scale  # it is not in the frame
+            return value[self.index]  # otherwise it is not in the frame
         if info.type in ("bytes", "text"):
             return "" if attribute == info.physical else bytes(info.bits // 8)
         if attribute == info.physical:
-            return c / q
+            _, c, q = info.scale
+            return on_curve(info.curve, 0) if info.curve else c / q
         return info.enum(0) if info.enum else 0.0 if info.type == "float" else 0
 
     def set(self, attribute: str, value: Any) -> None:

@@ -1,0 +1,116 @@
+"""What `icdgen log` takes: log files of devices, and recordings of links, as one thing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Protocol
+
+from icdgen_runtime.wire.envelope import Direction
+
+from icdgen.errors import UserError
+from icdgen.icd.model import Icd, Message, Node
+from icdgen.logfile import listing, parquet, sheet_parquet
+from icdgen.logfile.columns import TIME
+from icdgen.logfile.recording import Recording, key
+from icdgen.logfile.rows import Done, Value, rows
+from icdgen.logfile.sheet import Sheet
+from icdgen.logfile.source import Source, open_source
+from icdgen.protocol import facts
+
+
+class Log(Protocol):
+    """A table. `prepare` comes before `names`, `rows` and `to_parquet`; all are told `head`, and raise `UserError`."""
+
+    @property
+    def names(self) -> list[str]:
+        """Of its columns."""
+
+    def listing(self, width: int | None, done: Done) -> str:
+        """What is in it, for people."""
+
+    def steps(self, head: int | None) -> int:
+        """How many bytes preparing and converting will tell of, about."""
+
+    def prepare(self, head: int | None, done: Done) -> list[str]:
+        """Notes about what is wrong with it."""
+
+    def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
+        """Its rows."""
+
+    def to_parquet(self, path: Path, head: int | None, done: Done) -> None:
+        """Writes the file."""
+
+
+def open_log(icd: Icd, node: Node, path: Path, direction: Direction, messages: Sequence[Message]) -> Log:
+    """``messages``: those that are wanted; none: all. Raises `icdgen.errors.UserError`."""
+    if facts.of(icd, node).stream is not None:
+        return _Recorded(Recording(icd, node, path, direction, messages))
+    return _Entries(_only(open_source(icd, node, path), messages))
+
+
+def _only(source: Source, messages: Sequence[Message]) -> Source:
+    if not messages:
+        return source
+    wanted = {key(one) for one in messages}
+    columns = tuple(one for one in source.plan.columns if one.message is not None and key(one.message) in wanted)
+    if lacking := wanted - {key(one.message) for one in columns if one.message is not None}:
+        names = ", ".join(sorted(name for _, name in lacking))
+        raise UserError(f"{source.path} has no {names}", f"`icdgen log {source.path}` lists what it holds")
+    return replace(source, plan=replace(source.plan, columns=columns))
+
+
+class _Entries:
+    def __init__(self, source: Source) -> None:
+        self.source = source
+
+    @property
+    def names(self) -> list[str]:
+        return [TIME, *(column.name for column in self.source.plan.columns)]
+
+    def listing(self, width: int | None, done: Done) -> str:
+        return listing.to_text(self.source, width)
+
+    def steps(self, head: int | None) -> int:
+        entries = self.source.entries if head is None else min(head, self.source.entries)
+        return entries * self.source.plan.entry_bytes
+
+    def prepare(self, head: int | None, done: Done) -> list[str]:
+        rest = self.source.truncated
+        return self.source.doubts() + ([f"the last {rest} bytes belong to no whole entry"] if rest else [])
+
+    def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
+        return rows(self.source, head, done)
+
+    def to_parquet(self, path: Path, head: int | None, done: Done) -> None:
+        parquet.to_parquet(self.source, path, head, done)
+
+
+class _Recorded:
+    """It is read twice: only what came has columns."""
+
+    def __init__(self, recording: Recording) -> None:
+        self.recording = recording
+        self.sheet = Sheet(recording, ())
+
+    @property
+    def names(self) -> list[str]:
+        return self.sheet.names
+
+    def listing(self, width: int | None, done: Done) -> str:
+        return listing.recording_text(self.recording, self.recording.survey(None, done), width)
+
+    def steps(self, head: int | None) -> int:
+        return 2 * self.recording.size
+
+    def prepare(self, head: int | None, done: Done) -> list[str]:
+        tally = self.recording.survey(head, done)
+        self.sheet = Sheet(self.recording, self.recording.chosen & tally.messages.keys())
+        return tally.notes()
+
+    def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
+        return self.sheet.rows(head, done)
+
+    def to_parquet(self, path: Path, head: int | None, done: Done) -> None:
+        sheet_parquet.to_parquet(self.sheet, path, head, done)

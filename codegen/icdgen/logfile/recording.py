@@ -1,0 +1,195 @@
+"""A recording: the bytes of a link whose messages travel in envelopes, as a receiver wrote them to a file."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from icdgen_runtime.wire.envelope import Direction, Stream
+from icdgen_runtime.wire.stream import StreamDecoder, StreamEvent
+
+from icdgen import codec
+from icdgen.backends.python.objects.links import link_of
+from icdgen.errors import UserError
+from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.variants import ids_of
+from icdgen.link.heard import FAULTS
+from icdgen.logfile.rows import Done
+from icdgen.logfile.source import unreadable
+from icdgen.protocol import facts
+from icdgen.protocol.envelope import PACKET
+
+_PIECE = 1 << 18  # bytes that are read at once
+_MOST_IDS = 64  # unknown ids that are told apart
+_MOST_SAID = 8  # of them that are named
+
+Key = tuple[str, str]  # of a message: the node that declares it, and its name
+
+
+class Came(NamedTuple):
+    """A message, its data, and what its sender chose of the envelope; ``there``: names of its fields, None: all of them."""
+
+    message: Message
+    data: bytes
+    values: Mapping[str, int]
+    there: frozenset[str] | None
+
+
+@dataclass(slots=True)
+class Tally:
+    """What was found: messages and their bytes by `key`, and what was wrong."""
+
+    messages: Counter[Key] = field(default_factory=Counter)
+    sizes: Counter[Key] = field(default_factory=Counter)
+    unknown: Counter[int] = field(default_factory=Counter)
+    faults: Counter[str] = field(default_factory=Counter)
+    missing: int = 0
+    repeated: int = 0
+    lost: int = 0
+    cut: int = 0
+
+    def fault(self, event: StreamEvent) -> None:
+        """Counts something that is no message."""
+        if event.event == "gap":
+            self.missing += event.missing
+            self.repeated += event.missing == 0
+        elif event.event == "unknown_id" and event.id is not None and (event.id in self.unknown or self._has_room):
+            self.unknown[event.id] += 1
+        else:
+            self.faults[FAULTS.get(event.event, event.event)] += 1
+
+    @property
+    def _has_room(self) -> bool:
+        return len(self.unknown) < _MOST_IDS
+
+    def notes(self) -> list[str]:
+        """What was wrong, for people."""
+        said = [f"{what} ({times:,})" for what, times in sorted(self.faults.items())]
+        notes = [f"not taken: {', '.join(said)}"] if said else []
+        if self.unknown:
+            said = [f"{id} ({times:,})" for id, times in self.unknown.most_common(_MOST_SAID)]
+            rest = len(self.unknown) - len(said)
+            notes.append(f"ids that the ICD does not have: {', '.join(said)}{f' and {rest} others' if rest else ''}")
+        if self.missing:
+            notes.append(f"messages missing, by their sequence numbers: {self.missing:,}")
+        if self.repeated:
+            notes.append(f"messages that came again, by their sequence numbers: {self.repeated:,}")
+        if self.lost:
+            notes.append(f"bytes that belong to no message: {self.lost:,}")
+        if self.cut:
+            notes.append(f"bytes at the end that belong to no whole message: {self.cut:,}")
+        return notes
+
+
+class Recording:
+    """``chosen``: the messages that are wanted; none: all. Raises `icdgen.errors.UserError`."""
+
+    def __init__(
+        self, icd: Icd, node: Node, path: Path, direction: Direction = "telemetry", chosen: Sequence[Message] = ()
+    ) -> None:
+        self.icd, self.node, self.path, self.direction = icd, node, path, direction
+        self.link = link_of(icd, facts.of(icd, node))
+        self._known: dict[int, list[Message]] = {
+            id: [one.message for one in those] for id, those in getattr(ids_of(icd, node), direction).items()
+        }
+        self.messages = {key(one): one for those in self._known.values() for one in those}
+        self._alike = {name for name, one in self.messages.items() if one.tail is None and not one.has_conditions}
+        self.chosen = {key(one) for one in chosen} or set(self.messages)
+        if strange := self.chosen - set(self.messages):
+            names = ", ".join(sorted(name for _, name in strange))
+            raise UserError(
+                f"{names} is no {direction} of {node.name}", "`--direction` says who sent what was recorded"
+            )
+        if self.form.delimited_by == PACKET:
+            raise UserError(
+                f"a message of {node.name} ends with the packet that carries it, which a file does not tell",
+                "`icdgen decode` takes packets, one by one",
+            )
+        try:
+            self.size = path.stat().st_size
+            if path.is_dir():
+                raise UserError(f"{path} is a folder", "name a file")
+        except OSError as error:
+            raise unreadable(path, error) from None
+
+    @property
+    def form(self) -> Stream:
+        """The envelope."""
+        assert self.link.stream is not None
+        return self.link.stream
+
+    def read(self, tally: Tally, head: int | None, done: Done) -> Iterator[Came]:
+        """The wanted messages, ``head``: only so many; all that is read is counted. Raises `icdgen.errors.UserError`."""
+        decoder, wanted = StreamDecoder(self.link, self.direction), 0
+        for piece in self._pieces() if head != 0 else ():
+            for event in decoder.feed(piece):
+                came = self._came(event, tally)
+                if came is not None:
+                    wanted += 1
+                    yield came
+                    if wanted == head:
+                        return
+            tally.lost, tally.cut = decoder.discarded, decoder.pending
+            done(len(piece))
+
+    def survey(self, head: int | None, done: Done) -> Tally:
+        """What is in it, up to the last wanted message. Raises `icdgen.errors.UserError`, also if there is no message."""
+        tally = Tally()
+        for _ in self.read(tally, head, done):
+            pass
+        if self.size and head != 0 and not tally.messages:
+            why = "; ".join(tally.notes())
+            raise UserError(
+                f"{self.path} holds no {self.direction} of {self.node.name}: {why}",
+                "name a file with the bytes as they came over the line, or the node, or the `--direction`",
+            )
+        return tally
+
+    def _came(self, event: StreamEvent, tally: Tally) -> Came | None:
+        if event.event != "message" or event.id is None:
+            tally.fault(event)
+            return None
+        message, there = self._message(event), None
+        try:
+            if message is not None and key(message) not in self._alike:
+                there = _there(self.icd, message, event.data)
+        except codec.LengthError:
+            message = None
+        if message is None:
+            tally.fault(StreamEvent("length", event.id))
+            return None
+        tally.messages[key(message)] += 1
+        tally.sizes[key(message)] += len(event.data)
+        return Came(message, event.data, event.values, there) if key(message) in self.chosen else None
+
+    def _message(self, event: StreamEvent) -> Message | None:
+        known = self._known[event.id] if event.id is not None else []
+        if len(known) == 1:
+            return known[0]
+        try:
+            return codec.which(self.icd, known, event.data)
+        except codec.LengthError:
+            return None
+
+    def _pieces(self) -> Iterator[bytes]:
+        try:
+            with self.path.open("rb") as file:
+                while piece := file.read(_PIECE):
+                    yield piece
+        except OSError as error:
+            raise unreadable(self.path, error) from None
+
+
+def key(message: Message) -> Key:
+    """What tells a message from the others of a node."""
+    return message.node, message.name
+
+
+def _there(icd: Icd, message: Message, data: bytes) -> frozenset[str]:
+    """Names of the fields that are there. Raises `icdgen.codec.LengthError` for data that the message cannot have."""
+    raw = codec.decode(icd.node(message.node), message, data)
+    count = codec.count_of(message, raw)
+    return frozenset(one.name for one in message.fields if one.name in raw and codec.is_there(message, one, count))

@@ -1,0 +1,72 @@
+"""A recording as a table: a row is a message, and a column a field of one of them, empty in rows of the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+from typing import NamedTuple
+
+from icdgen.logfile.columns import Column, columns_of, unique
+from icdgen.logfile.recording import Came, Key, Recording, Tally, key
+from icdgen.logfile.rows import Done, Value, reader
+from icdgen.protocol.envelope import GIVEN
+
+MESSAGE = "message"  # the column with the name
+
+
+class Entry(NamedTuple):
+    """A column of the table: where it stands, and what it holds. ``is_cut``: bytes of which a frame need not have all."""
+
+    place: int
+    column: Column
+    is_cut: bool
+
+
+class Sheet:
+    """``came``: the messages whose columns there are."""
+
+    def __init__(self, recording: Recording, came: Iterable[Key]) -> None:
+        self.recording = recording
+        messages = [message for name, message in recording.messages.items() if name in set(came)]
+        roles = {field.role for field in recording.form.fields}
+        self.roles = [role for role in GIVEN if role in roles]
+        columns = unique(column for message in messages for column in columns_of(recording.icd, message))
+        self.entries: dict[Key, list[Entry]] = {key(message): [] for message in messages}
+        for place, column in enumerate(columns, 1 + len(self.roles)):
+            assert column.message and column.field
+            tail = column.message.tail
+            is_cut = tail is not None and tail.name == column.field.name and column.kind == "bytes"
+            self.entries[key(column.message)].append(Entry(place, column, is_cut))
+
+    @cached_property
+    def columns(self) -> list[Column]:
+        """Those behind the name and the roles, in order."""
+        return [entry.column for entries in self.entries.values() for entry in entries]
+
+    @cached_property
+    def names(self) -> list[str]:
+        """Of all columns."""
+        return [MESSAGE, *self.roles, *(column.name for column in self.columns)]
+
+    def rows(self, head: int | None, done: Done) -> Iterator[list[Value]]:
+        """A row for each message."""
+        readers = {name: [(one, reader(one.column)) for one in entries] for name, entries in self.entries.items()}
+        for came in self.recording.read(Tally(), head, done):
+            row: list[Value] = [None] * len(self.names)
+            row[0] = came.message.name
+            row[1 : 1 + len(self.roles)] = [came.values.get(role) for role in self.roles]
+            whole = padded(came)
+            for entry, read in readers[key(came.message)]:
+                if is_there(came, entry.column):
+                    row[entry.place] = read(came.data if entry.is_cut else whole)
+            yield row
+
+
+def padded(came: Came) -> bytes:
+    """The data, as long as the longest of the message: what a frame leaves out reads as 0."""
+    return came.data.ljust(came.message.length, b"\0")
+
+
+def is_there(came: Came, column: Column) -> bool:
+    """Whether the message has the field."""
+    return came.there is None or (column.field is not None and column.field.name in came.there)

@@ -1,0 +1,88 @@
+"""Parquet of a recording: the messages of a kind are decoded at once, and put into the rows in which they came."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from icdgen.logfile.parquet import ColumnReader, check_installed
+from icdgen.logfile.recording import Came, Key, Tally, key
+from icdgen.logfile.rows import Done
+from icdgen.logfile.sheet import MESSAGE, Entry, Sheet, is_there, padded
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+_CELLS = 4_000_000  # of a row group, about: sparse tables are wide
+
+
+def to_parquet(sheet: Sheet, path: Path, head: int | None, done: Done) -> None:
+    """Writes the file; what is not there is null. Raises `icdgen.errors.UserError`."""
+    check_installed()
+    import pyarrow.parquet as pq
+
+    maker = _Maker(sheet)
+    messages = sheet.recording.read(Tally(), head, done)
+    with pq.ParquetWriter(path, maker.schema, compression="lz4", write_page_index=True) as writer:
+        for batch in _batches(messages, max(256, _CELLS // len(sheet.names))):
+            writer.write_table(maker.table(batch), row_group_size=len(batch))
+
+
+def _batches(messages: Iterator[Came], size: int) -> Iterator[list[Came]]:
+    while batch := list(islice(messages, size)):
+        yield batch
+
+
+class _Maker:
+    """Messages -> Arrow."""
+
+    def __init__(self, sheet: Sheet) -> None:
+        import pyarrow as pa
+
+        self.sheet = sheet
+        self.readers = {
+            name: [(entry, ColumnReader(entry.column, sheet.recording.messages[name].length)) for entry in entries]
+            for name, entries in sheet.entries.items()
+        }
+        fields = [pa.field(MESSAGE, pa.dictionary(pa.int32(), pa.string()), nullable=False)]
+        fields += [pa.field(role, pa.uint32(), nullable=False) for role in sheet.roles]
+        for entry, reader in (both for those in self.readers.values() for both in those):
+            field = reader.field.with_nullable(True)
+            fields.append(field.with_type(pa.binary()) if entry.is_cut else field)
+        node = sheet.recording.node
+        self.schema = pa.schema(fields, {"icdgen.node": node.name, "icdgen.icd_sha256": node.digest})
+
+    def table(self, batch: list[Came]) -> pa.Table:
+        """A row for each message of the batch."""
+        import pyarrow as pa
+
+        places: dict[Key, list[int]] = {}
+        for place, came in enumerate(batch):
+            places.setdefault(key(came.message), []).append(place)
+        arrays = [pa.array([came.message.name for came in batch]).dictionary_encode()]
+        arrays += [pa.array([came.values[role] for came in batch], pa.uint32()) for role in self.sheet.roles]
+        for name, readers in self.readers.items():
+            here = places.get(name, [])
+            data = b"".join(padded(batch[place]) for place in here)
+            for entry, reader in readers:
+                type_ = self.schema.field(entry.place).type
+                arrays.append(self._spread(batch, here, entry, reader, data) if here else pa.nulls(len(batch), type_))
+        return pa.Table.from_arrays(arrays, schema=self.schema)
+
+    def _spread(self, batch: list[Came], here: list[int], entry: Entry, reader: ColumnReader, data: bytes) -> pa.Array:
+        """A column: its values in the rows of its message, null in all others."""
+        import numpy as np
+        import pyarrow as pa
+
+        if entry.is_cut:
+            found: list[bytes | None] = [None] * len(batch)
+            for place in here:
+                one = batch[place]
+                found[place] = one.data[entry.column.at :] if is_there(one, entry.column) else None
+            return pa.array(found, pa.binary())
+        which, is_null = np.zeros(len(batch), np.int64), np.ones(len(batch), bool)
+        which[here] = np.arange(len(here))
+        is_null[here] = [not is_there(batch[place], entry.column) for place in here]
+        return reader.read(data, len(here)).take(pa.array(which, mask=is_null))

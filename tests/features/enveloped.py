@@ -1,0 +1,94 @@
+"""What the simulator and the logs say of an ICD whose messages travel in envelopes."""
+
+from __future__ import annotations
+
+import io
+import tempfile
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from random import Random
+
+from icdgen_runtime._errors import IcdError
+from icdgen_runtime.wire.envelope import Direction
+from icdgen_runtime.wire.stream import stream_encode
+
+from icdgen import codec
+from icdgen.backends.python.objects.links import link_of
+from icdgen.errors import UserError
+from icdgen.icd.model import Icd, Node
+from icdgen.icd.variants import ids_of
+from icdgen.logfile import text
+from icdgen.logfile.log import open_log
+from icdgen.protocol import facts
+from icdgen.recognize.envelopes import DIRECTIONS
+from icdgen.sim.computer import Computer
+from icdgen.sim.control import fitting, of_fields
+from icdgen.sim.envelopes import EnvelopeLine
+from icdgen.sim.faults import Faults
+from icdgen.sim.settings import Settings
+from icdgen.sim.storage import Storage
+
+Frames = dict[str, list[bytes]]
+
+
+def recorded(icd: Icd, node: Node, frames: Frames) -> dict[Direction, bytes]:
+    """What is sent in each direction of these frames, one after the other."""
+    return {direction: b"".join(_sent_of(icd, node, frames, direction)) for direction in DIRECTIONS}
+
+
+def _sent_of(icd: Icd, node: Node, frames: Frames, direction: Direction) -> Iterator[bytes]:
+    link = link_of(icd, facts.of(icd, node))
+    for id, those in getattr(ids_of(icd, node), direction).items():
+        for data in (data for one in those for data in frames.get(one.message.name, ())):
+            with suppress(IcdError):
+                yield stream_encode(link, id, data, direction)
+
+
+def log(icd: Icd, node: Node, sent: dict[Direction, bytes], folder: Path) -> tuple[object, object]:
+    """Recordings as CSV and as Parquet, or why there is none."""
+    said = [_log(icd, node, direction, data, folder) for direction, data in sent.items()]
+    return [csv for csv, _ in said], [arrow for _, arrow in said]
+
+
+def _log(icd: Icd, node: Node, direction: Direction, data: bytes, folder: Path) -> tuple[object, object]:
+    import pyarrow.parquet
+
+    file = Path(tempfile.mkdtemp(dir=folder)) / "recording.bin"
+    file.write_bytes(data)
+    try:
+        opened = open_log(icd, node, file, direction, [])
+        notes = opened.prepare(None, lambda _: None)
+    except UserError as error:
+        said = str(error).replace(str(file), "")
+        return said, said
+    written = io.StringIO()
+    text.to_csv(opened.names, opened.rows(None, lambda _: None), written)
+    opened.to_parquet(file.with_suffix(".parquet"), None, lambda _: None)
+    table = pyarrow.parquet.read_table(file.with_suffix(".parquet"))
+    arrow = table.schema.remove_metadata().to_string(), table.to_pylist()
+    return (written.getvalue(), notes), (arrow, notes)
+
+
+def simulator(icd: Icd, node: Node, frames: Frames, words: dict[str, list[list[str]]]) -> object:
+    """What it sends after its values were set, and after it was sent what was made for the example."""
+    line = EnvelopeLine(Computer(icd, node, Settings(strict=True), Storage()), Faults(Random(0), [], 0), {})
+    said: list[object] = []
+    for data in _sent_of(icd, node, frames, "telecommand"):
+        line.received(len(said), data)
+        said.append((_sent(line, len(said)), dict(line.computer.program.counts)))
+    for message in node.messages:
+        for row in words.get(message.name, ()) if message.telemetry_id is not None else ():
+            try:
+                for name, value in (word.split("=", 1) for word in row):
+                    for own, one, given in of_fields(icd, node, message.name, name, value):
+                        line.computer.program.values.update(own, {one.name: fitting(own, one, given)})
+            except (UserError, codec.CodecError) as error:
+                said.append(str(error))
+            said.append(_sent(line, len(said)))
+    return said
+
+
+def _sent(line: EnvelopeLine, now: int) -> list[bytes]:
+    line.log(now)
+    return line.pieces(now + 1000)

@@ -1,0 +1,260 @@
+"""`icdgen log` of what a receiver wrote to a file, of a link whose messages travel in envelopes."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import re
+import struct
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from icdgen import codec
+from icdgen.icd.variants import ids_of
+from icdgen.loading import load
+from icdgen.logfile.recording import Recording
+from icdgen.values.frame import frame
+from icdgen.vectors.make import make
+from tests.conftest import ROOT
+from tests.features.enveloped import recorded
+from tests.log.test_command import icdgen
+from tests.log.test_convert import _same, value_of
+
+LINKS = ROOT / "examples" / "links"
+UBX = LINKS / "ubx.yaml"
+CLOCK = bytes.fromhex("B562012214004AB37B0F00000000E8030000B90B000027000000")
+"""A message as it is on the line, but for its checksum."""
+
+
+def ubx(*data: bytes) -> bytes:
+    """The messages with these ids and data, by the checksum of RFC 1145."""
+    line = bytearray()
+    for one in data:
+        body = one[:2] + (len(one) - 2).to_bytes(2, "little") + one[2:]
+        first = second = 0
+        for byte in body:
+            first = (first + byte) % 256
+            second = (second + first) % 256
+        line += b"\xb5\x62" + body + bytes((first, second))
+    return bytes(line)
+
+
+CLOCK_DATA = CLOCK[2:4] + CLOCK[6:]
+EPOCH, OTHER = bytes.fromhex("01614AB37B0F"), bytes.fromhex("0107000102")
+
+
+@pytest.fixture
+def capture(tmp_path) -> Path:
+    """Three messages; one that the ICD does not have, one damaged, noise, and the beginning of another."""
+    damaged = bytearray(ubx(EPOCH))
+    damaged[-1] ^= 1
+    path = tmp_path / "capture.ubx"
+    path.write_bytes(ubx(CLOCK_DATA, EPOCH, OTHER) + damaged + b"noise" + ubx(CLOCK_DATA) + ubx(EPOCH)[:9])
+    return path
+
+
+def test_a_recording_is_listed(capture):
+    result = icdgen("receiver", capture, "--icd", UBX)
+    assert result.returncode == 0, result.stderr
+    lines = result.stdout.splitlines()
+    assert lines[0] == f"{capture}: telemetry of receiver, {capture.stat().st_size} bytes, 3 messages"
+    assert [line.split() for line in lines if re.match(r" *\d", line)] == [
+        ["290", "Navigation", "Clock", "2", "40", "5"],
+        ["353", "End", "of", "Epoch", "1", "4", "1"],
+    ]
+    for note in ("wrong checksum (1)", "ids that the ICD does not have: 263 (1)", "belong to no whole message: 9"):
+        assert note in result.stdout
+    assert f"bytes that belong to no message: {len(ubx(OTHER)) + len(ubx(EPOCH)) + 5}" in result.stdout
+
+
+def test_a_row_is_a_message_and_what_is_wrong_is_said(capture, tmp_path):
+    result = icdgen(capture, "--icd", UBX, "--format", "csv")
+    assert result.returncode == 0, result.stderr
+    assert "wrong checksum (1)" in result.stderr and "no message" in result.stderr
+    rows = list(csv.DictReader(io.StringIO(result.stdout)))
+    assert [row["message"] for row in rows] == ["Navigation Clock", "End of Epoch", "Navigation Clock"]
+    assert [row["navigation_clock__time_of_week_ms"] for row in rows] == ["259765066", "", "259765066"]
+    assert [row["end_of_epoch__time_of_week_ms"] for row in rows] == ["", "259765066", ""]
+    assert [row["navigation_clock__clock_drift"] for row in rows] == ["1000", "", "1000"]
+
+
+def test_only_some_messages(capture):
+    one = icdgen("receiver", capture, "End of Epoch", "--icd", UBX, "--format", "jsonl")
+    assert [json.loads(line) for line in one.stdout.splitlines()] == [
+        {"message": "End of Epoch", "end_of_epoch__time_of_week_ms": 259765066}
+    ]
+    first = icdgen(capture, "--icd", UBX, "--format", "jsonl", "--head", "1")
+    assert len(first.stdout.splitlines()) == 1
+    assert "End of Epoch" not in icdgen(capture, "290", "--icd", UBX, "--format", "csv").stdout
+
+
+def test_what_was_sent_to_the_device(tmp_path):
+    path = tmp_path / "sent"
+    path.write_bytes(ubx(bytes.fromhex("0601012201"), bytes.fromhex("0122")))
+    said = icdgen(path, "--icd", UBX, "--direction", "telecommand", "--format", "jsonl").stdout
+    assert [json.loads(line)["message"] for line in said.splitlines()] == ["Set Message Rate", "Poll Clock"]
+
+
+def test_what_cannot_be_is_said(capture, tmp_path):
+    other = tmp_path / "other"
+    other.write_bytes(b"telemetry of zebras, yaks and antelopes " * 100)
+    packets = tmp_path / "packets.yaml"
+    content = (LINKS / "slip.yaml").read_text().replace("slip", "none")
+    packets.write_text(content)
+    for words, said in (
+        ((other, "--icd", UBX), "holds no telemetry of receiver: bytes that belong to no message: 3,999"),
+        ((other, "--icd", UBX, "--out", tmp_path / "x.csv"), "holds no telemetry of receiver"),
+        ((capture, "--icd", packets), "ends with the packet that carries it"),
+        ((capture, "Set Message Rate", "--icd", UBX), "Set Message Rate is no telemetry of receiver"),
+        ((capture, "End of Epok", "--icd", UBX), "has no message `End of Epok`"),
+        ((tmp_path / "missing", "--icd", UBX), "cannot read"),
+        ((tmp_path, "--icd", UBX), "is a folder"),
+        ((capture, "--icd", UBX, "--format", "parquet"), "does not go to standard output"),
+    ):
+        result = icdgen(*words)
+        assert result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr
+    assert not (tmp_path / "x.csv").exists()
+
+
+def test_an_empty_recording_is_an_empty_table(tmp_path):
+    (tmp_path / "empty").write_bytes(b"")
+    result = icdgen(tmp_path / "empty", "--icd", UBX, "--format", "csv")
+    assert (result.returncode, result.stdout) == (0, "message\n")
+
+
+ODD = """\
+icdgen: 1
+node: {name: odd, title: Odd, byte_order: big, bit_order: msb0, id_bits: 16}
+protocol:
+  stream:
+    delimited_by: cobs
+    header: [{at: 0, bits: 16, role: id}, {at: 16, bits: 8, role: source, value: 7}]
+enums: [{name: Way, members: [{value: 0, name: Down}, {value: 1, name: Up}]}]
+structs:
+  - name: Point
+    length: 3
+    fields: [{at: 0, bits: 16, name: X, type: int, formula: raw*0.1, unit: m}, {at: 16, bits: 8, name: Way, type: enum, enum: Way}]
+messages:
+  - name: Points
+    id: 1000
+    kind: telemetry
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Count, type: uint}
+      - {at: 8, name: Points, struct: Point, count: Count, up_to: 4}
+  - name: Rest
+    id: 1001
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 16, name: Number, type: uint}
+      - {at: 16, name: Rest, type: bytes, size: rest, up_to: 8}
+  - name: Text
+    id: 1002
+    kind: telemetry
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Size, type: uint}
+      - {at: 8, name: Text, type: text, size: Size, up_to: 8}
+  - name: Either
+    id: 1003
+    kind: telemetry
+    length: 5
+    fields:
+      - {at: 0, bits: 8, name: Mode, type: uint}
+      - {at: 8, bits: 32, name: Rate, type: float, when: {Mode: 1}}
+      - {at: 8, bits: 16, name: Way, type: enum, enum: Way, when: {Mode: [0, 2]}}
+  - name: Zeros
+    id: 1004
+    kind: telemetry
+    length: 6
+    may_end_early: zeros
+    fields:
+      - {at: 0, bits: 32, name: A, type: uint}
+      - {at: 32, bits: 16, name: B, type: bytes}
+  - name: First
+    id: 1005
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Kind, type: uint, const: 1}
+      - {at: 8, bits: 8, name: Value, type: uint}
+  - name: Second
+    id: 1005
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Kind, type: uint, const: 2}
+      - {at: 8, bits: 8, name: Value, type: int}
+  - {name: Nothing, id: 1006, kind: telemetry, length: 0}
+"""
+
+
+def test_every_kind_of_message_is_what_the_reference_reads(tmp_path):
+    import pyarrow.parquet as pq
+
+    (tmp_path / "odd.yaml").write_text(ODD)
+    loaded = load([tmp_path / "odd.yaml"])
+    assert loaded.ok, loaded.findings
+    icd, random = loaded.icd, Random(1)
+    node = icd.nodes[0]
+    frames = [
+        (one.message, row.frame) for one in make(icd, node).messages for row in one.rows if _is_sent(icd, one, row)
+    ]
+    random.shuffle(frames)
+    sent = b"".join(recorded(icd, node, {one.name: [data]})["telemetry"] for one, data in frames)
+    (tmp_path / "sent").write_bytes(sent)
+    wanted = []
+    for message, data in frames:
+        rows = frame(icd, node, message, data).rows
+        wanted.append((message.name, [_same(value_of(row)) for row in rows]))
+    assert len({name for name, _ in wanted}) == 8 and len(wanted) > 100
+    icd_option = ("--icd", tmp_path / "odd.yaml")
+    said = icdgen(tmp_path / "sent", *icd_option, "--format", "jsonl")
+    rows = [json.loads(line) for line in said.stdout.splitlines()]
+    assert {row.pop("source") for row in rows} == {7}
+    assert [(row.pop("message"), [_short(one) for one in row.values()]) for row in rows] == [
+        (name, [_short(one) for one in values]) for name, values in wanted
+    ]
+    icdgen(tmp_path / "sent", *icd_option, "--out", tmp_path / "sent.parquet")
+    table = pq.read_table(tmp_path / "sent.parquet").drop_columns(["source"]).to_pylist()
+    got = [(row.pop("message"), [_same(_read(one)) for one in row.values() if one is not None]) for row in table]
+    assert got == wanted
+
+
+def _is_sent(icd, one, row) -> bool:
+    """Whether it is the frame of that message, and one that is not refused."""
+    known = [variant.message for variant in ids_of(icd, icd.nodes[0]).telemetry[one.message.telemetry_id]]
+    try:
+        codec.decode(icd.nodes[0], one.message, row.frame)
+        return codec.which(icd, known, row.frame) is one.message
+    except codec.LengthError:
+        return False
+
+
+def _short(value: object) -> object:
+    """As text has it: floats in their shortest form, null for what is no number or infinite."""
+    if value == "nan" or (isinstance(value, float) and math.isinf(value)):
+        return None
+    return struct.unpack("<f", struct.pack("<f", value))[0] if isinstance(value, float) else value
+
+
+def _read(value: object) -> object:
+    return value.hex() if isinstance(value, bytes) else value
+
+
+@pytest.mark.parametrize("name", ["slip", "cobs", "hdlc", "mavlink2", "sbp", "ccsds", "kiss"])
+def test_every_delimiter(name, tmp_path):
+    file = LINKS / f"{name}.yaml"
+    icd = load([file]).icd
+    node = icd.nodes[0]
+    frames = {one.message.name: [row.frame for row in one.rows[:5]] for one in make(icd, node).messages}
+    sent = recorded(icd, node, frames)["telemetry"]
+    (tmp_path / "sent").write_bytes(sent)
+    wanted = {one.name: len(frames[one.name]) for one in node.messages if one.telemetry_id is not None}
+    tally = Recording(icd, node, tmp_path / "sent").survey(None, lambda size: None)
+    assert {name: times for (_, name), times in tally.messages.items()} == wanted and not tally.faults
