@@ -76,6 +76,16 @@ def test_a_parameter_that_is_no_topic_is_the_number_of_the_process(tmp_path):
     assert message(imported("camera.xml", folder), "Noop")["id"] == 0x80
 
 
+def test_a_container_that_interfaces_carry_by_several_numbers_is_as_many_messages(tmp_path):
+    interface = '<Interface name="{}" type="LINK/PACKETS/Out">'
+    folder = copied(tmp_path, "camera.xml", interface.format("PICTURES"), interface.format("MORE"))
+    text = (folder / "camera.xml").read_text().replace('name="Data" type="Picture"', 'name="Data" type="Housekeeping"')
+    end = '<ParameterMap interface="MORE" parameter="TopicId" variableRef="Commands"/></ParameterMapSet>'
+    (folder / "camera.xml").write_text(text.replace("</ParameterMapSet>", end))
+    read = imported("camera.xml", folder)
+    assert [message(read, name)["id"] for name in ("Housekeeping HK", "Housekeeping MORE")] == [20, 19]
+
+
 def test_names_are_those_that_tell_fields_apart_and_containers_in_arrays_are_structs(camera):
     (tree,) = camera.trees.values()
     assert [one["name"] for one in message(camera, "Housekeeping")["fields"]] == [

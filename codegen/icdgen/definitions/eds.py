@@ -55,7 +55,7 @@ class _Found:
 
     def __init__(self, sending: Sending, layout: Layout, more: Item, sheets: Sheets) -> None:
         self.container, self.layout, self.more = sending.container, layout, more
-        self.name = line(sending.container.get("name"), 200)
+        self.name = line(f"{sending.container.get('name')} {sending.interface}", 200)
         self.line = sheets.line(sending.container)
         self.told = layout.told
         head = layout.header()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from icdgen.definitions import packets
@@ -30,6 +30,7 @@ class Sending:
     kind: str | None = None
     number: int | None = None  # the value of a parameter of the interface
     parameter: str = ""
+    interface: str = ""  # that carries it, where several do with numbers of their own
 
     def apid(self, sheets: Sheets) -> int | None:
         """The application process that the number stands for, as usual; None where that is not known."""
@@ -73,17 +74,21 @@ class Interfaces:
 
     def sent(self) -> tuple[list[Sending], list[Element]]:
         """What is sent, in the order of the file; and containers that stand by themselves, and no interface carries."""
-        found: dict[Element, Sending] = {}
+        found: dict[Element, dict[int | None, Sending]] = {}
         for is_mapped in (True, False):  # what an interface is made for tells more than what it can carry
             for one in self._carried(is_mapped):
                 for container in self._leaves(one.container):
-                    found.setdefault(container, Sending(container, one.kind, one.number, one.parameter))
+                    ways = found.setdefault(container, {})
+                    if is_mapped or not ways:
+                        ways.setdefault(one.number, replace(one, container=container))
         part = {one for used in self._uses.values() for one in used} - self._circles()
         alone = [one for one in self.own if one not in part and not self._is_abstract(one) and one not in found]
         if not found:
             return [Sending(one) for one in alone], []
-        order = {one: number for number, one in enumerate(self.own)}
-        return sorted(found.values(), key=lambda one: order.get(one.container, -1)), alone
+        sent = [one for container in self.own for one in found.get(container, {}).values()]
+        for one in sent:
+            one.interface = one.interface if len(found[one.container]) > 1 else ""
+        return sent, alone
 
     def _leaves(self, container: Element) -> Iterator[Element]:
         """The containers of the file that are based on one, and on which none is based; it itself if there are none."""
@@ -152,7 +157,8 @@ class Interfaces:
                 if container.tag == CONTAINER:
                     ways.setdefault(container, set())
         for container, kinds in ways.items():
-            yield Sending(container, next(iter(kinds)) if len(kinds) == 1 else None, number, parameter)
+            way = next(iter(kinds)) if len(kinds) == 1 else None
+            yield Sending(container, way, number, parameter, interface.get("name", ""))
 
     def _declared(self, interface: Element) -> list[Element]:
         """The interface that one is, and those on which that is based, as far as they are known."""

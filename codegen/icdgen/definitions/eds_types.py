@@ -242,7 +242,7 @@ class Types:
         except ValueError as error:
             self._raw_only(where, str(error))
             return found
-        if not found and "special" not in made.item:
+        if not found and "special" not in made.item and made.range != ALL:
             found |= eds_ranges.limited(made.item, made.bits, made.range)
         return {**self._unit((entry, *chain)), **found}
 

@@ -11,6 +11,7 @@ from icdgen.definitions.wording import line
 UNSIGNED, TWOS = "unsigned", "twosComplement"
 CODES = (UNSIGNED, TWOS, "onesComplement", "signMagnitude", "BCD", "packedBCD")
 _LONGEST = 500  # characters of a number
+_PLAIN = 20  # digits of a number that needs no reading
 _DEEPEST = 20  # parentheses
 _MOST_BITS = 256  # of a number on the way
 _MOST_POWER = 128
@@ -97,15 +98,18 @@ def _bounded(value: Fraction) -> Fraction:
 
 def whole(text: str, what: str, least: int | None = None, most: int | None = None) -> int:
     """An integer. Raises `NotHeld`."""
+    plain = int(text) if text.isascii() and text.isdigit() and len(text) < _PLAIN else _whole(text)
+    if plain is None or (least is not None and plain < least) or (most is not None and plain > most):
+        raise NotHeld(f"{what} is `{line(text, 60)}`")
+    return plain
+
+
+def _whole(text: str) -> int | None:
     try:
         value = evaluate(text)
     except ValueError:
-        value = Fraction(1, 2)
-    low = least if least is not None else value
-    high = most if most is not None else value
-    if value.denominator != 1 or not low <= value <= high:
-        raise NotHeld(f"{what} is `{line(text, 60)}`")
-    return int(value)
+        return None
+    return int(value) if value.denominator == 1 else None
 
 
 def coded(value: int, code: str, bits: int) -> int | None:
