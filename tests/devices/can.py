@@ -6,6 +6,7 @@ import contextlib
 import importlib.resources
 import re
 from collections.abc import Callable, Iterator
+from copy import copy
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +63,13 @@ def _when(field: dict) -> dict:
     return {"when": listed} if listed else {}
 
 
+def _said_of(signal: Any, is_multiplexer: bool) -> Any:
+    """The same signal of the library, but for what it is said to be."""
+    found = copy(signal)
+    found.is_multiplexer = is_multiplexer
+    return found
+
+
 def _reader(message: Any, fields: list[dict]) -> tuple[Callable[[bytes, bool], Values], Callable[[bytes], bytes]]:
     """The library's reading, raw or scaled, and its frame of these values; signals that overlap, or that no selector has, it
     knows only one by one."""
@@ -71,9 +79,11 @@ def _reader(message: Any, fields: list[dict]) -> tuple[Callable[[bytes, bool], V
     parts, head = [message], (message.frame_id, message.name, message.length)
     names = {one["name"] for one in fields}
     known = [one for one in message.signals if one.name in names]
-    if message.is_multiplexed() or any("view" in one for one in fields) or len(known) < len(message.signals):
-        selectors = {signal.name: signal for signal in known if signal.is_multiplexer}
-        groups = [[*filter(None, [selectors.get(one.multiplexer_signal)]), one] for one in known]
+    selecting = {one.multiplexer_signal for one in known} - {None}  # a file may not mark them
+    if selecting or any("view" in one for one in fields) or len(known) < len(message.signals):
+        selectors = {one.name: _said_of(one, is_multiplexer=True) for one in known if one.name in selecting}
+        alone = [_said_of(one, is_multiplexer=False) for one in known]
+        groups = [[*filter(None, [selectors.get(one.multiplexer_signal)]), one] for one in alone]
         parts = [Message(*head, group, is_extended_frame=True, strict=False) for group in groups]
 
     def read(data: bytes, scaled: bool) -> Iterator[tuple[Any, Values]]:

@@ -21,7 +21,6 @@ OWN = ROOT / "tests" / "definitions" / "files" / "eds"
 OTHERS = (
     "EDS_FILES"  # in the environment: a folder with data sheets of others, such as those of cFS, and their parameters
 )
-_HEADER = 48
 _SUMS = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Pow: operator.pow, ast.BitXor: operator.pow,
 }  # fmt: skip
@@ -52,15 +51,14 @@ def _definition(judge: _Judge, packages: list[str], held: dict, tree: dict) -> D
     structs = [{**one, "fields": [{**orders, **part} for part in one["fields"]]} for one in tree.get("structs", ())]
     name = held["name"].rsplit(" ", 1)[-1]  # behind the package, if several have it
     container = next(found for found in (judge.types.get(f"{one}/{name}") for one in packages) if found is not None)
-    skipped = _HEADER if "protocol" in tree else 0
+    header = tree.get("protocol", {}).get("stream", {}).get("header", [])
+    skipped = max((one["at"] + one["bits"] for one in header), default=0)
 
     def raw(data: bytes) -> Values:
-        return _named(
-            fields, structs, [one for one in judge.read(container, bytes(skipped // 8) + data) if one[1] >= skipped]
-        )
+        return _named(fields, structs, [one for one in judge.read(container, data, skipped) if one[1] >= skipped])
 
     def physical(data: bytes) -> Values:
-        found = judge.read(container, bytes(skipped // 8) + data)
+        found = judge.read(container, data, skipped)
         curves = {at: curve for _, at, _, curve in found if curve is not None}
         values = {at: value for _, at, value, _ in found}
         return {
@@ -160,9 +158,9 @@ class _Judge:
         found = self.types.get(f"{self.of[id(of)]}/{name}")
         return self.types[name] if found is None else found
 
-    def read(self, container: ElementTree.Element, data: bytes) -> list[Found]:
-        """Everything that a frame holds. Raises `NotHeld` for one that breaks a constraint."""
-        frame = _Frame(self, data)
+    def read(self, container: ElementTree.Element, data: bytes, skipped: int) -> list[Found]:
+        """Everything in a frame, and zeros of its header of so many bits. Raises `NotHeld` where a constraint is broken."""
+        frame = _Frame(self, bytes(skipped // 8) + data, skipped)
         frame.container(container, "")
         return frame.found
 
@@ -170,8 +168,8 @@ class _Judge:
 class _Frame:
     """A frame that is being read."""
 
-    def __init__(self, judge: _Judge, data: bytes) -> None:
-        self.judge, self.data, self.at = judge, data, 0
+    def __init__(self, judge: _Judge, data: bytes, skipped: int) -> None:
+        self.judge, self.data, self.skipped, self.at = judge, data, skipped, 0
         self.found: list[Found] = []
 
     def bits(self, count: int, is_little: bool = False) -> int:
@@ -196,7 +194,7 @@ class _Frame:
 
     def constrained(self, one: ElementTree.Element, path: str) -> None:
         at, value = next((at, value) for name, at, value, _ in reversed(self.found) if name == path)
-        if at < _HEADER and "." in path:  # of a header that is not there
+        if at < self.skipped:  # of a header that is not there
             return
         if one.tag == "ValueConstraint":
             said = self.judge.text(one, "value")

@@ -39,6 +39,7 @@ class Eds:
         found = [one for one in (_read(sending, sheets, types, structs, to) for sending in sent) if one is not None]
         network = Network(node_name(file), _title(sheets) or node_name(file), {**ORDERS[BIG]})
         packets.fill(network, found, to)
+        packets.apart(network.messages)
         _say_process([one for one in found if one.is_by_interface], to)
         _say_unsent(alone, sheets, to)
         declared = types.enums.declared()
@@ -58,6 +59,7 @@ class _Found:
         self.name = line(f"{sending.container.get('name')} {sending.interface}", 200)
         self.line = sheets.line(sending.container)
         self.told = layout.told
+        self.front = layout.front()
         head = layout.header()
         self.kind = (head.kind if head is not None else None) or sending.kind or packets.TELEMETRY
         sending.kind = self.kind

@@ -12,7 +12,7 @@ from icdgen.definitions.eds_parts import Line, Part, Told
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import ARRAY, CONTAINER, Types, described
 from icdgen.definitions.eds_values import whole
-from icdgen.definitions.frames import LITTLE
+from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Item, NotHeld, again
 from icdgen.definitions.wording import line, shortest
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
@@ -267,6 +267,14 @@ class Layout:
             return None
         is_line = length.entry.find("PolynomialCalibrator") is not None
         return None if is_line and eds_parts.line_of(length.entry, self.sheets) != _PACKET else found
+
+    def front(self) -> tuple[Hashable, int] | None:
+        """What it begins with, and its bits, if a header can have it as an id."""
+        part = next(iter(self.parts), None)
+        if part is None or part.piece is None or part.at or part.bits not in (8, 16, 24, 32):
+            return None
+        is_id = part.piece.order == BIG and part.item["type"] in ("uint", "enum") and "formula" not in part.item
+        return ((part.path, part.entry), part.bits) if is_id else None
 
     def fields(self, start: int) -> list[Item]:
         """As they stand in an ICD, from a bit on. Raises `NotHeld`."""

@@ -40,6 +40,9 @@ class Sent(Protocol):
     name: str
     kind: str
     header: Header | None  # None where it does not begin with one
+    front: (
+        tuple[Hashable, int] | None
+    )  # what it begins with, as in `told`, and its bits, if a header can have it as an id
     told: dict[Hashable, int]  # by what tells it: the only value of that
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
@@ -67,7 +70,6 @@ def fill(network: Network, found: Sequence[Sent], to: Definitions) -> None:
         _packets(found, network, to)
     else:
         _counted(found, network, to)
-    _apart(network.messages)
 
 
 def _packets(found: Sequence[Sent], network: Network, to: Definitions) -> None:
@@ -118,8 +120,10 @@ def _usual(held: list[tuple[str, Header]]) -> Item:
 
 
 def _counted(found: Sequence[Sent], network: Network, to: Definitions) -> None:
-    """Messages without an envelope: ids are what tells all of a direction, or counted."""
-    widest = 8
+    """Messages without a header: ids are what tells all of a direction, or counted."""
+    widest, start = 8, _id_in_front(found)
+    if start:
+        network.protocol = {"stream": {"delimited_by": "none", "header": [{"at": 0, "bits": start, "role": "id"}]}}
     for kind in (TELEMETRY, TELECOMMAND):
         ours = [one for one in found if one.kind == kind]
         tells = _telling(ours)
@@ -130,7 +134,7 @@ def _counted(found: Sequence[Sent], network: Network, to: Definitions) -> None:
             if tells is None:
                 untold.append(one.name)
             try:
-                network.messages.append(one.message(id, 0, to))
+                network.messages.append(one.message(id, start, to))
             except NotHeld as why:
                 to.left_out(one.name, why)
         if len(untold) > 1:
@@ -143,6 +147,19 @@ def _counted(found: Sequence[Sent], network: Network, to: Definitions) -> None:
     network.head["id_bits"] = widest
 
 
+def _id_in_front(found: Sequence[Sent]) -> int:
+    """The bits of what tells all messages, where all of both directions begin with it and it is whole bytes; else 0."""
+    sizes = set()
+    for kind in (TELEMETRY, TELECOMMAND):
+        ours = [one for one in found if one.kind == kind]
+        tells = _telling(ours)
+        for one in ours:
+            is_id = one.front is not None and tells is not None and one.front[0] == tells
+            sizes.add(one.front[1] if is_id and one.front is not None else 0)
+    size, *others = sizes or {0}
+    return 0 if others else size
+
+
 def _telling(ours: list[Sent]) -> Hashable | None:
     """What has one value in each message, of those the one with the most different ones."""
     common = [key for key in (ours[0].told if ours else ()) if all(key in one.told for one in ours)]
@@ -150,7 +167,7 @@ def _telling(ours: list[Sent]) -> Hashable | None:
     return max(fits, key=lambda key: len({one.told[key] for one in ours}), default=None)
 
 
-def _apart(messages: list[Item]) -> None:
+def apart(messages: list[Item]) -> None:
     """Messages of one name get their system in front, or what they are, or a number."""
     for said in (lambda one: one.get("group", ""), lambda one: one["kind"], lambda one: str(one["id"])):
         times = Counter(one["name"] for one in messages)

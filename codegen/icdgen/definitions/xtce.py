@@ -9,8 +9,8 @@ from icdgen.definitions import packets, safe_xml
 from icdgen.definitions.frames import BIG, ORDERS
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld
 from icdgen.definitions.wording import line, node_name
-from icdgen.definitions.xtce_layout import Layout, Told
-from icdgen.definitions.xtce_names import Names
+from icdgen.definitions.xtce_layout import Layout, Part, Told
+from icdgen.definitions.xtce_names import Names, beside, called
 from icdgen.definitions.xtce_types import Types, described
 
 if TYPE_CHECKING:
@@ -37,8 +37,12 @@ class Xtce:
         names = Names(file, root)
         types = Types(names, to)
         found = list(_all(names, types, to))
-        network = Network(node_name(file), line(root.get("name"), 100) or node_name(file), {**ORDERS[BIG]})
+        network = Network(
+            node_name(file), line(called(root), 100) or node_name(file), {**ORDERS[BIG], **described(root)}
+        )
         packets.fill(network, found, to)
+        network.messages = _paired(network.messages)
+        packets.apart(network.messages)
         declared = types.enums.declared()
         used = {one.get("enum") for message in network.messages for one in message.get("fields", ())}
         network.enums = [one for one in declared if one["name"] in used]
@@ -52,10 +56,13 @@ class _Found:
     def __init__(self, kind: str, element: Element, layout: Layout, more: Item) -> None:
         """``more`` are keys of the message."""
         self.kind, self.element, self.layout, self.more = kind, element, layout, more
-        self.name = element.get("name", "")
+        self.name = called(element)
         self.told: dict[Hashable, int] = {id(one.of): layout.tell(one) for one in layout.told}
         ahead = [one for one in layout.parts[: packets.MOST_PARTS] if "count" not in one.item]
         self.header = packets.header((one.at, one.piece.bits, one.item.get("const")) for one in ahead)
+        first = next(iter(layout.parts), None)
+        is_id = first is not None and _is_id(first)
+        self.front: tuple[Hashable, int] | None = (id(first.of), first.piece.bits) if first and is_id else None
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
         """As it stands in an ICD. Raises `NotHeld`."""
@@ -138,8 +145,43 @@ def _arguments(chain: list[Element]) -> dict[str, Element]:
     return found
 
 
+def _is_id(part: Part) -> bool:
+    """Whether a header can have it as an id."""
+    is_whole = part.at == 0 and part.piece.bits in (8, 16, 24, 32) and part.piece.order == BIG
+    return is_whole and part.item["type"] in ("uint", "enum") and "formula" not in part.item
+
+
+def _paired(messages: list[Item]) -> list[Item]:
+    """A telecommand and a telemetry frame of one name that have the same fields are one configuration message, set and got."""
+    sent = {(one["name"], one.get("group")): one for one in messages if one["kind"] == _TELECOMMAND}
+    made: list[Item] = []
+    gone: set[int] = set()
+    for one in messages:
+        other = sent.get((one["name"], one.get("group"))) if one["kind"] == _TELEMETRY else None
+        if other is None or id(other) in gone or not _is_same(one, other):
+            made.append(one)
+            continue
+        gone.add(id(other))
+        head = {"name": one["name"], "kind": "configuration", "set_id": other["id"], "get_id": one["id"]}
+        rest = {key: value for key, value in {**other, **one}.items() if key not in ("name", "kind", "id")}
+        made.append({**head, **rest})
+    return [one for one in made if id(one) not in gone]
+
+
+def _is_same(one: Item, other: Item) -> bool:
+    """Whether messages have the same fields, but for constants, whose type only telemetry has, and views."""
+
+    def plain(message: Item) -> list[Item]:
+        fields = (field for field in message.get("fields", ()) if not field.get("view"))
+        return [{"at": f["at"], "bits": f["const"] & (1 << f["bits"]) - 1} if "const" in f else f for f in fields]
+
+    return one["length"] == other["length"] and plain(one) == plain(other)
+
+
 def _group(names: Names, element: Element) -> Item:
-    """The system, but for the outermost."""
+    """The system, but for the outermost; of what icdgen wrote the group of its ICD."""
+    if group := beside(element).get("group"):
+        return {"group": line(group, 200)}
     inner = names.system(element).split("/")[2:]
     return {"group": line(" ".join(inner), 200)} if inner else {}
 
