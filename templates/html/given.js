@@ -1,6 +1,6 @@
 "use strict";
 /* What was pasted on the page of a message -> its data: id, framing and checksum come off, as `icdgen decode NODE MESSAGE` does it. */
-const icdgenGiven = ((frames, packets, pasted, stream) => {
+const icdgenGiven = ((frames, packets, pasted, stream, envelopes) => {
   /** Data of the message in whatever was pasted, and remarks. Throws an Error where it cannot be this message. */
   function messageIn(wire, length, text) {
     const given = pasted.read(text);
@@ -12,6 +12,8 @@ const icdgenGiven = ((frames, packets, pasted, stream) => {
   /** The data in bytes, and remarks about what was around it; bytes that do not fit as they are. Throws an Error, too. */
   function unwrap(wire, length, bytes) {
     if (hasLength(wire, length, bytes)) return { data: bytes, remarks: [] };
+    const taken = wire.stream && ofEnvelopes(wire, length, bytes);
+    if (taken) return taken;
     const read = wire.framing && stream.messages(wire, bytes);
     return read ? ofStream(wire, length, read) : bare(wire, length, bytes);
   }
@@ -20,6 +22,24 @@ const icdgenGiven = ((frames, packets, pasted, stream) => {
   function hasLength(wire, length, { length: given }) {
     const [least, step] = wire.lengths ?? [length, 1];
     return given >= least && given <= length && (given - least) % step === 0;
+  }
+
+  /** The first message of this kind in its envelope; null if there is none. Throws an Error where one is damaged, or another one's. */
+  function ofEnvelopes(wire, length, bytes) {
+    const heard = envelopes.DIRECTIONS.filter((what) => wire.stream[what].length).map((what) => envelopes.decode(wire.stream, what, bytes));
+    const mine = ({ event, data }) => event === "message" && hasLength(wire, length, data);
+    const able = heard.filter((one) => one.events.some(mine) && (!one.lost || envelopes.isMarked(wire.stream)));
+    const best = able.sort((one, other) => one.lost - other.lost)[0];
+    if (best) {
+      const [first, ...others] = best.events.filter(mine);
+      const left = others.length ? [`${others.length} other frame${others.length === 1 ? "" : "s"} left out`] : [];
+      return { data: first.data, remarks: [envelopes.removed(first), ...left, ...envelopes.around(best)] };
+    }
+    const wrong = heard.map((one) => envelopes.damaged(wire.stream, one)).find(Boolean);
+    if (wrong) throw new Error(wrong);
+    const other = envelopes.isMarked(wire.stream) && heard.flatMap((one) => one.events).find((one) => one.event === "unknown_id" && one.is === "proven");
+    if (other) throw new Error(`in an envelope with id ${other.id}, which is another message's`);
+    return null;
   }
 
   function ofStream(wire, length, { messages, remarks }) {
@@ -75,5 +95,5 @@ const icdgenGiven = ((frames, packets, pasted, stream) => {
   }
 
   return { unwrap, messageIn };
-})(...(typeof icdgenFrames === "undefined" ? ["frames", "packets", "pasted", "stream"].map((name) => require(`./${name}.js`)) : [icdgenFrames, icdgenPackets, icdgenPasted, icdgenStream]));
+})(...(typeof icdgenFrames === "undefined" ? ["frames", "packets", "pasted", "stream", "envelopes"].map((name) => require(`./${name}.js`)) : [icdgenFrames, icdgenPackets, icdgenPasted, icdgenStream, icdgenEnvelopes]));
 if (typeof module !== "undefined") module.exports = icdgenGiven;

@@ -5,7 +5,7 @@
  * A reading is `{ what, message, node, title, url, id, data, checked, remarks }`, `what` being telecommand, telemetry, request,
  * acknowledge, refusal, or configuration where nothing tells the direction.
  */
-const icdgenRecognize = ((frames, pasted, stream, packets) => {
+const icdgenRecognize = ((frames, pasted, stream, packets, envelopes) => {
   const OF_CAN = { telecommand: "telecommand", acknowledge: "acknowledge", refusal: "refusal", request: "request", reply: "telemetry", request_refusal: "refusal" };
   const SENT = ["telecommand", "acknowledge", "refusal"];
 
@@ -48,10 +48,42 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
       found = onCan(index, talking.filter((speaker) => speaker.can), given.packets);
     } else {
       const data = given.packets ? Uint8Array.from(given.packets.flatMap((one) => [...one.data])) : given.data;
-      found = framed(index, talking, data);
+      found = enveloped(index, talking, data);
+      if (!found.length) found = framed(index, talking, data);
       if (!found.length) found = [bare(index, talking, data)];
     }
     return given.form ? found.map((one) => noted(one, `read as ${given.form}`)) : found;
+  }
+
+  // Envelopes
+
+  /** The messages, of the direction that leaves the least; none if there are none, or hardly by intent. */
+  function enveloped(index, talking, data) {
+    const heard = talking.filter((one) => one.stream).flatMap((speaker) => envelopes.DIRECTIONS.map((what) => heardOf(index, speaker, what, data)));
+    const found = heard.filter((one) => one.read.length && (!one.lost || envelopes.isMarked(one.speaker.stream)));
+    if (!found.length) {
+      const wrong = heard.map((one) => envelopes.damaged(one.speaker.stream, one)).find(Boolean);
+      if (wrong) throw new Error(wrong);
+      return [];
+    }
+    const least = Math.min(...found.map((one) => one.lost));
+    const clean = found.filter((one) => one.lost === least);
+    const most = Math.max(...clean.map((one) => one.read.length));
+    const best = clean.filter((one) => one.read.length === most);
+    const chosen = Array.from({ length: most }, (_, at) => decided(best.map((one) => one.read[at]), "a frame in an envelope"));
+    return [noted(chosen[0], ...envelopes.around(best[0])), ...chosen.slice(1)];
+  }
+
+  /** What one direction of a link makes of the bytes. */
+  function heardOf(index, speaker, what, data) {
+    const { events, lost } = envelopes.decode(speaker.stream, what, data);
+    const ids = what === "telemetry" ? speaker.telemetry : speaker.telecommands;
+    const read = events.filter(({ event }) => event === "message").flatMap((one) => {
+      const number = numberOf(index, ids[one.id], one.data);
+      if (number === undefined || !fits(index, number, one.data)) return [];
+      return [reading(index, speaker, what, number, one.id, one.data, [envelopes.removed(one)], Boolean(speaker.stream.check))];
+    });
+    return { speaker, events, lost, read };
   }
 
   // UART
@@ -271,5 +303,5 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
   }
 
   return { recognize, Ambiguous };
-})(...(typeof icdgenFrames === "undefined" ? ["frames", "pasted", "stream", "packets"].map((name) => require(`./${name}.js`)) : [icdgenFrames, icdgenPasted, icdgenStream, icdgenPackets]));
+})(...(typeof icdgenFrames === "undefined" ? ["frames", "pasted", "stream", "packets", "envelopes"].map((name) => require(`./${name}.js`)) : [icdgenFrames, icdgenPasted, icdgenStream, icdgenPackets, icdgenEnvelopes]));
 if (typeof module !== "undefined") module.exports = icdgenRecognize;

@@ -44,7 +44,8 @@ def unit(text: str | None) -> dict[str, str]:
 def printed(number: float | Decimal) -> str:
     """A number as a formula has it: the shortest decimal that means it."""
     exact = Decimal(str(number))
-    text = format(exact, "f" if abs(exact) >= Decimal("1e-6") or not exact else "e").replace("E", "e")
+    is_usual = not exact or Decimal("1e-6") <= abs(exact) < Decimal("1e24")
+    text = format(exact, "f" if is_usual else "e").replace("E", "e")
     return text.rstrip("0").rstrip(".") if "." in text and "e" not in text else text
 
 

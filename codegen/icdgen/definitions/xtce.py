@@ -10,8 +10,8 @@ from icdgen.definitions import safe_xml
 from icdgen.definitions.frames import BIG, ORDERS
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld
 from icdgen.definitions.wording import line, node_name
-from icdgen.definitions.xtce_layout import Layout, Told
-from icdgen.definitions.xtce_names import Names
+from icdgen.definitions.xtce_layout import Layout, Part, Told
+from icdgen.definitions.xtce_names import Names, beside, called
 from icdgen.definitions.xtce_types import Types, described
 
 if TYPE_CHECKING:
@@ -51,12 +51,15 @@ class Xtce:
         names = Names(file, root)
         types = Types(names, to)
         found = list(_all(names, types, to))
-        network = Network(node_name(file), line(root.get("name"), 100) or node_name(file), {**ORDERS[BIG]})
+        network = Network(
+            node_name(file), line(called(root), 100) or node_name(file), {**ORDERS[BIG], **described(root)}
+        )
         if any(one.is_packet for one in found):
             network.head["id_bits"] = _APID_BITS
             _packets(found, network, to)
         else:
             _counted(found, network, to)
+        network.messages = _paired(network.messages)
         _apart(network.messages)
         declared = types.enums.declared()
         used = {one.get("enum") for message in network.messages for one in message.get("fields", ())}
@@ -71,7 +74,7 @@ class _Found:
     def __init__(self, kind: str, element: Element, layout: Layout, more: Item) -> None:
         """``more`` are keys of the message."""
         self.kind, self.element, self.layout, self.more = kind, element, layout, more
-        self.name = element.get("name", "")
+        self.name = called(element)
         self.told = {id(one.of): layout.tell(one) for one in layout.told}
 
     @property
@@ -213,8 +216,10 @@ def _usual(held: list[_Found], part: int) -> Item:
 
 
 def _counted(found: list[_Found], network: Network, to: Definitions) -> None:
-    """Messages without an envelope: ids are what tells all of a direction, or counted."""
-    widest = 8
+    """Messages without a header: ids are what tells all of a direction, or counted."""
+    widest, start = 8, _id_in_front(found)
+    if start:
+        network.protocol = {"stream": {"delimited_by": "none", "header": [{"at": 0, "bits": start, "role": "id"}]}}
     for kind in (_TELEMETRY, _TELECOMMAND):
         ours = [one for one in found if one.kind == kind]
         tells = _telling(ours)
@@ -225,7 +230,7 @@ def _counted(found: list[_Found], network: Network, to: Definitions) -> None:
             if tells is None:
                 untold.append(one.name)
             try:
-                network.messages.append(one.message(id, 0, to))
+                network.messages.append(one.message(id, start, to))
             except NotHeld as why:
                 to.left_out(one.name, why)
         if len(untold) > 1:
@@ -238,11 +243,58 @@ def _counted(found: list[_Found], network: Network, to: Definitions) -> None:
     network.head["id_bits"] = widest
 
 
+def _id_in_front(found: list[_Found]) -> int:
+    """The bits of what tells all messages, where all of both directions begin with it and it is whole bytes; else 0."""
+    sizes = set()
+    for kind in (_TELEMETRY, _TELECOMMAND):
+        ours = [one for one in found if one.kind == kind]
+        tells = _telling(ours)
+        for one in ours:
+            first = next(iter(one.layout.parts), None)
+            is_id = first is not None and tells is not None and id(first.of) == tells
+            sizes.add(first.piece.bits if is_id and first is not None and _is_id(first) else 0)
+    size, *others = sizes or {0}
+    return 0 if others else size
+
+
+def _is_id(part: Part) -> bool:
+    """Whether a header can have it as an id."""
+    is_whole = part.at == 0 and part.piece.bits in (8, 16, 24, 32) and part.piece.order == BIG
+    return is_whole and part.item["type"] in ("uint", "enum") and "formula" not in part.item
+
+
 def _telling(ours: list[_Found]) -> int | None:
     """What has one value in each message, of those the one with the most different ones."""
     common = [key for key in (ours[0].told if ours else ()) if all(key in one.told for one in ours)]
     fits = [key for key in common if all(0 <= one.told[key] < 1 << _MOST_ID_BITS for one in ours)]
     return max(fits, key=lambda key: len({one.told[key] for one in ours}), default=None)
+
+
+def _paired(messages: list[Item]) -> list[Item]:
+    """A telecommand and a telemetry frame of one name that have the same fields are one configuration message, set and got."""
+    sent = {(one["name"], one.get("group")): one for one in messages if one["kind"] == _TELECOMMAND}
+    made: list[Item] = []
+    gone: set[int] = set()
+    for one in messages:
+        other = sent.get((one["name"], one.get("group"))) if one["kind"] == _TELEMETRY else None
+        if other is None or id(other) in gone or not _is_same(one, other):
+            made.append(one)
+            continue
+        gone.add(id(other))
+        head = {"name": one["name"], "kind": "configuration", "set_id": other["id"], "get_id": one["id"]}
+        rest = {key: value for key, value in {**other, **one}.items() if key not in ("name", "kind", "id")}
+        made.append({**head, **rest})
+    return [one for one in made if id(one) not in gone]
+
+
+def _is_same(one: Item, other: Item) -> bool:
+    """Whether messages have the same fields, but for constants, whose type only telemetry has, and views."""
+
+    def plain(message: Item) -> list[Item]:
+        fields = (field for field in message.get("fields", ()) if not field.get("view"))
+        return [{"at": f["at"], "bits": f["const"] & (1 << f["bits"]) - 1} if "const" in f else f for f in fields]
+
+    return one["length"] == other["length"] and plain(one) == plain(other)
 
 
 def _apart(messages: list[Item]) -> None:
@@ -255,7 +307,9 @@ def _apart(messages: list[Item]) -> None:
 
 
 def _group(names: Names, element: Element) -> Item:
-    """The system, but for the outermost."""
+    """The system, but for the outermost; of what icdgen wrote the group of its ICD."""
+    if group := beside(element).get("group"):
+        return {"group": line(group, 200)}
     inner = names.system(element).split("/")[2:]
     return {"group": line(" ".join(inner), 200)} if inner else {}
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 from icdgen.backends.html import drawing, fields, plan, sections, texts, wire
@@ -51,7 +50,7 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
         "contains": relations.contains.get((message.node, message.name), []),
         "contained_in": relations.contained_in.get((message.node, message.name), []),
         "errata": errata_of_message(message),
-        "plan": _script_json(_plan(node, message, pictures, shares, travels)),
+        "plan": texts.script_json(_plan(node, message, pictures, shares, travels)),
     }
 
 
@@ -117,9 +116,3 @@ def _plan(
         "sections": [{"title": f"{s.title}, {s.about}", "keys": s.keys, "open": s.open} for s in shown],
         "wire": {**wire.page_facts(message, travels), "id_bytes": wire_ids.size(node.id_bits)},
     }
-
-
-def _script_json(value: object) -> str:
-    """JSON that may stand in a script element, whatever is in it."""
-    text = json.dumps(value, separators=(",", ":"))
-    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
-from icdgen.backends.html import sequences, texts
+from icdgen.backends.html import envelopes, sequences, texts
 from icdgen.backends.html.relations import Place, Relations
 from icdgen.icd.model import Enum, Node
 from icdgen.protocol import facts
@@ -54,15 +53,20 @@ def has_page(relations: Relations, node: Node) -> bool:
 def values(relations: Relations, node: Node) -> dict[str, object]:
     """Values of the page."""
     known, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
-    checks = _checks(known, section)
+    checks, sums = _checks(known, section), envelopes.sums(section, known)
+    computed = [(name, crc) for name, crc, _ in checks] + [(one.name, one.crc) for one in sums if one.crc]
     return {
         "node": node,
+        "envelope": _envelope(relations, known, section),
         "lines": lines(section),
         "framing": _framing(known),
         "escaped": known.framing and f"{known.framing.escape:02X}",
         "escaped_as": known.framing and f"{known.framing.escape:02X} {known.framing.escaped:02X}",
-        "checks": [(name, _crc_rows(crc), f"0x{check:X}" if check is not None else "") for name, crc, check in checks],
-        "calculator": json.dumps([{"name": name, **_plain(crc)} for name, crc, _ in checks], separators=(",", ":")),
+        "checks": [
+            *((name, _crc_rows(crc), f"0x{check:X}" if check is not None else "") for name, crc, check in checks),
+            *((one.name, [Row(*row) for row in one.rows], "") for one in sums),
+        ],
+        "calculator": texts.script_json([{"name": name, **_plain(crc)} for name, crc in computed]) if computed else "",
         "identifier": _identifier(known, section),
         "types": section.get("can", {}).get("message_types", {}).get("values", []),
         "errors": errors(relations, node, known, section),
@@ -108,6 +112,20 @@ def _framing(known: Facts) -> list[Box]:
         pieces.append(("CRC", "" if "uart" in known.checksum.telecommand_always else "optional", 1.4))
     pieces += [(f"{form.escape:02X}", "escape", 1), (f"{form.end:02X}", "end", 1)]
     return _row([(text, about, share, "") for text, about, share in pieces])
+
+
+def _envelope(relations: Relations, known: Facts, section: dict[str, Any]) -> dict[str, object]:
+    """What is around each message; empty without it."""
+    if known.stream is None:
+        return {}
+    urls = {one.name: relations.links.message(one) for one in relations.icd.messages_of(known.node)}
+    replies = section["stream"].get("replies", {})
+    return {
+        "boxes": _row(envelopes.boxes(section)),
+        "ends": envelopes.ENDS[known.stream.delimited_by],
+        "places": envelopes.places(section),
+        "replies": [Row(sent, came, "", urls.get(came, "")) for sent, came in replies.items()],
+    }
 
 
 def _row(pieces: list[tuple[str, str, float, str]]) -> list[Box]:
@@ -237,7 +255,13 @@ def entries(relations: Relations, node: Node, url: str) -> Iterator[tuple[str, s
     if known.framing:
         words = "uart framing escape start end of message byte stuffing"
         yield words, "Framing", Place(node.title, f"{url}#framing")
-    for name, _, _ in _checks(known, section):
+    if known.stream:
+        words = "envelope stream header trailer sync length sequence delimiter framing checksum"
+        yield words, "Envelope", Place(node.title, f"{url}#envelope")
+    for name in (
+        *(name for name, _, _ in _checks(known, section)),
+        *(one.name for one in envelopes.sums(section, known)),
+    ):
         words = "crc checksum polynomial init reflect calculator " + name.replace("-", "").lower()
         yield words, f"{name} parameters and calculator", Place(node.title, f"{url}#checksums")
     if known.can:

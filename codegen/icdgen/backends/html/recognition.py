@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from icdgen import layout
-from icdgen.backends.html import wire
+from icdgen.backends.html import envelopes, wire
 from icdgen.backends.html.relations import Relations
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
@@ -63,6 +63,8 @@ def _speaker(relations: Relations, node: Node, numbers: dict[tuple[str, str], in
         "errors": {str(code): key.replace("_", " ") for key, code in known.errors.items()},
     }
     found |= wire.framing_facts(known)
+    if known.stream:
+        found["stream"] = envelopes.script_facts(known.stream)
     if known.checksum:
         found["crc"] = wire.crc_facts(known)
     if known.can:

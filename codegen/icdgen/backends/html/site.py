@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 _LOADED = (
     *("style.css", "layout.css", "print.css", "icon.svg"),
     *("theme.js", "site.js", "load.js", "sidebar.js", "search.js", "find.js", "filter.js", "errata.js", "copy.js"),
-    *("codec.js", "frames.js", "packets.js", "pasted.js", "stream.js", "given.js", "recognize.js"),
+    *("codec.js", "frames.js", "packets.js", "pasted.js", "stream.js", "envelopes.js", "given.js", "recognize.js"),
     *("frame-links.js", "paste.js", "values.js", "lit.js", "try.js", "protocol.js"),
 )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
 
 from icdgen.describe.bounds import allowed_ends
@@ -61,3 +62,9 @@ def ids(message: Message) -> list[tuple[str, int]]:
 def clip(text: str, most: int) -> str:
     """The text, or its beginning and an ellipsis."""
     return text if len(text) <= most else text[: most - 1].rstrip() + "…"
+
+
+def script_json(value: object) -> str:
+    """JSON that may stand in a script element, whatever is in it."""
+    text = json.dumps(value, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")

@@ -8,11 +8,14 @@ from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
 from icdgen_runtime.wire.can import CanMessage, can_split
+from icdgen_runtime.wire.envelope import Direction
 from icdgen_runtime.wire.errors import TooLongError, UnsupportedError
 from icdgen_runtime.wire.i2c import i2c_write
 from icdgen_runtime.wire.link import Link
+from icdgen_runtime.wire.stream import stream_encode
 from icdgen_runtime.wire.uart import uart_encode
 
+from icdgen.backends.html import envelopes
 from icdgen.backends.html.texts import count
 from icdgen.icd.model import Message
 from icdgen.protocol.facts import Facts
@@ -62,7 +65,7 @@ class Wire(NamedTuple):
 
 def buses(message: Message, wire: Wire, data: bytes) -> list[Bus]:
     """The bytes of the message on each bus. ``data`` is the frame shown."""
-    found = [make(message, wire, data) for make in (_uart, _i2c, _can)]
+    found = [make(message, wire, data) for make in (_stream, _uart, _i2c, _can)]
     return [bus for bus in found if bus is not None]
 
 
@@ -78,6 +81,8 @@ def page_facts(message: Message, wire: Wire) -> dict[str, object]:
     if len(message.lengths) > 1:
         facts["lengths"] = [message.least, message.lengths.step]
     facts |= framing_facts(wire.facts)
+    if wire.facts.stream:
+        facts["stream"] = envelopes.script_facts(wire.facts.stream, message)
     if wire.facts.can:
         facts["can"] = can_facts(wire.facts.can)
     return facts
@@ -145,6 +150,25 @@ def _crc_chunk(sent: bytes, speaker: Speaker, direction: str) -> Chunk:
     assert form is not None
     optional = speaker.section["crc8"][direction].get("optional")
     return Chunk("crc", _hex(sent), f"CRC-{form.crc.width}" + (", optional" if optional else ""))
+
+
+# Envelopes
+
+
+def _stream(message: Message, wire: Wire, data: bytes) -> Bus | None:
+    form = wire.facts.stream
+    if form is None:
+        return None
+    lines: list[Line] = []
+    ids: dict[Direction, int | None] = {"telecommand": message.telecommand_id, "telemetry": message.telemetry_id}
+    for direction, id in ids.items():
+        if id is not None:
+            parts = envelopes.packet(form, wire.link, message, direction, data)
+            lines.append(Line(direction.capitalize(), [Chunk(one.kind, _hex(one.data), one.title) for one in parts]))
+            sent = stream_encode(wire.link, id, data, direction)
+            if sent != b"".join(one.data for one in parts):
+                lines.append(Line("as it is sent", [Chunk("data", _hex(sent), "stuffed, between delimiters")]))
+    return Bus("Envelope", f"A message ends {envelopes.ENDS[form.delimited_by]}.", lines)
 
 
 # UART

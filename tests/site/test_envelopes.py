@@ -1,0 +1,104 @@
+"""Pages take messages out of their envelopes as the command line does, and say what these look like."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+
+import pytest
+
+from icdgen.backends.html import recognition, wire
+from icdgen.backends.html.relations import Relations
+from icdgen.icd.fmt import format_text
+from icdgen.loading import load
+from icdgen.site import make, write
+from icdgen.vectors.make import make as golden
+from tests.conftest import ROOT
+from tests.features.enveloped import recorded
+from tests.site.test_pasted import node
+from tests.site.test_recognize import on_the_command_line, on_the_page
+
+LINKS = ROOT / "examples" / "links"
+NAMES = sorted(file.stem for file in LINKS.glob("*.yaml"))
+
+
+def icd_of(name: str):
+    loaded = load([LINKS / f"{name}.yaml"])
+    assert loaded.ok
+    return loaded.icd
+
+
+def traffic(icd, count: int) -> list[str]:
+    """Some messages, whole, damaged, and among noise."""
+    source, device = random.Random(7), icd.nodes[0]
+    frames = {one.message.name: [row.frame for row in one.rows] for one in golden(icd, device).messages}
+    found = []
+    for _ in range(count):
+        line = bytearray()
+        for name in source.choices(sorted(frames), k=source.randint(1, 3)):
+            sent = recorded(icd, device, {name: [source.choice(frames[name])]})
+            line += source.choice([one for one in sent.values() if one] or [b""])
+            line += source.randbytes(source.choice([0, 0, 0, 1, 5]))
+        if line and source.random() < 0.3:
+            at = source.randrange(len(line))
+            line[at : at + 1] = source.randbytes(source.randrange(2))
+        if line:
+            found.append(bytes(line).hex())
+    return found
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_is_pasted_is_what_the_command_line_says_it_is(name):
+    icd = icd_of(name)
+    index = json.loads(json.dumps(recognition.index(Relations(icd))))
+    texts = traffic(icd, 200)
+    shown = [one if not isinstance(one, dict) else None for one in on_the_page(index, texts)]
+    expected = [on_the_command_line(icd, text) for text in texts]
+    assert [row for row in zip(texts, shown, expected, strict=True) if row[1] != row[2]][:2] == []
+    assert sum(isinstance(one, list) for one in expected) > 30
+
+
+def test_the_page_of_a_message_takes_its_envelope_off():
+    icd = icd_of("ubx")
+    relations = Relations(icd)
+    message = next(one for one in icd.nodes[0].messages if one.name == "End of Epoch")
+    facts = wire.page_facts(message, relations.wire(message))
+    sent = recorded(icd, icd.nodes[0], {"End of Epoch": [bytes(4), bytes.fromhex("4AB37B0F")]})["telemetry"]
+    other = recorded(icd, icd.nodes[0], {"Navigation Clock": [bytes(20)]})["telemetry"]
+    damaged = sent[:-1] + bytes([sent[-1] ^ 1])
+    texts = [sent.hex(), (b"noise" + other + sent[12:]).hex(), damaged[12:].hex(), other.hex()]
+    found = node(
+        """([wire, length, texts]) => texts.map((text) => attempt(() => {
+            const { data, remarks } = given.messageIn(wire, length, text);
+            return [Buffer.from(data).toString("hex"), remarks.join("; ")];
+        }))""",
+        [facts, message.length, texts],
+    )
+    assert found[0] == ["00000000", "envelope with id 353 removed; 1 other frame left out"]
+    assert found[1][0] == "4ab37b0f" and "33 bytes around the frame belong to none" in found[1][1]
+    assert "wrong checksum" in str(found[2]) and "another message's" in str(found[3])
+
+
+def test_the_page_of_the_protocol_says_what_the_envelope_looks_like(tmp_path):
+    file = tmp_path / "odd.yaml"
+    hostile = "</script><img src=x>"
+    content = (LINKS / "mavlink2.yaml").read_text().replace("x25", f'"{hostile}"')
+    file.write_text(format_text(content, "odd.yaml"))
+    made = make([file])
+    assert made.ok, made.findings
+    write(made, tmp_path / "site")
+    text = (tmp_path / "site" / "autopilot" / "protocol.html").read_text("utf-8")
+    assert hostile not in text and "<img" not in text
+    plain = re.sub(r"\s+", " ", re.sub("<[^>]*>", " ", text))
+    for words in (
+        "sync header, bits 0 to 7 begins a message 253 (0xFD)",
+        "source header, bits 40 to 47 says who sends 255 (0xFF) in telecommands, 1 (0x1) in telemetry",
+        "A message ends where its length says.",
+        "Covers from the length to the data",
+        "Heartbeat 50",
+        "Polynomial 0x1021",
+    ):
+        assert words in plain, words
+    message = (tmp_path / "site" / "autopilot" / "heartbeat.html").read_text("utf-8")
+    assert 'title="header: constant, length' in message and 'title="trailer: checksum"' in message
