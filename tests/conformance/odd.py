@@ -843,6 +843,14 @@ messages:
       - {at: 0, bits: 62, name: Value, type: uint, when: {Type: 1}}
       - {at: 0, bits: 60, name: Longer, type: int, when: {Type: 2}, formula: raw*0.1}
       - {at: 62, bits: 2, name: Type, type: uint}
+  - name: Floats
+    id: 14
+    kind: telecommand
+    length: 9
+    fields:
+      - {at: 0, bits: 8, name: Mode, type: uint}
+      - {at: 8, bits: 32, name: Always, type: float}
+      - {at: 40, bits: 32, name: At Times, type: float, when: {Mode: 1}}
   - name: Flags
     id: 13
     kind: telemetry
