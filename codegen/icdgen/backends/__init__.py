@@ -31,6 +31,7 @@ _BUILT_IN = {
     "c-selftest": "icdgen.backends.c_selftest:CSelftestBackend",
     "html": "icdgen.backends.html:HtmlBackend",
     "assurance": "icdgen.backends.assurance:AssuranceBackend",
+    "xtce": "icdgen.backends.xtce:XtceBackend",
 }
 
 

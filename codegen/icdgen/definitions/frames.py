@@ -52,7 +52,7 @@ def laid_out(message: Item, placed: list[tuple[Item, Place]], order: str, to: De
         message |= ORDERS[order]
     fields = []
     for field, place in _owned(message["name"], placed, order, to):
-        place = place.counted(order)
+        place = place if "count" in field else place.counted(order)  # which would turn the order of elements round
         said = dict(field)
         field.clear()  # the same mapping goes on: an enumeration is named in it later
         field |= {"at": place.at, "bits": place.bits, **said, **(ORDERS[place.order] if place.order != order else {})}
@@ -70,6 +70,9 @@ def _owned(name: str, placed: list[tuple[Item, Place]], order: str, to: Definiti
     left, pairs = 0, []
     for field, place in sorted(placed, key=lambda one: -one[1].bits):
         mask = place.mask
+        if "view" in field:  # it is said to be one
+            left |= mask
+            continue
         over = next((one for one, other in owners if mask & other and not _exclude(one, field)), None)
         if over is None:
             owners.append((field, mask))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import PurePath
@@ -44,7 +45,8 @@ def unit(text: str | None) -> dict[str, str]:
 def printed(number: float | Decimal) -> str:
     """A number as a formula has it: the shortest decimal that means it."""
     exact = Decimal(str(number))
-    text = format(exact, "f" if abs(exact) >= Decimal("1e-6") or not exact else "e").replace("E", "e")
+    is_usual = not exact or Decimal("1e-6") <= abs(exact) < Decimal("1e24")
+    text = format(exact, "f" if is_usual else "e").replace("E", "e")
     return text.rstrip("0").rstrip(".") if "." in text and "e" not in text else text
 
 
@@ -75,3 +77,20 @@ def _number(key: str, value: Fraction) -> dict[str, int | float]:
         return {key: value.numerator}
     number = float(value)
     return {key: number} if "e" not in str(number) else {}
+
+
+def shortest(paths: list[tuple[str, ...]]) -> list[str]:
+    """Of each path the last words that no other ends with."""
+    lengths = [1] * len(paths)
+    while True:
+        names = [" ".join(path[-length:]) for path, length in zip(paths, lengths, strict=True)]
+        times = Counter(names)
+        longer = [
+            number
+            for number, (name, path) in enumerate(zip(names, paths, strict=True))
+            if times[name] > 1 and lengths[number] < len(path)
+        ]
+        if not longer:
+            return names
+        for number in longer:
+            lengths[number] += 1

@@ -2,35 +2,21 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 from typing import TYPE_CHECKING
 
-from icdgen.definitions import safe_xml
+from icdgen.definitions import packets, safe_xml
 from icdgen.definitions.frames import BIG, ORDERS
 from icdgen.definitions.model import Definitions, Item, Network, NotHeld
 from icdgen.definitions.wording import line, node_name
-from icdgen.definitions.xtce_layout import Layout, Told
-from icdgen.definitions.xtce_names import Names
+from icdgen.definitions.xtce_layout import Layout, Part, Told
+from icdgen.definitions.xtce_names import Names, beside, called
 from icdgen.definitions.xtce_types import Types, described
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
-UNTOLD = "IMP079"
-_TELECOMMAND, _TELEMETRY = "telecommand", "telemetry"
-_HEADER = (
-    (0, 3),
-    (3, 1),
-    (4, 1),
-    (5, 11),
-    (16, 2),
-    (18, 14),
-    (32, 16),
-)  # places of the primary header of a space packet
-_VERSION, _TYPE, _SECONDARY, _APID, _SEQUENCE_FLAGS = range(5)
-_HEADER_BITS = 48
-_APID_BITS, _MOST_ID_BITS = 11, 32
+_TELECOMMAND, _TELEMETRY = packets.TELECOMMAND, packets.TELEMETRY
 _HAZARDOUS = frozenset({"vital", "critical", "severe"})
 
 
@@ -51,13 +37,12 @@ class Xtce:
         names = Names(file, root)
         types = Types(names, to)
         found = list(_all(names, types, to))
-        network = Network(node_name(file), line(root.get("name"), 100) or node_name(file), {**ORDERS[BIG]})
-        if any(one.is_packet for one in found):
-            network.head["id_bits"] = _APID_BITS
-            _packets(found, network, to)
-        else:
-            _counted(found, network, to)
-        _apart(network.messages)
+        network = Network(
+            node_name(file), line(called(root), 100) or node_name(file), {**ORDERS[BIG], **described(root)}
+        )
+        packets.fill(network, found, to)
+        network.messages = _paired(network.messages)
+        packets.apart(network.messages)
         declared = types.enums.declared()
         used = {one.get("enum") for message in network.messages for one in message.get("fields", ())}
         network.enums = [one for one in declared if one["name"] in used]
@@ -71,24 +56,18 @@ class _Found:
     def __init__(self, kind: str, element: Element, layout: Layout, more: Item) -> None:
         """``more`` are keys of the message."""
         self.kind, self.element, self.layout, self.more = kind, element, layout, more
-        self.name = element.get("name", "")
-        self.told = {id(one.of): layout.tell(one) for one in layout.told}
-
-    @property
-    def is_packet(self) -> bool:
-        """Whether it begins with the primary header of a space packet."""
-        first = [(one.at, one.piece.bits) for one in self.layout.parts[: len(_HEADER)]]
-        return first == list(_HEADER) and all("count" not in one.item for one in self.layout.parts[: len(_HEADER)])
+        self.name = called(element)
+        self.told: dict[Hashable, int] = {id(one.of): layout.tell(one) for one in layout.told}
+        ahead = [one for one in layout.parts[: packets.MOST_PARTS] if "count" not in one.item]
+        self.header = packets.header((one.at, one.piece.bits, one.item.get("const")) for one in ahead)
+        first = next(iter(layout.parts), None)
+        is_id = first is not None and _is_id(first)
+        self.front: tuple[Hashable, int] | None = (id(first.of), first.piece.bits) if first and is_id else None
 
     def message(self, id: int, start: int, to: Definitions) -> Item:
         """As it stands in an ICD. Raises `NotHeld`."""
         made = {"name": self.name, "id": id, "kind": self.kind, "length": 0, **self.more}
         return self.layout.laid_out(made, start, BIG, to)
-
-    def header(self, part: int) -> int | None:
-        """The only value of a field of the header."""
-        value = self.layout.parts[part].item.get("const")
-        return None if value is None else int(value)
 
 
 def _all(names: Names, types: Types, to: Definitions) -> Iterator[_Found]:
@@ -166,96 +145,43 @@ def _arguments(chain: list[Element]) -> dict[str, Element]:
     return found
 
 
-def _packets(found: list[_Found], network: Network, to: Definitions) -> None:
-    """Messages of space packets: the header is the envelope, and the application process the id."""
-    held: list[_Found] = []
-    for one in found:
-        try:
-            if not one.is_packet:
-                raise NotHeld("it does not begin with the header of a space packet, as others do")
-            id, type_ = one.header(_APID), one.header(_TYPE)
-            if id is None:
-                raise NotHeld("nothing says of which application process it is")
-            if one.header(_VERSION) or type_ not in (None, int(one.kind == _TELECOMMAND)):
-                raise NotHeld(f"its header is not that of a space packet with {one.kind}")
-            network.messages.append(one.message(id, _HEADER_BITS, to))
-            held.append(one)
-        except NotHeld as why:
-            to.left_out(one.name, why)
-    network.protocol = {
-        "stream": {
-            "delimited_by": "length",
-            "header": [
-                {"at": 0, "bits": 3, "role": "constant", "value": 0},
-                {"at": 3, "bits": 1, "role": "constant", "value": {_TELECOMMAND: 1, _TELEMETRY: 0}},
-                {"at": 4, "bits": 1, "role": "flags", **_usual(held, _SECONDARY)},
-                {"at": 5, "bits": _APID_BITS, "role": "id"},
-                {
-                    "at": 16,
-                    "bits": 2,
-                    "role": "type",
-                    "value": 3,
-                },  # a packet of its own, unless the sender says otherwise
-                {"at": 18, "bits": 14, "role": "sequence", "per": "id"},
-                {"at": 32, "bits": 16, "role": "length", "plus": -1},
-            ],
-        }
-    }
+def _is_id(part: Part) -> bool:
+    """Whether a header can have it as an id."""
+    is_whole = part.at == 0 and part.piece.bits in (8, 16, 24, 32) and part.piece.order == BIG
+    return is_whole and part.item["type"] in ("uint", "enum") and "formula" not in part.item
 
 
-def _usual(held: list[_Found], part: int) -> Item:
-    """The value of a part of the header that all messages of a direction have."""
-    values = {kind: {one.header(part) for one in held if one.kind == kind} for kind in (_TELECOMMAND, _TELEMETRY)}
-    said = {kind: of.copy().pop() if len(of) == 1 else None for kind, of in values.items()}
-    if all(value is None for value in said.values()):
-        return {}
-    return {"value": {kind: value or 0 for kind, value in said.items()}}
+def _paired(messages: list[Item]) -> list[Item]:
+    """A telecommand and a telemetry frame of one name that have the same fields are one configuration message, set and got."""
+    sent = {(one["name"], one.get("group")): one for one in messages if one["kind"] == _TELECOMMAND}
+    made: list[Item] = []
+    gone: set[int] = set()
+    for one in messages:
+        other = sent.get((one["name"], one.get("group"))) if one["kind"] == _TELEMETRY else None
+        if other is None or id(other) in gone or not _is_same(one, other):
+            made.append(one)
+            continue
+        gone.add(id(other))
+        head = {"name": one["name"], "kind": "configuration", "set_id": other["id"], "get_id": one["id"]}
+        rest = {key: value for key, value in {**other, **one}.items() if key not in ("name", "kind", "id")}
+        made.append({**head, **rest})
+    return [one for one in made if id(one) not in gone]
 
 
-def _counted(found: list[_Found], network: Network, to: Definitions) -> None:
-    """Messages without an envelope: ids are what tells all of a direction, or counted."""
-    widest = 8
-    for kind in (_TELEMETRY, _TELECOMMAND):
-        ours = [one for one in found if one.kind == kind]
-        tells = _telling(ours)
-        untold = []
-        for number, one in enumerate(ours, 1):
-            id = one.told[tells] if tells is not None else number
-            widest = max(widest, id.bit_length())
-            if tells is None:
-                untold.append(one.name)
-            try:
-                network.messages.append(one.message(id, 0, to))
-            except NotHeld as why:
-                to.left_out(one.name, why)
-        if len(untold) > 1:
-            shown = ", ".join(f"`{name}`" for name in untold[:3]) + (" ..." if len(untold) > 3 else "")
-            to.warn(
-                UNTOLD,
-                f"no parameter tells all {len(untold)} messages of {kind}: {shown}",
-                "their ids are counted from 1",
-            )
-    network.head["id_bits"] = widest
+def _is_same(one: Item, other: Item) -> bool:
+    """Whether messages have the same fields, but for constants, whose type only telemetry has, and views."""
 
+    def plain(message: Item) -> list[Item]:
+        fields = (field for field in message.get("fields", ()) if not field.get("view"))
+        return [{"at": f["at"], "bits": f["const"] & (1 << f["bits"]) - 1} if "const" in f else f for f in fields]
 
-def _telling(ours: list[_Found]) -> int | None:
-    """What has one value in each message, of those the one with the most different ones."""
-    common = [key for key in (ours[0].told if ours else ()) if all(key in one.told for one in ours)]
-    fits = [key for key in common if all(0 <= one.told[key] < 1 << _MOST_ID_BITS for one in ours)]
-    return max(fits, key=lambda key: len({one.told[key] for one in ours}), default=None)
-
-
-def _apart(messages: list[Item]) -> None:
-    """Messages of one name get their system in front, or what they are, or a number."""
-    for said in (lambda one: one.get("group", ""), lambda one: one["kind"], lambda one: str(one["id"])):
-        times = Counter(one["name"] for one in messages)
-        for one in messages:
-            if times[one["name"]] > 1 and (more := said(one)):
-                one["name"] = f"{more} {one['name']}"
+    return one["length"] == other["length"] and plain(one) == plain(other)
 
 
 def _group(names: Names, element: Element) -> Item:
-    """The system, but for the outermost."""
+    """The system, but for the outermost; of what icdgen wrote the group of its ICD."""
+    if group := beside(element).get("group"):
+        return {"group": line(group, 200)}
     inner = names.system(element).split("/")[2:]
     return {"group": line(" ".join(inner), 200)} if inner else {}
 

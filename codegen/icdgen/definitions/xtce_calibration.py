@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 NUMBER = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?)\s*\Z")
 _INTEGER = re.compile(r"\s*([-+]?[0-9]{1,40})\s*\Z")
 _MOST_POWER = 15
+_DIGITS = 15  # of numbers that are said as they were meant
 
 
 def calibration(encoding: Element) -> dict[str, Any]:
@@ -30,11 +31,19 @@ def calibration(encoding: Element) -> dict[str, Any]:
     calibrator = encoding.find("DefaultCalibrator")
     if calibrator is None:
         return {}
+    found = calibrated(calibrator)
+    if found is None:
+        raise ValueError("it is calibrated by an algorithm")
+    return found
+
+
+def calibrated(calibrator: Element) -> dict[str, Any] | None:
+    """The keys of a polynomial or a spline within an element; None if there is neither. Raises `ValueError`."""
     if terms := calibrator.findall("PolynomialCalibrator/Term"):
         return _said(polynomial(terms))
     spline = calibrator.find("SplineCalibrator")
     if spline is None:
-        raise ValueError("it is calibrated by an algorithm")
+        return None
     points = spline.findall("SplinePoint")
     if {one.get("order", "1") for one in (spline, *points)} != {"1"}:
         raise ValueError(f"it is calibrated by a table of {len(points)} points that are not joined by lines")
@@ -60,6 +69,20 @@ def _table(points: list[Element], goes_on: bool) -> dict[str, Any]:
         "points": [[_number(text) for text in point] for point in found],
         "outside": curve.EXTRAPOLATE if goes_on else curve.REFUSE,
     }
+
+
+def ended(said: dict[str, Any], bits: int, is_signed: bool) -> dict[str, Any]:
+    """The keys of a table of integers: level lines at its ends are what `clamp` says, and beyond all values is nothing."""
+    low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
+    points = list(said["points"])
+    (first, *_), (last, *_) = points[0], points[-1]
+    if not (Fraction(first) <= low and high <= Fraction(last)):
+        return said
+    starts_level = len(points) > 2 and Fraction(first) == low and Fraction(points[0][1]) == Fraction(points[1][1])
+    points = points[1:] if starts_level else points
+    ends_level = len(points) > 2 and Fraction(last) == high and Fraction(points[-1][1]) == Fraction(points[-2][1])
+    points = points[:-1] if ends_level else points
+    return {"points": points} | ({"outside": curve.CLAMP} if starts_level or ends_level else {})
 
 
 def _number(text: str) -> int | float | str:
@@ -111,10 +134,17 @@ def formula(terms: dict[int, str]) -> str:
     if terms == {1: "1"}:
         return ""
     for power, value in sorted(terms.items(), reverse=True):
-        size, raw = value.lstrip("-"), "raw" if power == 1 else f"raw^{power}"
+        size, raw = _binary(value.lstrip("-")), "raw" if power == 1 else f"raw^{power}"
         part = size if not power else raw if size == "1" else f"{raw}*{size}"
         text += f"{' - ' if value[0] == '-' else ' + '}{part}" if text else ("-" if value[0] == "-" else "") + part
     return text or "raw*0"
+
+
+def _binary(text: str) -> str:
+    """A power of two where a number is that, rounded to the digits of a double."""
+    top, bottom = float(text).as_integer_ratio()
+    is_rounded = len(text) > _DIGITS and Fraction(text) != Fraction(top, bottom)
+    return f"2^-{bottom.bit_length() - 1}" if top == 1 and is_rounded else text
 
 
 def through(points: list[Element]) -> str:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from icdgen.definitions.frames import LITTLE, Place, laid_out
-from icdgen.definitions.model import Definitions, Item, NotHeld
+from icdgen.definitions.model import Definitions, Item, NotHeld, again
 from icdgen.definitions.wording import line
 from icdgen.definitions.xtce_calibration import fixed, number
-from icdgen.definitions.xtce_names import Names
-from icdgen.definitions.xtce_types import Piece, Types, described, repeated
+from icdgen.definitions.xtce_names import Names, beside, called
+from icdgen.definitions.xtce_types import Piece, Types, described, meant, repeated
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ class Part:
     item: Item
     piece: Piece
     at: int
+    is_reserved: bool = False  # it has room and no meaning
 
     @property
     def end(self) -> int:
@@ -58,6 +59,8 @@ class Layout:
     told: list[Told] = field(default_factory=list)
     jumps: bool = False  # whether a part says where it stands
     at: int = 0
+    behind: str = ""  # the entry just before, where it is not always there
+    size: int = 0  # bits that every frame has, where that is said
 
     def add(self, container: Element, within: tuple[Element, ...] = (), is_included: bool = False) -> None:
         """Adds the entries of a container behind those that it inherits. Raises `NotHeld`."""
@@ -73,20 +76,32 @@ class Layout:
             self.add(self.names.find("container", base.get("containerRef", ""), container), within, is_included)
             if (criteria := base.find("RestrictionCriteria")) is not None:
                 self.told += self._told(criteria, container)
+        if not is_included and (size := fixed(container.find("BinaryEncoding/SizeInBits"))):
+            self.size = size
         entries = container.find("EntryList")
         for entry in () if entries is None else entries:
-            if entry.find("IncludeCondition") is not None:
-                raise NotHeld(f"`{_named(entry)}` is there only on a condition")
             self._move(entry, start)
+            before = len(self.parts)
             self._entry(entry, container, within)
+            if (condition := entry.find("IncludeCondition")) is not None:
+                needs = self._needs(condition, container, _named(entry))
+                self.jumps, self.behind = True, _named(entry)
+                for part in self.parts[before:]:
+                    if "when" in part.item:
+                        raise NotHeld(f"`{_named(entry)}` is there only on conditions within each other")
+                    part.item |= needs
             if len(self.parts) > MOST_FIELDS:
                 raise NotHeld(f"it has more than {MOST_FIELDS} fields")
 
     def _move(self, entry: Element, start: int) -> None:
         location = entry.find("LocationInContainerInBits")
+        said = "previousEntry" if location is None else location.get("referenceLocation", "previousEntry")
+        if self.behind and said == "previousEntry":
+            raise NotHeld(f"`{_named(entry)}` stands behind `{self.behind}`, which is there only on a condition")
+        self.behind = ""
         if location is None:
             return
-        said, bits = location.get("referenceLocation", "previousEntry"), fixed(location)
+        bits = fixed(location)
         if bits is None or said not in ("previousEntry", "containerStart"):
             raise NotHeld(f"where `{_named(entry)}` stands is not said by a number of bits from what is before it")
         self.at = (self.at if said == "previousEntry" else start) + bits
@@ -114,7 +129,9 @@ class Layout:
             piece = self.types.array(type_, dimensions, where)
         else:
             piece = self.types.piece(type_, where)
-        self._place(of, of.get("name", ""), repeated(piece, count, where), {**described(of, type_)}, 0)
+        said = {**meant(of), **described(of, type_)}
+        said |= {"view": True} if "view" in beside(of) else {}
+        self._place(of, called(of), repeated(piece, count, where), said, 0)
 
     def _place(self, of: Element, name: str, piece: Piece, said: Item, depth: int) -> None:
         """Puts a piece where the last one ended; members of aggregates one after the other."""
@@ -129,22 +146,30 @@ class Layout:
             return
         if self.parts and not self.parts[-1].piece.bits:
             raise NotHeld(f"`{name}` stands behind `{self.parts[-1].item['name']}`, whose size is not fixed")
-        if piece.order == LITTLE and self.at % 8:
-            raise NotHeld(f"the least significant byte of `{name}` is sent first, and it begins within a byte")
-        self.parts.append(Part(of, _again(piece.item, {"name": name, **piece.item, **said}), piece, self.at))
+        if piece.order == LITTLE and (self.at % 8 or piece.bits % 8):
+            if self.at // 8 == (self.at + piece.bits - 1) // 8:
+                raise NotHeld(f"the least significant byte of the {piece.bits} bits of `{name}` is sent first")
+            self.jumps = True  # its bits are counted from the least significant one, as Yamcs does
+        item = again(piece.item, {"name": name, **piece.item, **said})
+        self.parts.append(Part(of, item, piece, self.at, "reserved" in beside(of)))
         self.at += piece.bits
 
     def _fixed(self, entry: Element) -> None:
         """Bits that are always the same: in hexadecimal, the last ones of it."""
         bits, text = number(entry.get("sizeInBits", ""), "a size"), entry.get("binaryValue", "")
-        if not 1 <= bits <= 64:
+        if not 1 <= bits <= 8 * MOST_BYTES:
             raise NotHeld(f"a fixed value has {bits} bits")
         try:
             value = int(text, 16) & (1 << bits) - 1
         except ValueError:
             raise NotHeld(f"a fixed value is `{line(text, 60)}`") from None
-        item = {"name": entry.get("name") or f"Fixed {self.at}", "type": "uint", "const": value}
-        self.parts.append(Part(None, item, Piece(item, bits), self.at))
+        name = entry.get("name", "")
+        if bits > 64 and value:
+            raise NotHeld(f"a fixed value has {bits} bits")
+        item = {"name": name or f"Fixed {self.at}", "type": "uint", "const": value}
+        self.parts.append(
+            Part(None, item, Piece(item, bits), self.at, is_reserved=not (name and bits <= 64) and not value)
+        )
         self.at += bits
 
     def _parameter(self, name: str, seen_from: Element, is_argument: bool) -> Element:
@@ -156,59 +181,96 @@ class Layout:
 
     def _told(self, criteria: Element, seen_from: Element) -> Iterator[Told]:
         """Equalities that must all hold. Raises `NotHeld` for anything else."""
+        for told in self._all_of(criteria, seen_from, "it is told by"):
+            if len(told) > 1:
+                raise NotHeld("it is told by more than equalities that must all hold")
+            yield told[0]
+
+    def _needs(self, condition: Element, seen_from: Element, named: str) -> Item:
+        """The key of what other fields must be for an entry to be there. Raises `NotHeld`."""
+        found: Item = {}
+        for alternatives in self._all_of(condition, seen_from, f"`{named}` is there only where there is"):
+            names = {self._part(one).item["name"]: self._part(one) for one in alternatives}
+            if len(names) > 1 or (name := next(iter(names))) in found:
+                raise NotHeld(f"`{named}` is there on a condition of several fields")
+            raws = [self._raw(names[name], one) for one in alternatives]
+            found[name] = raws if len(raws) > 1 else raws[0]
+        if not found:
+            raise NotHeld(f"`{named}` is there only on a condition, which says nothing")
+        return {"when": found}
+
+    def _all_of(self, criteria: Iterable[Element], seen_from: Element, said: str) -> Iterator[list[Told]]:
+        """What must all hold: of each what is one of several. Raises `NotHeld`."""
         for one in criteria:
             if one.tag == "Comparison":
-                yield self._compared(one, one.get("comparisonOperator", "=="), one.get("value", ""), seen_from)
-            elif one.tag == "ComparisonList":
-                yield from self._told(one, seen_from)
-            elif one.tag == "BooleanExpression":
-                for inner in (found for kind in one for found in (kind if kind.tag == "ANDedConditions" else [kind])):
-                    references = inner.findall("ParameterInstanceRef")
-                    if inner.tag != "Condition" or len(references) != 1:
-                        raise NotHeld("it is told by more than equalities that must all hold")
-                    yield self._compared(
-                        references[0], inner.findtext("ComparisonOperator", ""), inner.findtext("Value", ""), seen_from
-                    )
+                yield [self._compared(one, one.get("comparisonOperator", "=="), one.get("value", ""), seen_from, said)]
+            elif one.tag in ("ComparisonList", "BooleanExpression", "ANDedConditions"):
+                yield from self._all_of(one, seen_from, said)
+            elif one.tag == "ORedConditions":
+                each = [list(self._all_of([inner], seen_from, said)) for inner in one]
+                if any(len(alternative) != 1 for alternative in each):
+                    raise NotHeld(f"{said} one of several things that must hold together")
+                yield [told for (alternative,) in each for told in alternative]
+            elif one.tag == "Condition":
+                if len([inner for inner in one if inner.tag.endswith("InstanceRef")]) != 1:
+                    raise NotHeld(f"{said} a comparison of two parameters")
+                operator, value = one.findtext("ComparisonOperator", ""), one.findtext("Value", "")
+                yield [self._compared(one, operator, value, seen_from, said)]
             else:
-                raise NotHeld(f"it is told by a `{line(one.tag, 60)}`")
+                raise NotHeld(f"{said} a `{line(one.tag, 60)}`")
 
-    def _compared(self, of: Element, operator: str, value: str, seen_from: Element) -> Told:
-        name = of.get("parameterRef", "")
+    def _compared(self, one: Element, operator: str, value: str, seen_from: Element, said: str) -> Told:
+        of = next((inner for inner in one if inner.tag.endswith("InstanceRef")), one)
+        is_argument = "argumentRef" in of.attrib
+        name = of.get("argumentRef" if is_argument else "parameterRef", "")
         if operator.strip() != "==":
-            raise NotHeld(
-                f"it is told by `{line(name, 60)} {line(operator, 5)} {line(value, 60)}`, which is no equality"
-            )
-        return Told(self.names.find("parameter", name, seen_from), value, of.get("useCalibratedValue") == "false")
+            compared = f"`{line(name, 60)} {line(operator, 5)} {line(value, 60)}`"
+            raise NotHeld(f"{said} {compared}, which is no equality")
+        element = self._parameter(name, seen_from, is_argument)
+        return Told(element, value, of.get("useCalibratedValue") == "false")
 
     def tell(self, told: Told) -> int:
         """Makes the value of a parameter or argument the only one, and says which. Raises `NotHeld`."""
-        of, value, is_raw = told
-        name = of.get("name", "")
-        part = next((one for one in reversed(self.parts) if one.of is of), None)
+        part = self._part(told)
+        raw = self._raw(part, told)
+        if part.item.get("const", raw) != raw:
+            raise NotHeld(f"it is told by `{told.of.get('name', '')}`, which is both {part.item['const']} and {raw}")
+        part.item["const"] = raw
+        return raw
+
+    def _part(self, told: Told) -> Part:
+        """The last part that is the parameter or argument."""
+        part = next((one for one in reversed(self.parts) if one.of is told.of), None)
         if part is None:
-            raise NotHeld(f"it is told by `{name}`, which it does not have")
-        item, text = part.item, value.strip()
+            raise NotHeld(f"it is told by `{told.of.get('name', '')}`, which it does not have")
+        return part
+
+    def _raw(self, part: Part, told: Told) -> int:
+        """The raw value that a comparison is about."""
+        item, text, name = part.item, told.value.strip(), told.of.get("name", "")
         if "count" in item or item["type"] not in ("uint", "int", "enum", "bool"):
             raise NotHeld(f"it is told by `{name}`, which is of the type {item['type']}")
-        if item.keys() & {"formula", "points"} and not is_raw:
+        if item.keys() & {"formula", "points"} and not told.is_raw:
             raise NotHeld(f"it is told by the calibrated value of `{name}`")
-        if text in part.piece.values:
-            raw = part.piece.values[text]
-        else:
-            try:
-                raw = int(text, 0) if text.lower().startswith(("0x", "-0x")) else int(text)
-            except ValueError:
-                raise NotHeld(f"it is told by `{name}`, which is never `{line(text, 60)}`") from None
+        if text in part.piece.values and not told.is_raw:
+            return part.piece.values[text]
+        try:
+            raw = int(text, 0) if text.lower().startswith(("0x", "-0x")) else int(text)
+        except ValueError:
+            raise NotHeld(f"it is told by `{name}`, which is never `{line(text, 60)}`") from None
         if raw.bit_length() > part.piece.bits or (raw < 0 and item["type"] in ("uint", "bool")):
             raise NotHeld(f"it is told by `{name}`, which is never {raw}")
-        if item.get("const", raw) != raw:
-            raise NotHeld(f"it is told by `{name}`, which is both {item['const']} and {raw}")
-        item["const"] = raw
         return raw
 
     def laid_out(self, message: Item, start: int, order: str, to: Definitions) -> Item:
         """The message with the fields from a bit on. Raises `NotHeld`."""
-        parts = [one for one in self.parts if one.at >= start]
+        always = max((one.end for one in self.parts if one.piece.bits and "when" not in one.item), default=start)
+        always = max(always, self.size)
+        late = next((one.item["name"] for one in self.parts if "when" in one.item and one.end > always), None)
+        if late is not None:
+            raise NotHeld(f"frames end before `{late}` where it is not there")
+        end = always - start
+        parts = [one for one in self.parts if one.at >= start and not one.is_reserved]
         names: dict[str, int] = {}
         for one in parts:
             name = one.item["name"]
@@ -216,7 +278,6 @@ class Layout:
             if names[name] > 1:
                 one.item["name"] = f"{name} {names[name]}"
         closed = [one for one in parts if one.piece.bits]
-        end = max((one.end for one in closed), default=start) - start
         message["length"] = -(-end // 8)
         fields: list[Item] = []
         if self.jumps:
@@ -229,7 +290,9 @@ class Layout:
             for one in closed:
                 little = {"byte_order": LITTLE} if one.piece.order == LITTLE and one.piece.bits > 8 else {}
                 place = {"at": one.at - start, "bits": one.piece.bits}
-                fields.append(_again(one.item, {**place, **one.item, **little}))
+                fields.append(again(one.item, {**place, **one.item, **little}))
+            last = max((one.end for one in closed), default=start) - start
+            message |= {"reserved": rest} if (rest := message["length"] - -(-last // 8)) else {}
         for one in parts:
             if not one.piece.bits:
                 if end % 8:
@@ -240,13 +303,6 @@ class Layout:
                 room = MOST_BYTES - message["length"]
                 fields.append({"at": end, **one.item, "up_to": min(room, one.item["up_to"])})
         return {**message, "fields": fields} if fields else message
-
-
-def _again(item: Item, said: Item) -> Item:
-    """The same mapping with other keys: an enumeration is named in it later."""
-    item.clear()
-    item |= said
-    return item
 
 
 def _named(entry: Element) -> str:

@@ -12,6 +12,9 @@ from icdgen.definitions.wording import line
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
+ICD = (
+    "ICD"  # the name space of names, and the beginning of what is said beside XTCE, as `icdgen --lang xtce` writes them
+)
 _DEEPEST = 100  # systems within each other
 _SETS = {
     "ParameterTypeSet": "parameter type", "ArgumentTypeSet": "argument type", "ParameterSet": "parameter",
@@ -72,3 +75,20 @@ class Names:
             if not path or reference.startswith("/"):
                 raise NotHeld(f"there is no {kind} `{line(reference, 100)}`")
             path = path.rpartition("/")[0]
+
+
+def called(element: Element) -> str:
+    """The name of something; of what icdgen wrote that of its ICD."""
+    return alias(element) or element.get("name", "")
+
+
+def alias(element: Element) -> str:
+    """The name that something has in an ICD, if icdgen wrote it."""
+    aliases = (one for one in element.iterfind("AliasSet/Alias") if one.get("nameSpace") == ICD)
+    return next((said for one in aliases if (said := line(one.get("alias"), 200))), "")
+
+
+def beside(element: Element) -> dict[str, str]:
+    """What is said beside XTCE, by what it is: `group`, `reserved`, `special 255`."""
+    found = ((one.get("name", ""), one.text or "") for one in element.iterfind("AncillaryDataSet/AncillaryData"))
+    return {name.removeprefix(f"{ICD} "): line(text, 400) for name, text in found if name.startswith(f"{ICD} ")}

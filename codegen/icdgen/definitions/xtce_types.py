@@ -12,8 +12,8 @@ from icdgen.definitions.enumerations import Enumerations, members, special
 from icdgen.definitions.frames import BIG, LITTLE
 from icdgen.definitions.model import Definitions, Item, NotHeld
 from icdgen.definitions.wording import line, summary, unit
-from icdgen.definitions.xtce_calibration import NUMBER, calibration, decimal, fixed, formula, number
-from icdgen.definitions.xtce_names import Names
+from icdgen.definitions.xtce_calibration import NUMBER, calibration, decimal, ended, fixed, formula, number
+from icdgen.definitions.xtce_names import Names, alias, beside
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ class Types:
         elif kind == "Boolean":
             self._flag(made, chain, element)
         elif made.item["type"] in ("uint", "int", "float"):
-            is_held = self._calibrated(made.item, chain, encoding, kind, where)
+            is_held = self._calibrated(made, chain, encoding, kind, where)
             made.item |= _unit(chain) if is_held else {}
             made.item |= self._limits(made.item, chain) if is_held else {}
         return made
@@ -88,7 +88,7 @@ class Types:
         first, last = fixed(listed[0].find("StartingIndex"), 0), fixed(listed[0].find("EndingIndex"))
         if first is None or last is None:
             raise NotHeld(f"{where} is an array of as many elements as another parameter says")
-        return repeated(self._element(of, where), last - first + 1, where)
+        return _array(self._element(of, where), last - first + 1, where)
 
     def _element(self, of: Element, where: str) -> Piece:
         if of.tag.startswith("Array"):
@@ -166,15 +166,17 @@ class Types:
             made.item["type"] = "enum"
             self.enums.give(made.item, _called(element), self.names.system(element).rsplit("/", 1)[-1], named)
 
-    def _calibrated(self, item: Item, chain: list[Element], encoding: Element | None, kind: str, where: str) -> bool:
+    def _calibrated(self, made: Piece, chain: list[Element], encoding: Element | None, kind: str, where: str) -> bool:
         """Adds the formula. False if there is a calibration that cannot be said, so that the raw value is all that is held."""
         try:
             is_time = kind in ("AbsoluteTime", "RelativeTime")
-            said = _time(item, chain) if is_time else {} if encoding is None else calibration(encoding)
+            said = _time(made.item, chain) if is_time else {} if encoding is None else calibration(encoding)
         except ValueError as error:
             self._raw_only(where, str(error))
             return False
-        item |= said
+        if "points" in said and made.item["type"] != "float":
+            said = ended(said, made.bits, made.item["type"] == "int")
+        made.item |= said
         return True
 
     def _raw_only(self, where: str, why: str) -> None:
@@ -211,15 +213,28 @@ class Types:
 
 
 def repeated(piece: Piece, count: int, where: str) -> Piece:
-    """An array of what a piece is."""
-    if count == 1:
-        return piece
-    if piece.members or piece.item["type"] in ("bytes", "text") or "count" in piece.item or not piece.bits:
-        raise NotHeld(f"{where} is an array of what is no number")
+    """An array of what a piece is, if there are several."""
+    return piece if count == 1 else _array(piece, count, where)
+
+
+def _array(piece: Piece, count: int, where: str) -> Piece:
+    if piece.members or "count" in piece.item or not piece.bits:
+        raise NotHeld(f"{where} is an array of what has no fixed size")
     if not 1 <= count <= MOST_ELEMENTS:
         raise NotHeld(f"{where} is an array of {count} elements")
     piece.item |= {"bits": piece.bits, "count": count}
     return Piece(piece.item, piece.bits * count, piece.order, values=piece.values)
+
+
+def meant(element: Element) -> Item:
+    """The key of the values of a parameter or argument that stand for something else, as icdgen writes them."""
+    found = []
+    for name, text in beside(element).items():
+        kind, _, value = name.partition(" ")
+        if kind == "special" and text and (value in ("nan", "inf", "-inf") or NUMBER.match(value)):
+            number = value if value[-1] in "nf" else float(value) if set(value) & set(".e") else int(value)
+            found.append({"value": number, "meaning": text})
+    return {"special": found[:_MOST_NAMED]} if found else {}
 
 
 def said(element: Element) -> str:
@@ -258,8 +273,6 @@ def _numbers(type_: str, bits: int, order: str) -> Piece:
         raise NotHeld(f"a float has {bits} bits")
     if not 1 <= bits <= 64:
         raise NotHeld(f"an integer has {bits} bits")
-    if order == LITTLE and bits % 8:
-        raise NotHeld(f"the least significant byte of {bits} bits is sent first")
     return Piece({"type": type_}, bits, order)
 
 
@@ -328,4 +341,4 @@ def _attribute(chain: list[Element], name: str, default: str) -> str:
 def _called(element: Element) -> str:
     """What an enumeration is called: the type, without the word."""
     name = element.get("name", "")
-    return re.sub("[ _]?([Tt]ype|_t)$", "", name) or name
+    return alias(element) or re.sub("[ _]?([Tt]ype|_t)$", "", name) or name

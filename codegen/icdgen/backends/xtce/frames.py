@@ -1,0 +1,185 @@
+"""Messages as containers and commands of XTCE: what they are made of, and where it stands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from itertools import chain, count
+from typing import NamedTuple
+
+from icdgen import naming
+from icdgen.backends.xtce.places import Run, gaps, run_of, run_of_all
+from icdgen.backends.xtce.types import Type, Types, is_said
+from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.icd.model import TELECOMMAND, Special
+
+
+class Row(NamedTuple):
+    """A parameter or an argument."""
+
+    name: str
+    type: str
+    alias: str = ""  # what the ICD calls it
+    summary: str = ""
+    special: tuple[Special, ...] = ()
+    is_reserved: bool = False
+    is_view: bool = False
+
+
+class Entry(NamedTuple):
+    """What stands in a container: a parameter, an argument, or bits that are always the same."""
+
+    name: str
+    run: Run
+    is_array: bool = False
+    needs: tuple[tuple[str, tuple[int, ...]], ...] = ()  # it is there if each of these has one of these raw values
+    value: str | None = None  # of bits that are always the same: in hexadecimal
+    at: int | None = None  # bits from the beginning of the container, where it does not follow the one before
+
+
+@dataclass
+class Frame:
+    """A message in one direction."""
+
+    name: str
+    message: MessageDescription
+    id: int
+    rows: list[Row] = field(default_factory=list)
+    entries: list[Entry] = field(default_factory=list)
+    size: int = 0  # bits of every frame, where entries that are not always there leave it open
+    told: list[tuple[str, int]] = field(default_factory=list)  # parameters that have one value in it
+    lacks: list[str] = field(
+        default_factory=list
+    )  # what is left out, as XTCE has no word for it: such a command cannot be sent
+    notes: list[str] = field(default_factory=list)  # what else is not said
+    names: dict[str, str] = field(default_factory=dict)  # of parameters or arguments, by those of fields
+
+
+def _camel(name: str) -> str:
+    """``EstimatedRollAngle``, ``InView1Azimuth``"""
+    return naming.camel(filter(None, name.split("_")))
+
+
+def unique(wanted: str, taken: set[str]) -> str:
+    """A name that nothing else has, from now on taken: as ``wanted``, or with a number behind it."""
+    tried = chain([wanted], (f"{wanted}_{number}" for number in count(2)))
+    name = next(name for name in tried if name not in taken)
+    taken.add(name)
+    return name
+
+
+@dataclass
+class Frames:
+    """Makes the frames of a direction, which begin with ``head`` bits before the data."""
+
+    direction: str
+    types: Types
+    head: int
+    reserved: dict[str, Row] = field(default_factory=dict)
+    taken: set[str] = field(default_factory=set)  # names of containers or commands, and of parameters
+
+    def frame(self, message: MessageDescription) -> Frame:
+        """A message as it is sent in the direction."""
+        is_sent = self.direction == TELECOMMAND
+        id = message.model.telecommand_id if is_sent else message.model.telemetry_id
+        assert id is not None
+        made = Frame(unique(_camel(message.name) or "Message", self.taken), message, id)
+        parts = tuple(_parts(message))
+        self._give_names(made, parts)
+        needed = {need.field.name for one in parts for need in one.needs}
+        found: list[Entry] = []
+        for one in parts:
+            run = run_of_all(one.model.elements, message.node) if one.count else run_of(one.model, message.node)
+            if one.model.view and (is_sent or made.lacks):  # of bits that are there
+                continue
+            if run is None:
+                made.lacks.append(f"`{one.model.name}` is left out: XTCE has no word for the order of its bits")
+            elif is_sent and one.model.const is not None and one.name not in needed:
+                found += self._constant(made, one)
+            else:
+                found.append(self._entry(made, one, run))
+        if message.model.tail is not None:
+            made.lacks.append(f"`{message.model.tail.name}`, which has no fixed size, is left out")
+        if message.model.may_end_early:
+            made.notes.append("it is sent with the zeros that it may be sent without")
+        made.notes += (
+            f"`{one.model.name}` is left out: it is derived by `{one.model.formula}`" for one in message.derived
+        )
+        self._lay_out(made, found, self.head + message.model.begin * 8)
+        return made
+
+    def _give_names(self, made: Frame, parts: Iterable[FieldDescription]) -> None:
+        """Parameters are known to all containers, arguments to their command alone."""
+        is_sent = self.direction == TELECOMMAND
+        before, taken = ("", set()) if is_sent else (f"{made.name}_", self.taken)
+        for one in parts:
+            made.names[one.name] = unique(before + (_camel(one.name) or "Field"), taken)
+
+    def _entry(self, made: Frame, one: FieldDescription, run: Run) -> Entry:
+        name = made.names[one.name]
+        type_ = self.types.of(one, name if name.startswith(made.name) else f"{made.name}_{name}", run.is_little)
+        made.rows.append(Row(name, type_, one.model.name, one.model.summary, one.model.special, is_view=one.model.view))
+        if one.model.const is not None:
+            made.told.append((name, one.model.const))
+        if not is_said(one.model):
+            made.notes.append(f"`{one.model.name}`: beyond its table it has the value of the last point")
+        return Entry(name, run._replace(at=self.head + run.at), bool(one.count), self._needs(made, one))
+
+    def _needs(self, made: Frame, one: FieldDescription) -> tuple[tuple[str, tuple[int, ...]], ...]:
+        return tuple((made.names[need.field.name], need.values) for need in one.needs)
+
+    def _constant(self, made: Frame, one: FieldDescription) -> Iterator[Entry]:
+        """Bits of a command that are always the same, one after the other as far as they are."""
+        value = one.model.const or 0
+        runs: list[tuple[Run, int]] = []
+        for piece in one.pieces:
+            run = Run(self.head + 8 * piece.byte + 8 - piece.shift - piece.bits, piece.bits)
+            here = value >> piece.at & (1 << piece.bits) - 1
+            if runs and runs[-1][0].at + runs[-1][0].bits == run.at:
+                before, above = runs.pop()
+                run, here = Run(before.at, before.bits + run.bits), above << run.bits | here
+            runs.append((run, here))
+        needs = self._needs(made, one)
+        return (Entry(one.model.name, run, needs=needs, value=_hex(here, run.bits)) for run, here in runs)
+
+    def _lay_out(self, made: Frame, found: list[Entry], end: int) -> None:
+        """Gives entries their places, and reserved bits entries: each then follows the one before it, if that can be."""
+        is_plain = all(one.run.is_usual and not one.needs for one in found) and not made.message.seen
+        is_plain = is_plain and not any("order of its bits" in text for text in made.lacks)
+        if is_plain:
+            found += map(self._reserved, gaps((one.run for one in found), self.head, end))
+            made.entries = sorted(found, key=lambda one: one.run.at)
+            return
+        covered = max((one.run.at + one.run.bits for one in found), default=self.head)
+        found += map(self._reserved, gaps((), -(-covered // 8) * 8, end))
+        found.sort(key=lambda one: bool(one.needs))  # what others depend on is read before them
+        made.entries = [one._replace(at=one.run.at) for one in found]
+        made.size = end if any(one.needs for one in found) else 0
+
+    def _reserved(self, run: Run) -> Entry:
+        if self.direction == TELECOMMAND:
+            return Entry("", run, value=_hex(0, run.bits))
+        name = f"Reserved{run.bits}"
+        is_wide = run.bits > 64
+        type_ = Type("Binary", run.bits) if is_wide else Type("Integer", run.bits, "unsigned", _first(run.bits))
+        wanted = f"bytes{run.bits // 8}" if is_wide else f"uint{run.bits}"
+        self.reserved.setdefault(name, Row(name, self.types.name(type_, wanted), is_reserved=True))
+        return Entry(name, run)
+
+
+def _first(bits: int) -> str:
+    return "mostSignificantByteFirst" if bits > 8 else ""
+
+
+def _parts(message: MessageDescription) -> Iterator[FieldDescription]:
+    """What has a fixed place: fields of structs, arrays as one where XTCE can have them so, at last views."""
+    for one in message.leaves:
+        if one.is_open or one.model.implied:
+            continue
+        is_array = one.model.const is None and one.count and run_of_all(one.model.elements, message.node) is not None
+        yield from (one,) if is_array or not one.count else one.elements
+    yield from message.seen
+
+
+def _hex(value: int, bits: int) -> str:
+    return f"{value:0{-(-bits // 8) * 2}X}"
