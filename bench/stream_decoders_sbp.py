@@ -2,8 +2,9 @@
 
     python bench/stream_decoders_sbp.py [--messages 2000] [--noise 0.1]
 
-It needs cargo and its registry. Both are given the same bytes and must find all messages, ours by the envelope of `examples/links/sbp.yaml` with messages of 0 to
-255 bytes, theirs with the checksum looked at, as its reader of messages does. Timed by the time of the processor, taking turns, as the least of many rounds.
+It needs cargo and its registry. Both are given the same bytes and must find all messages, ours by the envelope of
+`examples/links/sbp.yaml` with messages of 0 to 255 bytes, theirs with the checksum looked at, as its reader of messages
+does. Timed by the time of the processor, taking turns, as the least of many rounds.
 """
 
 from __future__ import annotations
