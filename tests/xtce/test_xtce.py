@@ -46,6 +46,7 @@ def test_everything_else_comes_back_but_for_what_has_a_name(others, tmp_path):
     assert found.differences == [] and found.nodes > 40
     assert any("has no fixed size" in note for note in found.notes)
     assert any("no word for the order of its bits" in note for note in found.notes)
+    assert any("`Longitude` is left out: it is derived by `Lon + Lon HP`" in note for note in found.notes)
 
 
 def test_files_are_those_of_the_standard(shipped, others, tmp_path):
