@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Iterator
-from itertools import accumulate
 from typing import Any, Protocol
 
 from icdgen.diagnostics import Place
@@ -18,23 +16,7 @@ class Mark(Protocol):
     column: int
 
 
-class Lines:
-    """The text of a file whose lines end in line feeds."""
-
-    def __init__(self, file: str, text: str) -> None:
-        self.file, self.text = file, text
-        self.ends: list[int] = []  # where each line ends, once that is asked for
-
-    def place(self, start: int, end: int) -> Place:
-        """Where the characters from ``start`` to ``end`` stand."""
-        self.ends = self.ends or list(accumulate(map(len, self.text.splitlines(keepends=True))))
-        line = bisect_right(self.ends, start)
-        begin = self.ends[line - 1] if line else 0
-        length = end - start if end < self.ends[line] else 1
-        return Place(self.file, line + 1, start - begin + 1, max(length, 1))
-
-
-Spot = Place | tuple[str, Mark, Mark] | tuple[Lines, int, int]
+Spot = Place | tuple[str, Mark, Mark]
 """Where something stood: the place, or what it is worked out from (file, beginning, end) once it is asked for: few are."""
 
 
@@ -42,10 +24,7 @@ def place_of(spot: Spot) -> Place:
     """The place that a spot is."""
     if isinstance(spot, Place):
         return spot
-    parts: tuple[Any, Any, Any] = spot
-    file, start, end = parts
-    if isinstance(file, Lines):
-        return file.place(start, end)
+    file, start, end = spot
     length = end.column - start.column if end.line == start.line else 1
     return Place(file, start.line + 1, start.column + 1, max(length, 1))
 

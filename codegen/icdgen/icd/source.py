@@ -11,15 +11,31 @@ from pathlib import Path
 from typing import Any, Protocol, cast
 
 from icdgen.diagnostics import Finding, Findings, Place
-from icdgen.icd import usual_yaml
 from icdgen.icd.located import Map, Mark, Seq, Spot, place_of
-from icdgen.icd.scalars import MAX_SCALAR, value_of
 
 TREACHEROUS = "ICD003"
 MAX_BYTES = 4_000_000
 MAX_DEPTH = 40
+MAX_SCALAR = 20_000
+
+_INTEGER = re.compile(r"-?(?:0|[1-9][0-9]*)\Z")
+_HEX = re.compile(r"0x[0-9A-Fa-f]+\Z")
+_DECIMAL = re.compile(r"-?(?:0|[1-9][0-9]*)\.[0-9]+(?:[eE][-+][0-9]{1,2})?\Z")
+_LONGEST_WORD = len("false")  # of those that mean something else to some reader of YAML
+_WORDS = {"true": True, "false": False, "null": None, "~": None, "": None}
 _UNPRINTABLE = (
     "[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"  # takes long to compile, and is seldom needed
+)
+# What YAML 1.1 or 1.2 reads as something other than the text it looks like.
+_TREACHEROUS = re.compile(
+    r"""(?: [-+.][-+0-9_.:eExXobA-Fa-f]*
+          | 0[bBoOxX][0-9A-Fa-f_]+
+          | [0-9][0-9_]* (?: : [0-9_]+ )* (?: \. [0-9_.]* )? (?: e [-+]? [0-9]+ )?
+          | [-+]?\.(?:inf|nan)
+          | y(?:es)? | no? | on | off | true | false | null
+          | [0-9]{4}-[0-9]{1,2}-[0-9]{1,2}(?:[Tt ].*)?
+        )\Z""",
+    re.VERBOSE | re.IGNORECASE,
 )
 
 
@@ -65,9 +81,6 @@ def parse_on(data: bytes, name: str) -> tuple[Map, list[Finding]]:
         place = _after(name, data[: error.start].decode("utf-8-sig"))
         problem = f"byte 0x{data[error.start]:02X} is not UTF-8"
         raise Findings([Finding("ICD001", problem, place, "save the file as UTF-8")]) from None
-    usual = usual_yaml.tree(text, name)
-    if usual is not None:
-        return usual, []
     tree, findings = Builder(text, name).build()
     if not findings and tree is None:
         findings = [Finding("ICD001", "the file is empty", Place(name), "an ICD begins with `icdgen: 1`")]
@@ -211,12 +224,21 @@ class Builder:
 
     def plain(self, text: str, event: Event) -> object:
         """The value of an unquoted scalar; ``self`` if YAML readers disagree about it."""
-        try:
-            return value_of(text)
-        except ValueError:
+        if len(text) > _LONGEST_WORD and text[0].isalpha():
+            return text
+        if text in _WORDS:
+            return _WORDS[text]
+        if _INTEGER.match(text):
+            return int(text) if len(text) < 40 else text
+        if _HEX.match(text):
+            return int(text, 16) if len(text) < 40 else text
+        if _DECIMAL.match(text):
+            return _number(text) if len(text) < 40 else text
+        if _TREACHEROUS.match(text) and text not in (".", "-"):
             help = f'write "{text}" in quotes if it is text, a plain decimal or 0x number if it is a number'
             self.add(TREACHEROUS, f"YAML readers disagree about what `{text}` is", event, help)
             return self
+        return text
 
     def check_tag(self, event: Event) -> None:
         if event.tag is not None and event.tag != "!":
@@ -232,6 +254,12 @@ class Builder:
 
     def add(self, code: str, message: str, event: Event, help: str) -> None:
         self.findings.append(Finding(code, message, place_of((self.name, event.start_mark, event.end_mark)), help))
+
+
+def _number(text: str) -> int | float:
+    """A decimal; ``4.0`` is 4, as it is a whole number by JSON Schema, too."""
+    whole, _, rest = text.partition(".")
+    return float(text) if rest.strip("0") else int(whole)
 
 
 def _after(name: str, before: str) -> Place:
