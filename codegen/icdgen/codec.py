@@ -31,7 +31,7 @@ def decode(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]
     bits, actual = int.from_bytes(frame, "little"), len(frame)  # what a frame leaves out reads as 0
     if actual not in message.lengths:
         raise LengthError(message, _next_length(message, actual), actual)
-    raw = {field.name: _read(node, field, bits) for field in message.fields if not field.when}
+    raw = {one.name: _read(node, one, bits) for one in message.fields if not one.when and one.derived is None}
     if message.has_conditions:
         raw |= {one.name: _read(node, one, bits) for one in message.fields if one.when and is_present(one, raw)}
     tail, counter = message.tail, message.counter
@@ -42,7 +42,19 @@ def decode(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]
         elif _number(raw[counter.name]) + tail.plus != count:
             told = message.begin + (_number(raw[counter.name]) + tail.plus) * tail.step
             raise LengthError(message, max(0, told), actual)
-    return raw
+    return raw | derived(message, raw) if message.views else raw
+
+
+def derived(message: Message, raw: Mapping[str, int | bytes]) -> dict[str, int | bytes]:
+    """The values that are derived from raw ones of the fields, each the bits of a double; none of what is not there."""
+    fields = {field.name: field for field in message.fields}
+    values = dict(raw)
+    found: dict[str, int | bytes] = {}
+    for field in message.views:
+        if field.derived is not None and values.keys() >= set(field.derived.fields):
+            doubles = [value_double(fields[name], _number(values[name])) for name in field.derived.fields]
+            values[field.name] = found[field.name] = float_bits(field, field.derived.double(doubles))
+    return found
 
 
 def _next_length(message: Message, actual: int) -> int:
@@ -177,6 +189,14 @@ def physical_double(field: Field, raw: int) -> float | None:
         return field.curve.double(float_value(field, raw) if field.type == "float" else raw)
     exact = physical(field, raw)
     return None if exact is None else to_double(exact)
+
+
+def value_double(field: Field, raw: int) -> float:
+    """The physical value of a number, of one without a formula its raw value, as a double."""
+    physical = physical_double(field, raw)
+    if physical is not None:
+        return physical
+    return float_value(field, raw) if field.type == "float" else float(raw)
 
 
 def raw_from_physical(field: Field, value: Fraction | int | float) -> int:

@@ -46,8 +46,8 @@ def pieces_at(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[Piec
 
 
 def pieces(field: Field, node: Node) -> tuple[Piece, ...]:
-    """The pieces of a number field. A ``bytes`` field is whole bytes in order: see `byte_range`."""
-    return pieces_at(field.at, field.bits, *field.orders(node))
+    """The pieces of a number field, none of a derived one. A ``bytes`` field is whole bytes in order: see `byte_range`."""
+    return () if field.derived else pieces_at(field.at, field.bits, *field.orders(node))
 
 
 def mask(field: Field, node: Node) -> int:
@@ -95,10 +95,10 @@ class Gap(NamedTuple):
 
 def gaps(message: Message, node: Node) -> tuple[Gap, ...]:
     """Bits of the frame that no field covers, in order."""
-    if any(field.bit_order not in ("", node.bit_order) for field in message.fields):
+    if any(field.bit_order not in ("", node.bit_order) for field in message.owners):
         return tuple(_gaps_among(message, node))
     found, reached = [], 0
-    for field in sorted(message.fields, key=lambda f: f.at):
+    for field in sorted(message.owners, key=lambda f: f.at):
         if field.at > reached:
             found.append(Gap(reached, field.at - reached))
         reached = max(reached, field.at + field.bits)
@@ -110,7 +110,7 @@ def gaps(message: Message, node: Node) -> tuple[Gap, ...]:
 def _gaps_among(message: Message, node: Node) -> Iterator[Gap]:
     """`gaps` where fields count bits in different ways."""
     covered = 0
-    for field in message.fields:
+    for field in message.owners:
         covered |= mask(field, node)
     start = None
     for at in range(message.length * 8 + 1):

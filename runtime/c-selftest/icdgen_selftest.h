@@ -40,7 +40,8 @@ typedef enum {
     ICDGEN_SELFTEST_UNSIGNED,
     ICDGEN_SELFTEST_SIGNED,
     ICDGEN_SELFTEST_BOOL,
-    ICDGEN_SELFTEST_BYTES
+    ICDGEN_SELFTEST_BYTES,
+    ICDGEN_SELFTEST_DERIVED /* a view of doubles, and nothing without floating-point arithmetic */
 } icdgen_selftest_type_t;
 
 /** A double to be set as a physical value, and the raw value that it gives. */

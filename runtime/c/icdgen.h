@@ -22,6 +22,8 @@
 
 #include "support/curve.h"
 
+#include "support/derived.h"
+
 #include "support/text.h"
 
 #include "support/field.h"

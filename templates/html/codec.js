@@ -25,6 +25,9 @@ const icdgenCodec = (() => {
     if (longest !== frame) longest.set(frame);
     const raw = message.fields.map((field) => read(field, longest));
     if (message.conditional) message.fields.forEach((field, index) => (raw[index] = isThere(message, field, raw) ? raw[index] : null));
+    message.fields.forEach((field, index) => {
+      if (field.derived) raw[index] = doubleBits(derived(message, field, raw));
+    });
     if (!tail) return raw;
     const counter = counterOf(message);
     if (message.fields[counter].implied) raw[counter] = BigInt(count);
@@ -160,6 +163,30 @@ const icdgenCodec = (() => {
     const above = raw - start;
     const value = terms.reduceRight((sum, term) => sum * above + term);
     return Number.isNaN(value) ? NaN : value;
+  }
+
+  /** What is derived from the values of fields, in doubles: each step takes two of the row and adds one to it, the last one is it. */
+  function derived(message, field, raw) {
+    const [places, numbers, steps] = field.derived;
+    const row = [...places.map((place) => number(message.fields[place], raw[place])), ...numbers];
+    for (const [operator, left, right] of steps) row.push(OPERATORS[operator](row[left], row[right]));
+    return Number.isNaN(row.at(-1)) ? NaN : row.at(-1);
+  }
+
+  const OPERATORS = { "+": (a, b) => a + b, "-": (a, b) => a - b, "*": (a, b) => a * b, "/": (a, b) => a / b, "^": power };
+
+  /** By squaring, from the lowest bit of a whole exponent on; of a negative one the reciprocal. */
+  function power(base, exponent) {
+    let found = 1;
+    for (let [left, square] = [Math.abs(exponent), base]; left > 0; left = Math.floor(left / 2), square *= square) {
+      if (left % 2) found *= square;
+    }
+    return exponent < 0 ? 1 / found : found;
+  }
+
+  /** The physical value of a number, of one without a formula its raw value. */
+  function number(field, raw) {
+    return physical(field, raw) ?? (field.type === "float" ? floatValue(field, raw) : Number(raw));
   }
 
   /** Raw value nearest to a physical one of a curve, ties to even. */

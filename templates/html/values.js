@@ -20,6 +20,7 @@ const icdgenValues = ((codec, frames) => {
   }
 
   function rawText(field, value) {
+    if (field.derived) return "";
     if (field.type === "bytes") return frames.hex(value);
     if (field.type === "float") return `0x${value.toString(16).toUpperCase().padStart(field.bits / 4, "0")}`;
     return String(value);

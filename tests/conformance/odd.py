@@ -135,6 +135,47 @@ messages:
       - {at: 552, bits: 8, name: Elsewhere, type: uint, points: [[300, 1], [400, 2]], outside: clamp}
       - {at: 560, bits: 32, name: Sent Float, type: float, points: [[-1, 1], [1, 1.5], ["2e38", 4]], outside: extrapolate}
       - {at: 592, bits: 64, name: All, type: uint, points: [[0, 0.1], ["18446744073709551615", 7]]}
+  - name: Derived
+    set_id: 22
+    get_id: 32
+    kind: configuration
+    length: 62
+    fields:
+      - {at: 0, bits: 32, name: Lon, type: int, unit: deg, formula: raw*1e-7}
+      - {at: 32, bits: 8, name: Lon HP, type: int, unit: deg, formula: raw*1e-9, byte_order: big}
+      - {at: 40, bits: 16, name: Scale, type: int, byte_order: big}
+      - {at: 56, bits: 3, name: Few, type: uint, const: 5}
+      - {at: 59, bits: 12, name: W, type: uint}
+      - {at: 72, bits: 32, name: Rate, type: float}
+      - {at: 104, bits: 64, name: Wide, type: float, byte_order: big}
+      - {at: 168, bits: 64, name: Most, type: uint}
+      - {at: 232, bits: 64, name: Least, type: int, unit: V}
+      - {at: 299, bits: 33, name: Message, type: uint, unit: V, formula: raw/3}
+      - {at: 336, bits: 16, name: C/N0, type: uint, unit: C, formula: 3e-6*raw^2 - 40}
+      - {at: 352, bits: 16, name: C, type: int, unit: C, points: [[-100, 7], [0, 0.1], [50, -9.3]], outside: refuse}
+      - {at: 368, bits: 32, name: Flow, type: float, unit: m/s, formula: raw*57.295779513}
+      - {at: 400, bits: 8, name: step 1, type: int}
+      - {at: 408, bits: 8, name: 2D, identifier: plane, type: int}
+      - {at: 416, bits: 8, name: power, type: uint, unit: W, formula: raw*0.1}
+      - {at: 424, bits: 64, name: Wrapped, type: uint, formula: raw*1e-30}
+      - {at: 488, bits: 8, name: Octave, type: uint}
+      - {at: 48, bits: 8, name: Seen, type: int, view: true, unit: V, formula: raw*0.01}
+      - {at: 80, bits: 16, name: Within, type: uint, view: true}
+    derived:
+      - {name: Longitude, unit: deg, formula: Lon + Lon HP}
+      - {name: Power, identifier: derived power, unit: W, formula: W*10^Scale}
+      - {name: Sign, formula: -W}
+      - {name: Same, formula: Wide}
+      - {name: Quotient, formula: Rate/Wide - 2D/step 1, unit: V}
+      - {name: Powers, formula: "Rate^3 - Wide^-2 + (Lon - 1)^15"}
+      - {name: Numbers, formula: "2/3*W + 10^-3*Few - 2^70 + 1e-40*Most"}
+      - {name: Long, formula: Most - Least}
+      - {name: Mixed, identifier: derived mix, formula: "C/N0*(C + Flow) - Message/power"}
+      - {name: Again, formula: Longitude*Longitude - Same/Sign, unit: deg}
+      - {name: Views, formula: Seen*Within + Seen}
+      - {name: Nothing, formula: "(W - W)/(W - W) + Rate"}
+      - {name: Bases, formula: "Rate^Scale + Wrapped*1e30 + (Least/Most)^Octave + 1.0000001^W"}
+      - {name: Nested, formula: "((Lon + (1 - Lon HP))*2 - (3 + (W*Few)))/(Lon*(2 - Rate))"}
   - name: Mixed
     id: 7
     kind: telecommand
@@ -802,6 +843,14 @@ messages:
       - {at: 0, bits: 62, name: Value, type: uint, when: {Type: 1}}
       - {at: 0, bits: 60, name: Longer, type: int, when: {Type: 2}, formula: raw*0.1}
       - {at: 62, bits: 2, name: Type, type: uint}
+  - name: Floats
+    id: 14
+    kind: telecommand
+    length: 9
+    fields:
+      - {at: 0, bits: 8, name: Mode, type: uint}
+      - {at: 8, bits: 32, name: Always, type: float}
+      - {at: 40, bits: 32, name: At Times, type: float, when: {Mode: 1}}
   - name: Flags
     id: 13
     kind: telemetry

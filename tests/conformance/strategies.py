@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from icdgen.icd import exact, formula
 from icdgen.icd.curve import OUTSIDE
+from tests.conformance.derived import derived
 from tests.conformance.open_ends import open_end
 from tests.conformance.sharing import sharing
 
@@ -127,6 +128,8 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
             messages += draw(sharing(message, names, made, partial(_open_end, enums=enums, structs=structs)))
         else:
             messages.append(message)
+    for message in messages:
+        message |= draw(derived(message.get("fields", ())))
     messages.append(_uses_all(names.one("message"), enums, structs, ids(first_id + 59)))
     node = {"name": name, "title": draw(st.sampled_from(("Plain", 'Odd "*/ {{ \\'))), **orders}
     if ids.bits != 8:

@@ -61,3 +61,20 @@ def test_the_model_of_sunspec_becomes_what_the_page_shows(tmp_path):
     read = run.read(tmp_path / "meter.json", kinds.of(tmp_path / "meter.json"))
     (tree,) = read.trees.values()
     assert emit.text({"messages": tree["messages"]}).endswith(blocks("yaml")[3])
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+def test_the_electronic_data_sheet_goes_from_its_files_to_a_program_as_printed(tmp_path):
+    for name, text in zip(("link.xml", "mission.xml", "heater.xml"), blocks("xml")[1:], strict=True):
+        (tmp_path / name).write_text(text)
+    read = run.read(tmp_path / "heater.xml", kinds.of(tmp_path / "heater.xml"))
+    (tree,) = read.trees.values()
+    held = emit.text({key: tree[key] for key in ("structs", "messages")})
+    assert read.definitions.troubles == [] and held.endswith(blocks("yaml")[4])
+    (tmp_path / "heater.yaml").write_text(emit.text(tree))
+    (tmp_path / "main.c").write_text(blocks("c")[1])
+    generated = f"{sys.executable} -m icdgen --lang c --out include heater.yaml"
+    for command in (generated, "cc -std=c99 -Wall -Werror -Iinclude main.c -o main", "./main"):
+        made = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True)
+        assert made.returncode == 0, made.stdout + made.stderr
+    assert made.stdout == blocks("text")[0]

@@ -49,7 +49,7 @@ def test_a_value_has_its_unit_and_factor_and_where_another_register_has_the_fact
     assert "unit" not in power and "formula" not in power
     (said,) = (one for one in charger.definitions.troubles if one.code == "IMP078")
     assert said.message == "message `charger`: the factors of 1 points stand in other registers: `W`"
-    assert said.severity == "info"
+    assert said.severity == "note"
 
 
 def test_what_is_not_implemented_is_a_special_value_of_each_type(charger):

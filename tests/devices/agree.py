@@ -150,8 +150,14 @@ def _value(raw: dict[str, object], name: str, count: int | None) -> object:
 
 def _there(end: dict, raw: dict[str, object]) -> int:
     """How many elements, or bytes, of an open end are there."""
+    said, plus = _counter(end)
+    return int(str(raw[f"{end['name']} {'Size' if 'size' in end else 'Count'}" if said == "rest" else said])) + plus
+
+
+def _counter(end: dict) -> tuple[str, int]:
+    """What counts the elements, or bytes, of an open end, and what is added to it."""
     said = end.get("count") or end["size"]
-    return int(str(raw[f"{end['name']} {'Size' if 'size' in end else 'Count'}" if said == "rest" else said]))
+    return (said["field"], said["plus"]) if isinstance(said, dict) else (str(said), 0)
 
 
 def _means_something(raw: object, part: dict) -> bool:
@@ -189,8 +195,8 @@ def random_frames(one: Definition, chance: random.Random, count: int) -> list[by
         for part in one.fields:
             if "const" in part:
                 data = _put(data, part, part["const"])
-            if end is not None and part["name"] in (end.get("count"), end.get("size")):
-                data = _put(data, part, elements)
+            if end is not None and part["name"] == _counter(end)[0]:
+                data = _put(data, part, elements - _counter(end)[1])
         data = _chosen(one, data, chance) if number % 4 else data
         if one.may_end_early and number % 2:  # with zeros at the end, which are not sent
             data = data[: chance.randint(1, len(data))].rstrip(b"\0") or data[:1]
@@ -221,6 +227,8 @@ def _put(data: bytes, part: dict, value: int) -> bytes:
     at, is_big = part["at"], part.get("bit_order") == "msb0"
     if is_big:  # and the most significant byte first: the frame is one number that begins with its highest bit
         at = 8 * len(data) - at - part["bits"]
+        if part.get("byte_order") == "little" and part["bits"] > 8:
+            value = int.from_bytes((value % (1 << part["bits"])).to_bytes(part["bits"] // 8, "little"), "big")
     mask = (1 << part["bits"]) - 1 << at
     bits = int.from_bytes(data, "big" if is_big else "little") & ~mask | value << at & mask
     return bits.to_bytes(len(data), "big" if is_big else "little")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.devices import can, cygnss, kaitai, mavlink, sbp, sunspec, ubx, xtce
+from tests.devices import can, cygnss, eds, kaitai, mavlink, sbp, sunspec, ubx, xtce
 from tests.devices.definition import Protocol
 
 PROTOCOLS = {
@@ -16,6 +16,7 @@ PROTOCOLS = {
         Protocol("cygnss", "ccsdspy", cygnss.packets),
         Protocol("sunspec", "pysunspec2", sunspec.models),
         Protocol("xtce", "space-packet-parser", xtce.packets),
+        Protocol("eds", "a reader of our own, apart from what is judged", eds.sheets),
         Protocol("kaitai", "satnogs-decoders through kaitaistruct", kaitai.satellites),
     )
 }

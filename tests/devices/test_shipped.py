@@ -158,6 +158,12 @@ def ubx_values(name: str, data: bytes) -> Values:
     if name == "MON-HW":
         found["VP"] = [_number(found[f"VP_{number:02}"]) for number in range(1, 18)]
         found |= {key: _number(value) for key, value in found.items() if isinstance(value, bytes)}
+    if name == "NAV-HPPOSLLH":  # it gives coarse and fine parts together
+        places = {"lon": (8, "i", 1e7), "lat": (12, "i", 1e7), "height": (16, "i", 0), "hMSL": (20, "i", 0)}
+        places |= {"lonHp": (24, "b", 1e9), "latHp": (25, "b", 1e9), "heightHp": (26, "b", 10), "hMSLHp": (27, "b", 10)}
+        for key, (at, form, per) in places.items():
+            (raw,) = struct.unpack_from(f"<{form}", data, at)
+            found[key] = raw / per if per else raw
     return found
 
 
@@ -167,7 +173,34 @@ def _number(value: object) -> object:
 
 def test_ubx_is_read_as_by_pyubx2(testee: Testee) -> None:
     agreement = agreed("ublox", testee, ubx_values)
-    assert agreement.messages == 21 and agreement.values > 7000
+    assert agreement.messages == 22 and agreement.values > 7000
+
+
+def test_positions_of_high_precision_are_derived_as_by_pyubx2(testee: Testee) -> None:
+    chance = random.Random(3)
+    names = {
+        "Longitude": ("lon", 9),
+        "Latitude": ("lat", 9),
+        "Height above Ellipsoid": ("height", 1),
+        "Height above Sea": ("hMSL", 1),
+    }
+    for _ in range(FRAMES):
+        data = chance.randbytes(36)
+        theirs, ours = ubx_message("NAV-HPPOSLLH", data), decoded(testee, "ublox", "telemetry", 0x0114, data)
+        for name, (key, digits) in names.items():
+            assert round(_double(ours[name]), digits) == round(theirs[key], digits)  # type: ignore[call-overload]
+
+
+def test_the_time_of_a_receiver_is_derived_from_weeks_and_what_is_more(testee: Testee) -> None:
+    data = struct.pack("<IihbBI", 302400000, -250000000, 2300, 18, 7, 20)
+    ours = decoded(testee, "ublox", "telemetry", 0x0120, data)
+    assert _double(ours["GPS Time"]) == 2300 * 604800 + 302400 - 0.25
+
+
+def _double(bits: object) -> float:
+    """The number of the bits that are a raw value."""
+    value: float = struct.unpack(">d", bytes.fromhex(str(bits)))[0]
+    return value
 
 
 @pytest.mark.parametrize("count", [0, 1, 3, 32, 64])

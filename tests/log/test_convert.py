@@ -161,6 +161,9 @@ messages:
       - {at: 187, bits: 40, name: m, type: int, view: true}
       - {at: 50, bits: 1, name: p, type: bool, view: true}
       - {at: 256, bits: 32, name: o, type: float, view: true}
+    derived:
+      - {name: q, unit: deg, formula: b + j/d - e*f}
+      - {name: r, formula: q*l - m + a^3}
 """
 
 

@@ -81,10 +81,11 @@ class _Home:
             one.pop("contains", None)
             one.pop("listed", None)
             if message.fields:  # what the manual divides in words is its parts
-                one["fields"] = [_line(field) for field in message.members if not field.implied]
+                one["fields"] = [_line(one) for one in message.members if not one.implied and one.derived is None]
             tree["messages"] = [one]
             tree["structs"] = structs = list(self._used(one))
-            fields = [field for part in (one, *structs) for field in part.get("fields") or ()]
+            rows = [row for part in (one, *structs) for row in part.get("fields") or ()]
+            fields = [*rows, *one.get("derived", ())]
             used = {field.get("unit") for field in fields}
             tree["units"] = [unit for symbol, unit in self.units.items() if symbol in used]
             enums = list(dict.fromkeys([*(f["enum"] for f in fields if "enum" in f), *enums]))
@@ -155,6 +156,10 @@ def _part(part: dict) -> Iterator[tuple[str, str, Change]]:
     for index, field in enumerate(fields):
         for kind, about, change in _field(field):
             yield kind, f"{field['name']!r}: {about}", lambda p, i=index, c=change: c(p["fields"][i])
+    for index, one in enumerate(part.get("derived") or ()):
+        for text in formulas(one["formula"]):
+            about = f"{one['name']!r}: {one['formula']} -> {text}"
+            yield "derived", about, lambda p, i=index, t=text: p["derived"][i].update(formula=t)
     for step in (-1, 1) if "kind" not in part else ():
         length = part["length"] + step
         yield "length", f"{part['name']!r}: length {length - step} -> {length}", lambda p, v=length: p.update(length=v)

@@ -40,7 +40,7 @@ def messages(icd: Icd, node: Node) -> dict[tuple[str, str], dict]:
 def _message(one: Message, node: Node, direction: str, id: int) -> dict:
     is_sent = direction == "telecommand"
     has_views = not is_sent and all(is_ordered(field, node) for field in one.owners)
-    fields = [field for field in one.fields if not field.implied and (has_views or not field.view)]
+    fields = [field for field in one.fields if not (field.implied or field.derived) and (has_views or not field.view)]
     fields = [field for field in fields if not (one.tail and field.at >= one.begin * 8) and is_ordered(field, node)]
     runs = [(field, _bits(field, node)) for field in fields]
     told = [(field.const, bits) for field, bits in runs if field.const is not None and is_sent]

@@ -106,7 +106,7 @@ def _pair(text: str) -> tuple[str, str]:
 def _unlike(node: Node, message: Message, frame: bytes, theirs: Values) -> tuple[int, str]:
     raw, count = codec.decode(node, message, frame), 0
     for field in message.fields:
-        is_left_out = field.implied or field.at >= message.begin * 8 or not is_ordered(field, node)
+        is_left_out = field.implied or field.derived or field.at >= message.begin * 8 or not is_ordered(field, node)
         if is_left_out or field.is_bytes or (field.view and not all(is_ordered(one, node) for one in message.owners)):
             continue
         name, index = line(field.name), None

@@ -10,8 +10,8 @@ from icdgen.definitions.kaitai_layout import Layout
 from icdgen.definitions.kaitai_parts import File, Key, Part, TooMuch, Undecided
 from icdgen.definitions.kaitai_types import Type, declared, mapping
 from icdgen.definitions.kaitai_yaml import parse
-from icdgen.definitions.model import Definitions, Item, Network, NotHeld
-from icdgen.definitions.wording import line, node_name, summary
+from icdgen.definitions.model import Definitions, Item, Network, NotHeld, again
+from icdgen.definitions.wording import line, node_name, shortest, summary
 from icdgen.icd.tails import MOST_BYTES, MOST_ELEMENTS, REST
 
 MOST_MESSAGES = 256
@@ -127,14 +127,14 @@ def _fields(layout: Layout, order: str) -> list[Item]:
         elif "struct" in item:
             fields.append({"at": part.at, "name": name, **item})
         elif not part.mask:
-            fields.append(_again(item, {**_placed(part, part.at, part.bits, order), "name": name, **item}))
+            fields.append(again(item, {**_placed(part, part.at, part.bits, order), "name": name, **item}))
         elif part.mask == (1 << part.bits) - 1:
             value = (
                 part.value - (1 << part.bits) if item["type"] == "int" and part.value >> part.bits - 1 else part.value
             )
             kind = {"type": "uint"} if item["type"] == "bool" else {}  # a flag has no constant
             said = {**_placed(part, part.at, part.bits, order), "name": name, **item, **kind, "const": value}
-            fields.append(_again(item, said))
+            fields.append(again(item, said))
         else:
             fields += _divided(part, name, order)
     return fields
@@ -157,7 +157,7 @@ def _divided(part: Part, name: str, order: str) -> list[Item]:
             one["const"] = part.value >> low & (1 << width) - 1
         made.append(one)
         low = high + 1
-    whole = _again(part.item, {**_placed(part, part.at, part.bits, order), "name": name, **part.item, "view": True})
+    whole = again(part.item, {**_placed(part, part.at, part.bits, order), "name": name, **part.item, "view": True})
     return sorted([*made, whole], key=lambda one: one["at"])
 
 
@@ -166,27 +166,3 @@ def _placed(part: Part, at: int, bits: int, order: str) -> Item:
         return {"at": at, "bits": bits}
     place = part.place._replace(at=at, bits=bits).counted(order)
     return {"at": place.at, "bits": bits, **(ORDERS[place.order] if place.order != order and bits > 1 else {})}
-
-
-def _again(item: Item, said: Item) -> Item:
-    """The same mapping with other keys: an enumeration is named in it later."""
-    item.clear()
-    item |= said
-    return item
-
-
-def shortest(paths: list[tuple[str, ...]]) -> list[str]:
-    """Of each path the last words that no other ends with."""
-    lengths = [1] * len(paths)
-    while True:
-        names = [" ".join(path[-length:]) for path, length in zip(paths, lengths, strict=True)]
-        times = Counter(names)
-        longer = [
-            number
-            for number, (name, path) in enumerate(zip(names, paths, strict=True))
-            if times[name] > 1 and lengths[number] < len(path)
-        ]
-        if not longer:
-            return names
-        for number in longer:
-            lengths[number] += 1

@@ -22,6 +22,7 @@ _BUILT_IN = {
     "mavlink": "icdgen.definitions.mavlink:MavLink2",
     "mavlink1": "icdgen.definitions.mavlink:MavLink1",
     "xtce": "icdgen.definitions.xtce:Xtce",
+    "eds": "icdgen.definitions.eds:Eds",
     "ksy": "icdgen.definitions.kaitai:Kaitai",
     "sunspec": "icdgen.definitions.sunspec:SunSpec",
 }

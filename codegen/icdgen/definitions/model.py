@@ -90,3 +90,10 @@ def unique(names: Iterable[str]) -> bool:
     """Whether no name is there twice."""
     listed = list(names)
     return len(set(listed)) == len(listed)
+
+
+def again(item: Item, said: Item) -> Item:
+    """The same mapping with other keys: an enumeration is named in it later."""
+    item.clear()
+    item |= said
+    return item

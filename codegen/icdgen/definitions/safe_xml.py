@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from icdgen.definitions.model import unreadable
 
@@ -21,15 +21,27 @@ def root_of(start: str) -> str:
     return found[1] if found else ""
 
 
-def parse(file: str, data: bytes) -> Element:
-    """The outermost element. Raises `Findings` for what is no XML, or has a document type (`<!DOCTYPE`)."""
-    from xml.etree.ElementTree import ParseError
+def parse(file: str, data: bytes, lines: dict[Element, int] | None = None) -> Element:
+    """The outermost element; of each one its line is noted in ``lines``, if they are asked for.
+
+    Raises `Findings` for what is no XML, or has a document type (`<!DOCTYPE`).
+    """
+    from xml.etree.ElementTree import ParseError, TreeBuilder
 
     from defusedxml import DefusedXmlException
-    from defusedxml.ElementTree import fromstring
+    from defusedxml.ElementTree import DefusedXMLParser
 
+    class Noting(TreeBuilder):
+        def start(self, tag: Any, attributes: Any, /) -> Element:
+            element = super().start(tag, attributes)
+            if lines is not None:
+                lines[element] = parser.parser.CurrentLineNumber
+            return element
+
+    parser = DefusedXMLParser(target=Noting() if lines is not None else TreeBuilder(), forbid_dtd=True)
     try:
-        root: Element = fromstring(data, forbid_dtd=True)
+        parser.feed(data)
+        root: Element = parser.close()
     except ParseError as error:
         raise unreadable(file, f"not XML: {error}", "check the file around there", error.position[0]) from None
     except (DefusedXmlException, ValueError, LookupError) as error:

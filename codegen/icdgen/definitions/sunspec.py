@@ -130,7 +130,7 @@ class _Model:
                 RAW_ONLY,
                 f"message `{self.name}`: the factors of {len(self.scaled)} points stand in other registers: {shown}",
                 "raw values are held; their summaries say what to multiply them by",
-                severity="info",
+                severity="note",
             )
         return {**told, "fields": fields}
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import PurePath
@@ -76,3 +77,20 @@ def _number(key: str, value: Fraction) -> dict[str, int | float]:
         return {key: value.numerator}
     number = float(value)
     return {key: number} if "e" not in str(number) else {}
+
+
+def shortest(paths: list[tuple[str, ...]]) -> list[str]:
+    """Of each path the last words that no other ends with."""
+    lengths = [1] * len(paths)
+    while True:
+        names = [" ".join(path[-length:]) for path, length in zip(paths, lengths, strict=True)]
+        times = Counter(names)
+        longer = [
+            number
+            for number, (name, path) in enumerate(zip(names, paths, strict=True))
+            if times[name] > 1 and lengths[number] < len(path)
+        ]
+        if not longer:
+            return names
+        for number in longer:
+            lengths[number] += 1

@@ -31,11 +31,19 @@ def calibration(encoding: Element) -> dict[str, Any]:
     calibrator = encoding.find("DefaultCalibrator")
     if calibrator is None:
         return {}
+    found = calibrated(calibrator)
+    if found is None:
+        raise ValueError("it is calibrated by an algorithm")
+    return found
+
+
+def calibrated(calibrator: Element) -> dict[str, Any] | None:
+    """The keys of a polynomial or a spline within an element; None if there is neither. Raises `ValueError`."""
     if terms := calibrator.findall("PolynomialCalibrator/Term"):
         return _said(polynomial(terms))
     spline = calibrator.find("SplineCalibrator")
     if spline is None:
-        raise ValueError("it is calibrated by an algorithm")
+        return None
     points = spline.findall("SplinePoint")
     if {one.get("order", "1") for one in (spline, *points)} != {"1"}:
         raise ValueError(f"it is calibrated by a table of {len(points)} points that are not joined by lines")

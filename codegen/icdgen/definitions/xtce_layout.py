@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from icdgen.definitions.frames import LITTLE, Place, laid_out
-from icdgen.definitions.model import Definitions, Item, NotHeld
+from icdgen.definitions.model import Definitions, Item, NotHeld, again
 from icdgen.definitions.wording import line
 from icdgen.definitions.xtce_calibration import fixed, number
 from icdgen.definitions.xtce_names import Names, beside, called
@@ -151,7 +151,7 @@ class Layout:
             if self.at // 8 == (self.at + piece.bits - 1) // 8:
                 raise NotHeld(f"the least significant byte of the {piece.bits} bits of `{name}` is sent first")
             self.jumps = True  # its bits are counted from the least significant one, as Yamcs does
-        item = _again(piece.item, {"name": name, **piece.item, **said})
+        item = again(piece.item, {"name": name, **piece.item, **said})
         self.parts.append(Part(of, item, piece, self.at, "reserved" in beside(of)))
         self.at += piece.bits
 
@@ -291,7 +291,7 @@ class Layout:
             for one in closed:
                 little = {"byte_order": LITTLE} if one.piece.order == LITTLE and one.piece.bits > 8 else {}
                 place = {"at": one.at - start, "bits": one.piece.bits}
-                fields.append(_again(one.item, {**place, **one.item, **little}))
+                fields.append(again(one.item, {**place, **one.item, **little}))
             last = max((one.end for one in closed), default=start) - start
             message |= {"reserved": rest} if (rest := message["length"] - -(-last // 8)) else {}
         for one in parts:
@@ -304,13 +304,6 @@ class Layout:
                 room = MOST_BYTES - message["length"]
                 fields.append({"at": end, **one.item, "up_to": min(room, one.item["up_to"])})
         return {**message, "fields": fields} if fields else message
-
-
-def _again(item: Item, said: Item) -> Item:
-    """The same mapping with other keys: an enumeration is named in it later."""
-    item.clear()
-    item |= said
-    return item
 
 
 def _named(entry: Element) -> str:

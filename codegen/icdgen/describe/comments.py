@@ -172,6 +172,9 @@ def field_comment(
     if tail is not None and field.implied:
         what = f"how much of {words(tail.name)} the frame has, up to {tail.most}; told by its length"
         return Comment(f"{words(field.name)}: {what}.")
+    if field.derived is not None:
+        head = f"{words(field.name)}{_unit(field)}: derived by `{words(field.formula)}`, in doubles, and never set."
+        return _comment(head, (sentence(field.summary),), field.errata, told)
     facts = ["A view: it reads bits of other fields, and is not set."] if field.view else []
     if field.when:
         facts.append(f"Only there if {' and '.join(condition_text(one, message) for one in field.when)}.")
@@ -274,8 +277,11 @@ def _span_text(scaled: Steps) -> str:
 
 def physical_name(field: Field) -> str:
     """``Roll Angle in deg``: what the accessors of a physical value are about."""
-    unit = f" in {words(field.unit.symbol)}" if field.unit else ", as a physical value"
-    return f"{words(field.name)}{unit}"
+    return f"{words(field.name)}{_unit(field) or ', as a physical value'}"
+
+
+def _unit(field: Field) -> str:
+    return f" in {words(field.unit.symbol)}" if field.unit else ""
 
 
 def text_comment(field: Field) -> str:

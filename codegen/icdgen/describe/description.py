@@ -75,6 +75,8 @@ class FieldDescription(Named[Field]):
         self.holder, self.declaration = "", self
         if field.path:
             self._within(field.path[0], within)
+        if field.derived is not None and field.unit is not None:  # it is a physical value, and has no raw one
+            self.name = self.member = self.declared = f"{self.name}_{field.unit.identifier}"
         self.physical_name = f"{self.declared}_{self.unit_name}"
 
     def _within(self, step: Step, struct: StructDescription | None) -> None:
@@ -303,8 +305,18 @@ class Composite(Named[Fielded]):
 
     @cached_property
     def views(self) -> tuple[FieldDescription, ...]:
-        """What reads bits of others: it is asked of a message, and never set."""
+        """What reads bits of others, or is derived: it is asked of a message, and never set."""
         return tuple(field for field in self.all_fields if field.model.view)
+
+    @cached_property
+    def seen(self) -> tuple[FieldDescription, ...]:
+        """The views that read bits."""
+        return tuple(field for field in self.views if field.model.derived is None)
+
+    @cached_property
+    def derived(self) -> tuple[FieldDescription, ...]:
+        """The views that are derived from the values of fields: see `icdgen.describe.derived`."""
+        return tuple(field for field in self.views if field.model.derived is not None)
 
     @cached_property
     def members(self) -> tuple[FieldDescription, ...]:

@@ -10,10 +10,11 @@ from functools import partial
 from itertools import chain
 from typing import TypeVar
 
-from icdgen.icd import annex, conditions, curve, division, floats, formula, model, tails, wire_ids
+from icdgen.icd import annex, conditions, curve, derived, division, floats, formula, model, tails, wire_ids
 from icdgen.icd.errata import Applied
 from icdgen.icd.implied import implied_count
 from icdgen.icd.located import Map, plain
+from icdgen.icd.paths import members_of
 from icdgen.icd.units import STANDARD, Unit
 
 T = TypeVar("T")
@@ -153,11 +154,13 @@ class Builder:
         where = item.get("source") or {}
         fields = tuple(chain.from_iterable(self.each("fields", partial(self.fields, item), item)))
         tail, ends = self.tail(item)
+        fields = (tail.counted_in(fields) if tail else fields) + ends
+        length = item["length"] + (tail.most * tail.step if tail else 0)
         return model.Message(
             name=item["name"],
             kind=item["kind"],
-            length=item["length"] + (tail.most * tail.step if tail else 0),
-            fields=(tail.counted_in(fields) if tail else fields) + ends,
+            length=length,
+            fields=self.with_derived(fields, length, item) if "derived" in item else fields,
             id=_id(item, "id"),
             set_id=_id(item, "set_id"),
             get_id=_id(item, "get_id"),
@@ -178,6 +181,15 @@ class Builder:
             errata=self.applied.about(item),
             source=item,
         )
+
+    def with_derived(self, fields: tuple[model.Field, ...], length: int, message: Map) -> tuple[model.Field, ...]:
+        """The fields, then what is derived from them, but for what cannot be."""
+        for item in self.each("derived", lambda item: item, message):
+            with suppress(formula.FormulaError):
+                how = derived.of_fields(item["formula"], members_of(fields))
+                unit = self.scope.units.get(item.get("unit", ""))
+                fields += (derived_field(how, length, item, unit),)
+        return fields
 
     def tail(self, message: Map) -> tuple[model.Tail | None, tuple[model.Field, ...]]:
         """The open end of a message, and its fields: the elements, and how many there are where no field says so."""
@@ -287,6 +299,23 @@ class Builder:
 
     def missing(self, item: Map) -> annex.Missing:
         return annex.Missing(item["kind"], wire_ids.number(item["id"]), item["name"], item["why"])
+
+
+def derived_field(how: derived.Derivation, length: int, item: Map, unit: Unit | None) -> model.Field:
+    """What is derived in a message of so many bytes: a double that lies behind them."""
+    return model.Field(
+        name=item["name"],
+        at=8 * length,
+        bits=64,
+        type="float",
+        identifier=item.get("identifier"),
+        unit=unit,
+        formula=item["formula"],
+        summary=item.get("summary", ""),
+        view=True,
+        derived=how,
+        source=item,
+    )
 
 
 def _id(item: Map, key: str) -> int | None:

@@ -104,18 +104,27 @@ def _tokens(text: str) -> list[str]:
     return tokens
 
 
-class _Parser:
-    """Recursive descent over + - * / ^ and parentheses; every value is a polynomial in the variable."""
+class Tokens:
+    """What a parser has not read yet."""
 
-    def __init__(self, tokens: list[str], variable: str) -> None:
-        self.rest, self.variable = tokens, variable
+    def __init__(self, tokens: list[str]) -> None:
+        self.rest = tokens
         self.depth = 0  # of parentheses and signs
 
     def take(self) -> str:
+        """The next one. Raises `FormulaError` at the end."""
         if not self.rest:
             raise FormulaError("it ends too early")
         token, self.rest = self.rest[0], self.rest[1:]
         return token
+
+
+class _Parser(Tokens):
+    """Recursive descent over + - * / ^ and parentheses; every value is a polynomial in the variable."""
+
+    def __init__(self, tokens: list[str], variable: str) -> None:
+        super().__init__(tokens)
+        self.variable = variable
 
     def sum(self) -> _Polynomial:
         left = self.product()

@@ -14,6 +14,7 @@ from typing import Any
 from icdgen.frozen import dataclass
 from icdgen.icd.annex import Loggable, Missing
 from icdgen.icd.curve import Curve, leads_back
+from icdgen.icd.derived import Derivation
 from icdgen.icd.enumeration import Enum as Enum
 from icdgen.icd.enumeration import Member as Member
 from icdgen.icd.erratum import Erratum as Erratum
@@ -79,7 +80,8 @@ class Field:
     summary: str = ""
     byte_order: str = ""  # its own or its message's; empty: the node's
     bit_order: str = ""  # likewise; `at` is counted by it
-    view: bool = False  # it reads bits that other fields have, and has none: see `Message.owners`
+    view: bool = False  # it has no bits, but reads those of other fields, or is derived: see `Message.owners`
+    derived: Derivation | None = None  # of a view whose raw value is a double, derived from the values of fields
     when: tuple[Condition, ...] = ()  # it is there only if all of them hold
     path: tuple[Step, ...] = ()  # of an element, or a field of a struct: the steps to it, itself the last; else empty
     count: int = 0  # of an array that stands as one: its elements, of which this is the first but for its name
@@ -297,7 +299,9 @@ class Message:
         return range(self.least, self.length + 1, self.tail.step if self.tail else 1)
 
     def with_fields(self, fields: tuple[Field, ...]) -> Message:
-        """The message with these of its fields; without the open end where what it is made of is not among them."""
+        """The message with these of its fields; without what is derived of others, or an open end that is made of others."""
+        known = {field.name for field in members_of(fields)}
+        fields = tuple(one for one in fields if one.derived is None or known.issuperset(one.derived.fields))
         found = replace(self, fields=fields)
         names = {field.name for field in found.members}
         return found if self.tail and {self.tail.name, self.tail.counter} <= names else replace(found, tail=None)
@@ -316,7 +320,7 @@ class Message:
 
     @property
     def views(self) -> tuple[Field, ...]:
-        """The fields that read bits of others."""
+        """The fields that read bits of others, or are derived from others."""
         return tuple(field for field in self.fields if field.view)
 
     @property

@@ -8,7 +8,7 @@ is in one, right or wrong, is left to it.
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import Any, cast
 
 from icdgen.icd.located import Lines, Map, Seq, Spot
 from icdgen.icd.scalars import MAX_SCALAR, value_of
@@ -20,6 +20,8 @@ _FIRST = r"(?:[^\s?:,\[\]{}#&*!|>'\"%@`-]|-(?=[^\s,\[\]{}]))"  # of a plain scal
 _VALUE = rf'(?:"([^"\\\n]*)" *|({_FIRST}[^\n,\[\]{{}}:#?]*))?'
 _GAP = re.compile(r"(?: *(?:#[^\n]*)?\n)*( *)")  # the rest of a line, those without content, the next one's indentation
 _BLOCK_KEY = re.compile(_KEY + r"(?: +|(?=\n))")
+_ROW = re.compile(r"\{([^{}\[\]\"\n#?]+)\}")
+_ROW_PAIR = re.compile(rf" *{_KEY} +({_FIRST}[^:]*)")
 _FLOW_PAIR = re.compile(rf" *(?:\n +)?{_KEY} +{_VALUE}([,}}\[{{])")
 _FLOW_ITEM = re.compile(rf" *(?:\n +)?(){_VALUE}([,\]\[{{])")
 _DASH = re.compile(r"- +")
@@ -36,18 +38,37 @@ def tree(text: str, name: str) -> Map | None:
     if not text.replace("\n", "").isprintable():
         return None
     try:
-        return _Reader(text if text.endswith("\n") else f"{text}\n", name).document()
+        return _Reader(Lines(name, text if text.endswith("\n") else f"{text}\n")).document()
     except (_Unusual, ValueError):
         return None
+
+
+class _Row(Map):
+    """A mapping in braces. Where its keys and values stood is worked out once it is asked for: of few rows it is."""
+
+    __slots__ = ()
+
+    def __init__(self, spot: Spot) -> None:
+        self.spot = spot
+
+    def __getattr__(self, name: str) -> Any:
+        if name != "spots":
+            raise AttributeError(name)
+        lines, at, _ = cast(tuple[Lines, int, int], self.spot)
+        again, _ = _Reader(lines).flow(at)
+        assert isinstance(again, Map)
+        self.spots = again.spots
+        return self.spots
 
 
 class _Reader:
     """``at`` and ``column`` are where the next content begins; at the end of the text, the column is -1."""
 
-    def __init__(self, text: str, name: str) -> None:
-        self.text, self.lines = text, Lines(name, text)
+    def __init__(self, lines: Lines) -> None:
+        self.text, self.lines = lines.text, lines
         self.known: dict[str, Any] = {}  # values of plain scalars
         self.keys: dict[str, str] = {}  # those of them that were keys
+        self.pairs_known: dict[str, tuple[str, Any]] = {}  # key and value of what stood between two commas
         self.at = self.column = self.depth = 0
 
     def document(self) -> Map:
@@ -115,7 +136,7 @@ class _Reader:
 
     def nested(self, column: int) -> tuple[Any, Spot]:
         """What begins at the beginning of a line or after a dash, inside of what is at ``column``."""
-        if self.text.startswith("- ", self.at) or _BLOCK_KEY.match(self.text, self.at):
+        if self.text[self.at] != "{" and (self.text.startswith("- ", self.at) or _BLOCK_KEY.match(self.text, self.at)):
             made = self.block(self.column)
             return made, made.spot
         return self.inline(self.at, column)
@@ -135,7 +156,8 @@ class _Reader:
         """A value that is neither a mapping nor a list in block style."""
         first = self.text[at]
         if first in "{[":
-            made, end = self.flow(at)
+            row = _ROW.match(self.text, at)
+            made, end = self.flow(at) if row is None else (self.row(row), row.end())
             self.go_on(end)
             return made, made.spot
         if first == '"':
@@ -167,6 +189,25 @@ class _Reader:
         whole = " ".join(parts)
         value = self.known.get(whole, self)
         return self.plain(whole) if value is self else value, (self.lines, begin, end)
+
+    def row(self, row: re.Match[str]) -> _Row:
+        """A mapping in braces of plain scalars."""
+        made = _Row((self.lines, row.start(), row.start()))
+        texts, known = row[1].split(","), self.pairs_known
+        for text in texts:  # by the ten thousand
+            key, value = known.get(text) or self.row_pair(text)
+            made[key] = value
+        if len(made) < len(texts):
+            raise _Unusual
+        return made
+
+    def row_pair(self, text: str) -> tuple[str, Any]:
+        """A pair that was not seen before."""
+        found = _ROW_PAIR.fullmatch(text)
+        if found is None:
+            raise _Unusual
+        made = self.pairs_known[text] = self.keys.get(found[1]) or self.key(found[1]), self.plain(found[2].rstrip(" "))
+        return made
 
     def flow(self, at: int) -> tuple[Map | Seq, int]:
         """The mapping or list in braces or brackets that begins at ``at``, and where it has ended."""

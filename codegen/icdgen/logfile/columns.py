@@ -29,6 +29,7 @@ class Column:
     length: int
     byte_order: str
     pieces: tuple[Piece, ...]  # of a number, in the entry
+    operands: tuple[Column, ...] = ()  # of what is derived, the fields
 
     @property
     def at(self) -> int:
@@ -102,14 +103,19 @@ def columns_of(icd: Icd, message: Message, start: int = 0, length: int | None = 
     """The fields of a message whose bytes begin at ``start``; ``length``: those that lie in so many."""
     owner, size = icd.node(message.node), message.length if length is None else length
     frame = _snake(message.identifier or message.name, owner.vocabulary)
+    made: dict[str, Column] = {}
     for field in message.fields:
-        if field.implied or field.at + field.bits > size * 8:
+        of = field.derived.fields if field.derived is not None else ()
+        if field.implied or not made.keys() >= set(of) or (not of and field.at + field.bits > size * 8):
             continue
         name = f"{frame}__{_snake(field.alias or field.name, owner.vocabulary)}"
         if field.unit:
             name += f"_{naming.snake(naming.words(field.unit.identifier))}"
         pieces = tuple(p._replace(byte=p.byte + start) for p in layout.pieces(field, owner))
-        yield Column(name, message.name, message, field, start, size, field.orders(owner)[0], pieces)
+        operands = tuple(made[one] for one in of)
+        order = field.orders(owner)[0]
+        made[field.name] = Column(name, message.name, message, field, start, size, order, pieces, operands)
+        yield made[field.name]
 
 
 def _snake(name: str, vocabulary: tuple[str, ...]) -> str:

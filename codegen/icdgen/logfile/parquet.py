@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from icdgen_runtime._curves import columns_on_curve
+from icdgen_runtime._derived import column as derived_column
 
 from icdgen import codec
 from icdgen.errors import UserError
@@ -101,6 +102,7 @@ class ColumnReader:
         import pyarrow as pa
 
         self.column, self.stride = column, entry_bytes
+        self.operands = [ColumnReader(one, entry_bytes) for one in column.operands]
         self.enum: Enum | None = None
         self.names: pa.Array | None = None  # of all values, where there are few
         metadata = {"frame": column.frame, "field": column.field.name if column.field else "", "unit": column.unit}
@@ -145,6 +147,8 @@ class ColumnReader:
         if column.kind == "text":
             places = range(column.at, count * self.stride, self.stride)
             return pa.array([codec.text(data[at : at + column.size]) for at in places], type_)
+        if self.operands or column.steps or column.curve or column.kind == "float":
+            return pa.array(self._numbers(data))
         raw = self._raw(data)
         if self.names is not None:
             return pa.DictionaryArray.from_arrays(pa.array(raw.astype(np.uint8)), self.names)
@@ -152,19 +156,27 @@ class ColumnReader:
             different, where = np.unique(raw, return_inverse=True)
             names = pa.array(self._named(int(one) for one in different), pa.string())
             return pa.DictionaryArray.from_arrays(pa.array(where.astype(np.int32)), names)
-        if column.steps:
-            return pa.array(self._physical(raw))
         if column.kind == "bool":
             return pa.array(raw != 0)
+        return pa.array(raw.astype(type_.to_pandas_dtype()))
+
+    def _numbers(self, data: bytes) -> np.ndarray:
+        """The values of numbers: physical ones, where there is a formula."""
+        import numpy as np
+
+        column = self.column
+        found: np.ndarray
+        if column.field is not None and column.field.derived is not None:
+            found = derived_column(np, column.field.derived, [one._numbers(data) for one in self.operands])
+            return found
+        raw = self._raw(data)
+        if column.steps:
+            return self._physical(raw)
         if column.kind == "float":
             is_single = column.field is not None and column.field.bits == 32
             bits = raw.astype(np.uint32 if is_single else np.uint64)
             raw = bits.view(np.float32 if is_single else np.float64)
-        if column.curve:
-            return pa.array(columns_on_curve(np, column.curve.pieces, raw))
-        if column.kind == "float":
-            return pa.array(raw)
-        return pa.array(raw.astype(type_.to_pandas_dtype()))
+        return columns_on_curve(np, column.curve.pieces, raw) if column.curve else raw
 
     def _named(self, values: Iterable[int]) -> list[str]:
         members = ((value, self.enum.member_of(value) if self.enum else None) for value in values)

@@ -34,7 +34,24 @@ def time_text(milliseconds: int) -> str:
 
 def reader(column: Column) -> Callable[[bytes], Value]:
     """What takes the value of a column out of an entry."""
+    if column.operands:
+        return _derived(column)
     return _READERS.get(column.kind, _integer)(column)
+
+
+def _derived(column: Column) -> Callable[[bytes], float]:
+    assert column.field and column.field.derived
+    how, numbers = column.field.derived, [_number(one) for one in column.operands]
+    return lambda entry: how.double([one(entry) for one in numbers])
+
+
+def _number(column: Column) -> Callable[[bytes], float]:
+    """What takes the value of a number out of an entry, as a double."""
+    if column.operands:
+        return _derived(column)
+    assert column.field
+    field, raw = column.field, _raw(column)
+    return lambda entry: codec.value_double(field, raw(entry))
 
 
 def _raw(column: Column) -> Callable[[bytes], int]:

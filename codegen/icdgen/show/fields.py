@@ -52,6 +52,8 @@ def _row(field: Field, message: Message) -> tuple[str, ...]:
     tail = message.tail
     if tail is not None and tail.name == field.name:
         bits = f"up to {tail.most} x {8 * tail.step}"
+    if field.derived is not None:
+        return ("", "", "derived", field.name, unit, resolution, low, high, "; ".join(_notes(field, message)))
     return (str(field.at), bits, kind, field.name, unit, resolution, low, high, "; ".join(_notes(field, message)))
 
 
@@ -67,7 +69,9 @@ def remarks(
         yield "up to the end of the frame" if counter.implied else f"as many as {count_text(message)} says"
     if field.when:
         yield f"only there if {' and '.join(condition_text(one, message) for one in field.when)}"
-    if field.view:
+    if field.derived is not None:
+        yield f"derived: {field.formula}"
+    elif field.view:
         yield "a view of bits that other fields have"
     if told := orders_text(field):
         yield told

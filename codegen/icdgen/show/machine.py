@@ -80,7 +80,10 @@ def _message(message: Message) -> _Object:
         contains=[{"message": part.message, "offset": part.at} for part in message.contains],
         tail=_tail(message),
         **_ids(message.errata),
-    ) | {"fields": [_field(f) for f in message.members if not f.implied]}
+    ) | {
+        "fields": [_field(f) for f in message.members if not f.implied and f.derived is None],
+        **_present(derived=[_derived(f) for f in message.views if f.derived is not None]),
+    }
 
 
 def _tail(message: Message) -> _Object | None:
@@ -120,6 +123,11 @@ def _field(field: Field) -> _Object:
         when={one.field: list(one.values) for one in field.when},
         **_ids(field.errata),
     )
+
+
+def _derived(field: Field) -> _Object:
+    found = {key: getattr(field, key) for key in ("name", "identifier", "formula", "summary")}
+    return _present(**found, unit=field.unit.symbol if field.unit else None)
 
 
 def _enum(enum: Enum) -> _Object:

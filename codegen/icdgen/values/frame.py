@@ -42,7 +42,9 @@ class Row:
 
     @property
     def raw_text(self) -> str:
-        """The raw value for people: a number, or hexadecimal for floats and bytes."""
+        """The raw value for people: a number, or hexadecimal for floats and bytes; of what is derived none."""
+        if self.field.derived is not None:
+            return ""
         if isinstance(self.raw, bytes):
             return self.raw.hex(" ")
         if self.field.type == "float":

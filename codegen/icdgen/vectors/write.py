@@ -121,6 +121,8 @@ def _field(vectors: MessageVectors, field: Field) -> str:
         row |= field.curve.plain
     if field.view:
         row["view"] = True
+    if field.derived is not None:
+        row["derived"] = field.formula
     if field.when:
         row["when"] = {one.field: list(one.values) for one in field.when}
     row["default"] = raw_json(field, vectors.default.get(field.name))

@@ -26,6 +26,7 @@ __all__ = [
     "Tail",
     "curve",
     "curve_only",
+    "derived",
     "field",
     "on_curve",
     "part",
@@ -149,7 +150,7 @@ class Struct(metaclass=MessageType):
         FIELDS: ClassVar[tuple[FieldInfo, ...]]
         """The fields in the order of the manual."""
         VIEWS: ClassVar[tuple[FieldInfo, ...]]
-        """What reads bits of the fields in another way, and is not set."""
+        """What reads bits of the fields in another way, or is derived of them, and is not set."""
         CONDITIONAL: ClassVar[bool]
         """Whether a field is not always there: see `FieldInfo.when`."""
     else:
@@ -356,6 +357,15 @@ def view(message: Message, attribute: str, kind: type[_lazy.T]) -> _lazy.T:
 
     value: _lazy.T = seen(message, attribute, kind)
     return value
+
+
+def derived(message: Message, attribute: str) -> float:
+    """What is derived from fields. Raises `RangeError`."""
+    from ._derived import derived as found
+
+    views = (one for one in message.VIEWS if one.attribute == attribute)
+    (how,) = (one.derived for one in views if one.derived)
+    return found(how, [getattr(message, name) for name in how[0]])
 
 
 def on_curve(message: Message, attribute: str) -> float:

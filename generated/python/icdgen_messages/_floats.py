@@ -75,7 +75,7 @@ def _aligned(message: _lazy.Message) -> _lazy.Iterator[tuple[str, int]]:
     for info in message.FIELDS:
         if info.type != "float" or info.bits != 32 or info.at % 8:
             continue
-        if info.elements:
-            continue  # its elements are read as bits
+        if info.elements or info.when:
+            continue  # elements, and what is not always there, are read as bits
         if info.byte_order in ("", message.BYTE_ORDER):
             yield info.attribute, info.at // 8

@@ -10,6 +10,7 @@ from ._base import Message
 from ._codec import text
 from ._conditions import absent
 from ._curves import columns_on_curve
+from ._derived import column as derived_column
 from ._dicts import OCTETS
 from ._errors import IcdError, LengthError
 from ._fields import FieldInfo
@@ -284,12 +285,22 @@ class _Decoder:
         """The raw values of a field."""
         if info.type == "bool":
             return self.flags[info.attribute]
+        if info.derived:
+            columns = [self._value(name) for name in info.derived[0]]
+            return derived_column(self.numpy, info.derived, columns)
         if _is_whole(info):
             return self._whole(info)
         runs = pieces(info, self.message)
         if len(runs) == 1:
             return self._within(info, runs[0])
         return self._across(info, runs)
+
+    def _value(self, name: str) -> Any:
+        """What an attribute holds: physical values, or raw ones."""
+        known = (*self.message.FIELDS, *self.message.VIEWS)
+        info = next(one for one in known if name in (one.physical, one.attribute))
+        column = self.column(info)
+        return _physical(self.numpy, info, column) if name == info.physical else column
 
     def _whole(self, info: FieldInfo) -> Any:
         start, size = info.at // 8, info.bits // 8

@@ -21,7 +21,7 @@ class FieldInfo:
     __slots__ = (
         "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
         "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
-        "elements", "is_open", "fewest", "struct", "curve", "ends", "leads_back", "when",
+        "elements", "is_open", "fewest", "struct", "curve", "ends", "leads_back", "when", "derived",
     )  # fmt: skip
 
     def __init__(
@@ -53,6 +53,7 @@ class FieldInfo:
         ends: tuple[int, ...] = (),
         leads_back: bool = True,
         when: tuple[tuple[str, tuple[int, ...]], ...] = (),
+        derived: _lazy.Optional[_lazy.Derivation] = None,
     ) -> None:
         self.attribute = attribute
         """The attribute that holds the raw value."""
@@ -92,10 +93,7 @@ class FieldInfo:
         self.default = default
         """The raw value in a new message."""
         self.elements = elements
-        """Elements of an array, of so many bits each: its attributes hold tuples.
-
-        0 if it is no array.
-        """
+        """Elements of an array, of so many bits each: its attributes hold tuples; else 0."""
         self.is_open = is_open
         """Whether frames hold up to so many elements, or bytes: see `Message.TAIL`."""
         self.fewest = fewest
@@ -117,6 +115,8 @@ class FieldInfo:
 
         If not, its own is None, and is not looked at when the message is encoded.
         """
+        self.derived = derived
+        """Of a view that has no bits: attributes, numbers, and steps on the row of their values."""
 
     @property
     def signed(self) -> bool:

@@ -20,6 +20,9 @@ Buffer = Union[bytes, bytearray, memoryview]
 Frames = Union[Buffer, Iterable[Buffer]]
 """Many frames: one after the other, or a list of them."""
 
+Derivation = tuple[tuple[str, ...], tuple[float, ...], tuple[tuple[str, int, int], ...]]
+"""Attributes, numbers, and steps on the row of their values: see `_derived`."""
+
 Curve = tuple[tuple[float, tuple[float, ...]], ...]
 """From a raw value on, the terms of a polynomial in what is above that."""
 

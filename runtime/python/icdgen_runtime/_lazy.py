@@ -14,6 +14,7 @@ __all__ = [
     "Callable",
     "Candidate",
     "Curve",
+    "Derivation",
     "FieldInfo",
     "Frames",
     "Iterator",
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     from ._base import Message, Struct
     from ._enumeration import OpenEnum
     from ._fields import FieldInfo
-    from ._hints import Buffer, Candidate, Curve, Frames, Known, M, S, T
+    from ._hints import Buffer, Candidate, Curve, Derivation, Frames, Known, M, S, T
 else:
     _NAMED = {
         "Any": "typing",
@@ -47,6 +48,7 @@ else:
         "Callable": "collections.abc",
         "Candidate": "._hints",
         "Curve": "._hints",
+        "Derivation": "._hints",
         "FieldInfo": "._fields",
         "Frames": "._hints",
         "Iterator": "collections.abc",

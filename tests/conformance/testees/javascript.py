@@ -60,6 +60,8 @@ def _plans(icd: Icd) -> dict[str, object]:
         order = sorted(range(len(plan["fields"])), key=lambda place: "view" in plan["fields"][place])  # views come last
         for row in plan["fields"]:
             row |= {"when": [[order.index(place), values] for place, values in row["when"]]} if "when" in row else {}
+            if "derived" in row:
+                row["derived"][0] = [order.index(place) for place in row["derived"][0]]
         plan["fields"] = [plan["fields"][place] for place in order]
         plans.append(plan | {"ids": list(message.ids)})
     return {"messages": plans, "nodes": nodes}

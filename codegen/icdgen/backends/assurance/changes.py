@@ -16,6 +16,7 @@ from icdgen import layout
 from icdgen.icd import floats
 from icdgen.icd.build import calibration, special
 from icdgen.icd.curve import OUTSIDE, Curve, doubles, table
+from icdgen.icd.derived import Derivation, parse
 from icdgen.icd.formula import FormulaError
 from icdgen.icd.located import Map, plain
 from icdgen.icd.model import Enum, Field, Limits, Member, Message, Node, Struct
@@ -61,6 +62,9 @@ def of_field(field: Field, message: Message | Struct, node: Node) -> Iterator[tu
         size = 8 * message.begin
         if message.tail.counter == field.name:
             return  # it counts the elements: as another field it may count none
+    if field.derived is not None:
+        yield from _derived(field, field.derived)
+        return
     if isinstance(message, Message) and any(one.field == field.name for other in message.fields for one in other.when):
         return  # others depend on it: as another field it may decide nothing
     yield from _of_conditions(field)
@@ -74,6 +78,16 @@ def of_field(field: Field, message: Message | Struct, node: Node) -> Iterator[tu
         if 0 < field.count + step <= (size - field.at) // field.bits:
             yield _step("count", source, "count", field.count, step), replace(field, count=field.count + step)
     yield from _readings(field, node)
+
+
+def _derived(field: Field, old: Derivation) -> Iterator[tuple[Change, Field]]:
+    """The changes of the formula by which it is derived."""
+    for text in formulas(field.formula):
+        with suppress(FormulaError):  # it would be none, or the number is one of a name
+            new = parse(text, old.fields)
+            if new.sense({}) != old.sense({}):
+                change = Change("formula", field.source, "formula", field.formula, text)
+                yield change, replace(field, formula=text, derived=new)
 
 
 def _of_conditions(field: Field) -> Iterator[tuple[Change, Field]]:

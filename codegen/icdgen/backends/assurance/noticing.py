@@ -34,6 +34,10 @@ class MessageWatch:
         old, node = self.message.fields[index], node or self.node
         found = [self.lines.fields[old.name]] if self._line_notices(old, now) else []
         needed = {one.field for one in (*old.when, *now.when)}
+        if now.derived is not None:
+            changed = replace(self.message, fields=(*self.message.fields[:index], now))
+            pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
+            return [line for line, row in pairs if codec.derived(changed, row.raw)[now.name] != row.raw[now.name]]
         others = tuple(one for one in self.message.fields if one.name in needed)
         alone = replace(self.message, fields=(now, *others), tail=None)
         rows = zip(self.lines.rows, self.vectors.rows, self._of_others[index], strict=True)

@@ -109,7 +109,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "encode": encoding.statements(message, groups),
         "conditional": conditional.conditional(message),
         **(_tail(message, message.tail) if message.tail else {}),
-        "views": [accessors.view(field) for field in message.views],
+        "views": [accessors.view(field) for field in message.seen],
         "parts": parts.parts(message),
         "known": fields.fields(message),
     }

@@ -7,10 +7,12 @@ from typing import Any, NamedTuple
 from icdgen.backends.c import decoding, physical
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import call
-from icdgen.backends.c.text import described
+from icdgen.backends.c.text import WIDTH, described
 from icdgen.backends.c.types import type_of
+from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription
 from icdgen.describe.comments import physical_comment, physical_name
+from icdgen.describe.derived import derived
 from icdgen.describe.description import Composite
 
 ELEMENT = "element"
@@ -36,7 +38,32 @@ class Accessor(NamedTuple):
 
 def accessors(message: Composite[Any]) -> list[Accessor]:
     """In double precision."""
-    return [_double(field) for field in message.all_members if field.is_scaled]
+    scaled = [_double(field) for field in message.all_members if field.is_scaled]
+    return [*scaled, *map(_derived, message.derived)]
+
+
+def _derived(field: FieldDescription) -> Accessor:
+    found = derived(field, taken=("message",))
+    lines = [_constant(f"const double {name}", _as_double(one)) for name, one in found.fields]
+    for name, operator, *both in found.statements:
+        left, right = (one if isinstance(one, str) else repr(one) for one in both)
+        value = f"icdgen_power({left}, {right})" if operator == "^" else f"{left} {operator} {right}"
+        lines.append(_constant(f"const volatile double {name}", value))
+    about = " ".join(field.comment.paragraphs)
+    return Accessor(field.name, "double", about, "", f"icdgen_quiet({found.result})", "", declared=tuple(lines))
+
+
+def _constant(head: str, value: str) -> str:
+    line = f"{head} = {value};"
+    return line if len(STEP) + len(line) <= WIDTH else f"{head} =\n{STEP * 2}{value};"
+
+
+def _as_double(field: FieldDescription) -> str:
+    """The physical value of a field of ``message``, of one without a formula the raw one."""
+    if field.is_scaled:
+        return f"{stem(field.message)}_{field.physical_name}(message)"
+    raw = f"{stem(field.message)}_{field.name}(message)" if field.model.view else _member(field)
+    return raw if field.model.type == "float" and field.model.bits == 64 else f"ICDGEN_CAST(double, {raw})"
 
 
 class View(NamedTuple):

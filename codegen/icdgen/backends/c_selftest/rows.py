@@ -15,7 +15,7 @@ from icdgen.backends.lines import in_rows
 from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.nodes import Direction
-from icdgen.icd.model import Icd, Message
+from icdgen.icd.model import Field, Icd, Message
 from icdgen.render import Renderer
 from icdgen.vectors.ids import worth_asking
 from icdgen.vectors.make import MessageVectors, Raw, Row, make
@@ -50,6 +50,7 @@ class FieldRow(NamedTuple):
     type: str
     fresh: str
     view: str  # the type of its getter, where it is one
+    is_derived: bool
     unfit: list[str]
     whole: Accessors | None
     scaled: Accessors | None
@@ -187,14 +188,21 @@ class _Rows:
             element="" if index is None else f"{index}u, ",
             size=field.bits // 8 if is_bytes else storage.bits // 8,
             packed=(field.bits + 7) // 8,
-            type=f"ICDGEN_SELFTEST_{'SIGNED' if field.signed else TYPES.get(field.type, 'UNSIGNED')}",
+            type=_type(field),
             fresh="0u" if is_bytes else _unsigned(_number(vectors.default[field.name])),
             view=type_of(one) if field.view else "",
+            is_derived=field.derived is not None,
             unfit=list(map(_unsigned, unfit)),
             whole=None if field.view else _whole(one),
             scaled=_scaled(one, vectors.settings.get(field.name)) if one.is_scaled else None,
             text=_texts(one, vectors.settings[field.name]) if one.is_text else None,
         )
+
+
+def _type(field: Field) -> str:
+    if field.derived is not None:
+        return "ICDGEN_SELFTEST_DERIVED"
+    return f"ICDGEN_SELFTEST_{'SIGNED' if field.signed else TYPES.get(field.type, 'UNSIGNED')}"
 
 
 def _id(id: int, message: Message | None) -> str:

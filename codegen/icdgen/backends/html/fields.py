@@ -108,7 +108,7 @@ def _row(key: int, field: Field, message: Message, links: Links, anchor: str) ->
         unit=field.unit.symbol if field.unit else "",
         unit_url=links.unit(field.unit) if field.unit else "",
         unit_title=field.unit.quantity if field.unit else "",
-        formula=field.formula if field.has_formula else "",  # points are among the notes
+        formula=field.formula if field.has_formula or field.derived else "",  # points are among the notes
         summary=field.summary,
         notes=tuple(_notes(field, message)),
         errata=field.errata,
@@ -116,5 +116,7 @@ def _row(key: int, field: Field, message: Message, links: Links, anchor: str) ->
 
 
 def _notes(field: Field, message: Message) -> list[str]:
+    if field.derived is not None:
+        return []  # the formula says it
     told = remarks(field, texts.number, message if message.has_conditions else None)
     return [note[:1].upper() + note[1:] for note in told]

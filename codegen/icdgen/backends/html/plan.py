@@ -15,12 +15,19 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
     """The plan of a message; ``node`` is the one that declares it. Fields stand in the order of the ICD."""
     fields = [_field(field, node) for field in message.fields]
     plan: dict[str, object] = {"name": message.name, "length": message.length, "fields": fields}
+    places = {field.name: place for place, field in enumerate(message.fields)}
     if message.has_conditions:
-        places = {field.name: place for place, field in enumerate(message.fields)}
         plan["conditional"] = True
-        for field, row in zip(message.fields, fields, strict=True):
-            if field.when:
-                row["when"] = [[places[one.field], list(map(integer, one.values))] for one in field.when]
+    for field, row in zip(message.fields, fields, strict=True):
+        if field.when:
+            row["when"] = [[places[one.field], list(map(integer, one.values))] for one in field.when]
+        if field.derived is not None:
+            how = field.derived
+            row["derived"] = [
+                [places[name] for name in how.fields],
+                list(how.numbers),
+                [list(step) for step in how.steps],
+            ]
     if message.may_end_early:
         plan["endsEarly"] = True
     if message.tail is not None:

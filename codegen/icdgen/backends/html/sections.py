@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from icdgen.backends.html.relations import Relations
-from icdgen.icd.model import Message
+from icdgen.icd.model import Field, Message
 
 _LONG = 16  # fields of a message that is shown in sections; four flags count as one field
 _SHARE = 10  # fields of a section that is no message of its own
@@ -54,10 +54,15 @@ def shares(message: Message) -> list[Section]:
     found = []
     for start in range(0, len(keys), size):
         some = keys[start : start + size]
-        fields = [one for key in some if not (one := message.fields[key - 1]).implied] or [message.fields[-2]]
+        fields = [one for key in some if _has_bits(one := message.fields[key - 1])]
+        fields = fields or [one for one in message.fields if _has_bits(one)][-1:]
         first, end = min(one.at for one in fields) // 8, -(-max(one.at + one.bits for one in fields) // 8)
         found.append(Section(f"Fields {some[0]} to {some[-1]}", first, end, some))
     return _folded(message, found)
+
+
+def _has_bits(one: Field) -> bool:
+    return not one.implied and one.derived is None
 
 
 def _folded(message: Message, found: list[Section]) -> list[Section]:
@@ -77,4 +82,6 @@ def _between(message: Message, first: int, end: int) -> list[Section]:
 
 
 def _keys(message: Message, first: int, end: int) -> list[int]:
-    return [key for key, one in enumerate(message.fields, 1) if 8 * first <= one.at < 8 * end]
+    """The numbers of the fields from one byte to another; what is derived stands with the last ones."""
+    last = 8 * end + (end == message.length)
+    return [key for key, one in enumerate(message.fields, 1) if 8 * first <= one.at < last]

@@ -43,7 +43,9 @@ def physical_range(field: Field) -> str:
 
 
 def type_name(field: Field) -> str:
-    """``uint16``, ``float32``, ``bytes``"""
+    """``uint16``, ``float32``, ``bytes``, ``derived``"""
+    if field.derived is not None:
+        return "derived"
     return f"{field.type}{field.bits}" if field.type in ("uint", "int", "float") else field.type
 
 

@@ -84,6 +84,7 @@ def _functions() -> dict[str, object]:
 
     found = (
         fields.annotation, fields.declaration, fields.exact, fields.physical, fields.scaled, fields.tail, fields.text,
+        fields.getter,
         fields.view_info,
         fields.whole, fields.whole_comment, names.class_name, physical_comment, nodes.listing, nodes.literals, nodes.mapping,
         text.docstring,

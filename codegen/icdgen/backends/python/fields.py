@@ -10,6 +10,7 @@ from icdgen.backends.python.names import class_name
 from icdgen.backends.python.text import literal
 from icdgen.describe import FieldDescription, MessageDescription, wholes
 from icdgen.describe.constants import Constant
+from icdgen.describe.derived import derived
 from icdgen.describe.wholes import Whole
 from icdgen.icd import floats
 from icdgen.icd.curve import Curve
@@ -125,7 +126,19 @@ def view_info(field: FieldDescription) -> str:
         items += [f'physical="{field.physical_name}"', f"curve={listed}"]
     if field.enum is not None:
         items.append(f"enum={class_name(field.enum)}")
+    if one.derived is not None:
+        fields = (held for _, held in derived(field).fields)
+        attributes = tuple(held.physical_name if held.is_scaled else held.name for held in fields)
+        steps = tuple(tuple(step) for step in one.derived.steps)
+        items.append(f"derived=({attributes!r}, {one.derived.numbers!r}, {steps!r})".replace("'", '"'))
     return f"_base.FieldInfo({', '.join(items)})"
+
+
+def getter(field: FieldDescription) -> str:
+    """The value of a view."""
+    if field.model.derived is not None:
+        return f'_base.derived(self, "{field.name}")'
+    return f'_base.view(self, "{field.name}", {annotation(field)})'
 
 
 def physical(field: FieldDescription) -> str:

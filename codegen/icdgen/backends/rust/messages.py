@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from icdgen.backends.rust import bits, conditional, constants, parts
+from icdgen.backends.rust import bits, conditional, constants, derived, parts
 from icdgen.backends.rust.names import field_name, own_name, struct_path
 from icdgen.backends.rust.physical import has_constant
 from icdgen.backends.rust.text import integer
@@ -18,7 +18,7 @@ def values(message: MessageDescription) -> dict[str, object]:
     """What is read, written, derived and imported."""
     fields, tables, tail = message.members, bits.flag_tables(message), message.tail
     readings = ["None" if field.model.when else bits.reading(field, tables) for field in fields]
-    views = [(field, bits.reading(field, set(), depth=2)) for field in message.views]
+    views = [(field, bits.reading(field, set(), depth=2)) for field in message.seen]
     element = tail.element if tail is not None else None
     conditions = conditional.conditional(message)
     sent = [leaf for field in message.members if not (element and field.is_open) for leaf in field.leaves]
@@ -53,6 +53,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "Coded": any(field.enum for field in message.all_fields),
         "Error": True,
         "Frame": tail is not None,
+        **derived.imported(message.derived),
     }
     return {
         **_shared(message, imported),
@@ -111,7 +112,7 @@ def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]
     has_default = has_default and not any(
         field.struct is not None and field.is_open and any(one.fresh for one in field.struct.fields) for field in fields
     )
-    derived = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
+    traits = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
     narrow = [field for field in fields if (field.struct or field).is_narrow]
     scales = [field for field in one.all_members if has_constant(field)]
     has_text = any(field.is_text for field in fields)
@@ -135,7 +136,7 @@ def _shared(one: Composite[Any], imported: dict[str, bool]) -> dict[str, object]
         "scales": scales,
         "curves": curves,
         "default": None if has_default else _literal(fields, [_fresh(field) for field in fields]),
-        "derives": ", ".join(derived + ([] if one.has_floats else ["Eq", "Hash"])),
+        "derives": ", ".join(traits + ([] if one.has_floats else ["Eq", "Hash"])),
         "imports": f"{{{', '.join(names)}}}" if len(names) > 1 else names[0],
         "uses_enums": any(enum.node is one.node for enum in one.enums),
     }

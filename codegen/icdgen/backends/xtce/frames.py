@@ -129,6 +129,9 @@ class Frames:
             made.lacks.append(f"`{message.model.tail.name}`, which has no fixed size, is left out")
         if message.model.may_end_early:
             made.notes.append("it is sent with the zeros that it may be sent without")
+        made.notes += (
+            f"`{one.model.name}` is left out: it is derived by `{one.model.formula}`" for one in message.derived
+        )
         self._lay_out(made, found, self.head + message.model.begin * 8)
         return made
 
@@ -187,7 +190,7 @@ class Frames:
     def _lay_out(self, made: Frame, found: list[Entry], end: int) -> None:
         """Gives entries their places, and reserved bits entries: each then follows the one before it, if that can be."""
         is_plain = all(one.run.is_usual and not one.needs for one in found)
-        is_plain = is_plain and not made.message.views and made.base is None
+        is_plain = is_plain and not made.message.seen and made.base is None
         is_plain = is_plain and not any("order of its bits" in text for text in made.lacks)
         if is_plain:
             found += map(self._reserved, gaps((one.run for one in found), self.head, end))
@@ -220,7 +223,7 @@ def _parts(message: MessageDescription) -> Iterator[FieldDescription]:
             continue
         is_array = one.model.const is None and one.count and run_of_all(one.model.elements, message.node) is not None
         yield from (one,) if is_array or not one.count else one.elements
-    yield from message.views
+    yield from message.seen
 
 
 def _hex(value: int, bits: int) -> str:

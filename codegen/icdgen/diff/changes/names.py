@@ -17,6 +17,7 @@ from icdgen.diff.pairs import (
     is_of_another_node,
 )
 from icdgen.diff.rule import Found, rule
+from icdgen.icd.model import Field
 from icdgen.icd.rules.wording import count, listing, quote
 
 MOST = 2  # names that are shown of one language
@@ -166,7 +167,14 @@ def _is_of_struct(pair: Pair) -> bool:
 
 @rule("DIF312", "field")
 def became_a_view(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    was, now = ("a view" if one.view else "a field with bits of its own" for one in (pair.old, pair.new))
+    was, now = map(_standing, (pair.old, pair.new))
     if was != now:
-        details = ("What is encoded follows from the fields that have the bits.",) if pair.new.view else ()
-        yield Found(f"{quote(pair.new.name)} is {now}, was {was}", ("view", "at"), was, now, details)
+        is_view = pair.new.view and pair.new.derived is None
+        details = ("What is encoded follows from the fields that have the bits.",) if is_view else ()
+        yield Found(f"{quote(pair.new.name)} is {now}, was {was}", ("view", "at", "name"), was, now, details)
+
+
+def _standing(one: Field) -> str:
+    if one.derived is not None:
+        return "derived from other fields"
+    return "a view" if one.view else "a field with bits of its own"

@@ -12,10 +12,12 @@ from typing import Any, TypeVar
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError
-from icdgen.icd import annex, curve, model, schema, source
+from icdgen.icd import annex, curve, derived, model, schema, source
+from icdgen.icd.build import derived_field
 from icdgen.icd.formula import FormulaError, Scale
 from icdgen.icd.implied import implied_count
 from icdgen.icd.located import Map, Seq, plain
+from icdgen.icd.paths import members_of
 from icdgen.icd.units import STANDARD, Unit
 from icdgen.show import machine
 
@@ -179,11 +181,23 @@ class _Reader:
         tail = model.Tail(told["part"], counter, told["step"], told["most"], told.get("plus", 0))
         return {"fields": tail.counted_in(fields), "tail": tail}
 
+    def with_derived(self, parts: dict[str, Any], item: Map) -> dict[str, Any]:
+        """The same parts, and what is derived from the fields."""
+        fields = parts["fields"]
+        for one in item.get("derived", ()):
+            try:
+                how = derived.of_fields(one["formula"], members_of(fields))
+            except FormulaError as error:
+                text = f"`formula` cannot be used: {error}"
+                raise Findings([Finding("ICD010", text, one.at("formula"), _HELP)]) from None
+            fields += (derived_field(how, item["length"], one, self.units.get(one.get("unit", ""))),)
+        return {**parts, "fields": fields}
+
     def message(self, item: Map, node: str) -> model.Message:
         return self.row(
             model.Message,
             item,
-            **self.parts(item),
+            **self.with_derived(self.parts(item), item),
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
             contains=tuple(model.Part(part["message"], part["offset"]) for part in item.get("contains", ())),

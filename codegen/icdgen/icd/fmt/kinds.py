@@ -9,7 +9,7 @@ from typing import Any
 from icdgen.icd import schema
 
 # Always one line, however long: the rows of the manual's tables.
-ROWS = frozenset({"field", "member", "loggable", "unit"})
+ROWS = frozenset({"field", "derived", "member", "loggable", "unit"})
 # Always one key a line.
 BLOCKS = frozenset({"icd", "errata", "node", "enum", "message", "erratum", "note", "protocol", "section"})
 # A list of these stays on one line if it fits.

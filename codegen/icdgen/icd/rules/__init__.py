@@ -16,6 +16,7 @@ from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its r
     checksums,
     composites,
     conditional,
+    derived,
     duplicates,
     envelopes,
     errata,

@@ -55,7 +55,7 @@ class Context:
         self.structs: list[tuple[Struct, Node]] = [(one, n) for n in icd.nodes for one in n.structs]
         self.owners: list[tuple[Owner, Node]] = [*self.messages, *self.structs]  # of fields
         self.members: list[Row] = [
-            (f, m, n) for m, n in self.owners for f in m.members if not f.implied
+            (f, m, n) for m, n in self.owners for f in m.members if not f.implied and f.derived is None
         ]  # an array once
         self.fields: list[Row] = [row for row in self.members if row[0].struct is None]
         self.having: dict[str, list[Row]] = {key: [] for key in RARE}  # fields that have the key
@@ -64,6 +64,8 @@ class Context:
             for key in row[0].source:
                 if key in having:
                     having[key].append(row)
+        derived = ((f, m, n) for m, n in self.messages for f in m.views if f.derived is not None)
+        having["unit"] += (row for row in derived if "unit" in row[0].source)
         self.declared: list[Any] | None = None  # what backends declare; see `declarations`
         self._scopes: dict[int, tuple[Node, ...]] = {}
 

@@ -217,7 +217,7 @@ def view_of_fields(ctx: Context) -> Iterator[Fault]:
         free = _mask(field, node)
         for owner in message.owners:
             free &= ~0 if owner.when else ~_mask(owner, node)
-        if free and _is_read(message):
+        if free and is_read(message):
             help = "describe what has them as a field, or correct `at` or `bits`"
             yield Fault(
                 source,
@@ -227,7 +227,7 @@ def view_of_fields(ctx: Context) -> Iterator[Fault]:
             )
 
 
-def _is_read(message: Message) -> bool:
+def is_read(message: Message) -> bool:
     """Whether no field was left out for a finding of its own; it may have the bits that others seem to lack."""
     read = {id(field.source) for field in (*message.fields, *message.members)}
     return all(id(entry) in read or "bitfields" in entry for entry in message.source.get("fields", ()))
@@ -235,7 +235,7 @@ def _is_read(message: Message) -> bool:
 
 def covered_bytes(message: Message) -> int:
     """Bytes up to the end of the last field."""
-    return max((field.at + field.width + 7 for field in message.members), default=0) // 8
+    return max((one.at + one.width + 7 for one in message.members if one.derived is None), default=0) // 8
 
 
 @rule("ICD027", whole=True)
@@ -252,7 +252,7 @@ def reserved_end(ctx: Context) -> Iterator[Fault]:
 def undescribed_end(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         covered = covered_bytes(message)
-        if covered + message.reserved < message.length and _is_read(message):
+        if covered + message.reserved < message.length and is_read(message):
             left = message.length - covered - message.reserved
             what = "the fields describe" if message.fields else "there are no fields:"
             rest = f"{what} {covered:,}" if message.fields else f"{what} what stands in them is unknown"

@@ -36,7 +36,7 @@ def at_the_end(ctx: Context) -> Iterator[Fault]:
             yield from (_fault(one) for one in tails.faults_of_place(message.source, item, _lengths(ctx, node)))
         if message.tail is None:
             continue
-        for field in message.views:
+        for field in (one for one in message.views if one.derived is None):
             if field.at + field.bits > 8 * message.least:
                 text = f"{quote(field.name)} is a view of {quote(message.tail.name)}, which is not always there"
                 yield Fault(field.source, field.source.at("at"), text, "view what every frame of the message has")

@@ -9,6 +9,7 @@ use core::hash::Hash;
 pub(crate) mod array;
 mod bytes;
 mod curve;
+mod derived;
 mod field;
 mod message;
 #[cfg(feature = "serde")]
@@ -23,6 +24,7 @@ pub(crate) use self::bytes::{
     write_to,
 };
 pub(crate) use self::curve::Curve;
+pub(crate) use self::derived::{power, quiet, whole};
 pub use self::field::{is_special, Field};
 pub(crate) use self::field::{Row, Value};
 pub(crate) use self::message::{enumeration, message, shown, structure};

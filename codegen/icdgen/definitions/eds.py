@@ -1,0 +1,138 @@
+"""CCSDS SOIS electronic data sheets (876.0-B-1): containers that components send, in space packets if they begin with a header."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from icdgen.definitions import eds_sheets, packets, safe_xml
+from icdgen.definitions.eds_interfaces import Interfaces, Sending
+from icdgen.definitions.eds_layout import Layout, Structs
+from icdgen.definitions.eds_sheets import Sheets
+from icdgen.definitions.eds_types import Types, described
+from icdgen.definitions.frames import BIG, ORDERS
+from icdgen.definitions.model import Definitions, Item, Network, NotHeld
+from icdgen.definitions.wording import line, node_name
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+PROCESS, UNSENT = "IMP083", "IMP084"
+_SPACE = "ccsds.org/schema/sois/seds"
+
+
+class Eds:
+    """Package files and data sheets of devices, with the packages in files beside them."""
+
+    name = "eds"
+    title = "an electronic data sheet (CCSDS SOIS)"
+    needs: tuple[str, ...] = ("defusedxml",)
+
+    def knows(self, start: str) -> bool:
+        return safe_xml.root_of(start) in eds_sheets.ROOTS and _SPACE in start
+
+    def read(self, file: str, data: bytes) -> Definitions:
+        """Raises `Findings` for an XML, or one beside it, that cannot be read."""
+        to = Definitions(file)
+        sheets = Sheets(file, data, to)
+        types, structs = Types(sheets, to), Structs()
+        sent, alone = Interfaces(sheets).sent()
+        found = [one for one in (_read(sending, sheets, types, structs, to) for sending in sent) if one is not None]
+        network = Network(node_name(file), _title(sheets) or node_name(file), {**ORDERS[BIG]})
+        packets.fill(network, found, to)
+        packets.apart(network.messages)
+        _say_process([one for one in found if one.is_by_interface], to)
+        _say_unsent(alone, sheets, to)
+        declared = types.enums.declared()
+        network.structs = _used(list(structs.items.values()), network.messages)
+        owners = (*network.messages, *network.structs)
+        used = {one.get("enum") for owner in owners for one in owner.get("fields", ())}
+        network.enums = [one for one in declared if one["name"] in used]
+        to.networks.append(network)
+        return to
+
+
+class _Found:
+    """A container with its layout."""
+
+    def __init__(self, sending: Sending, layout: Layout, more: Item, sheets: Sheets) -> None:
+        self.container, self.layout, self.more = sending.container, layout, more
+        self.name = line(f"{sending.container.get('name')} {sending.interface}", 200)
+        self.line = sheets.line(sending.container)
+        self.told = layout.told
+        self.front = layout.front()
+        head = layout.header()
+        self.kind = (head.kind if head is not None else None) or sending.kind or packets.TELEMETRY
+        sending.kind = self.kind
+        apid = sending.apid(sheets)
+        self.is_by_interface = head is not None and head.apid is None and apid is not None
+        self.parameter = sending.parameter
+        self.header = head._replace(apid=apid) if head is not None and head.apid is None else head
+
+    def message(self, id: int, start: int, to: Definitions) -> Item:
+        """As it stands in an ICD. Raises `NotHeld`."""
+        fields = self.layout.fields(start)
+        covered = max((part.end for part in self.layout.parts), default=start)
+        length, covered = -(-(self.layout.at - start) // 8), -(-(max(covered, start) - start) // 8)
+        made: Item = {"name": self.name, "id": id, "kind": self.kind, "length": length, **self.more}
+        if length > covered:
+            made["reserved"] = length - covered
+        return {**made, "fields": fields} if fields else made
+
+
+def _read(sending: Sending, sheets: Sheets, types: Types, structs: Structs, to: Definitions) -> _Found | None:
+    """A container that is sent; None, and said, where it is not held."""
+    to.total += 1
+    container = sending.container
+    layout = Layout(sheets, types, structs)
+    try:
+        layout.read(container)
+        return _Found(sending, layout, {**_group(sheets, container), **described(container)}, sheets)
+    except NotHeld as why:
+        to.left_out(line(container.get("name"), 200), why, sheets.line(container))
+        return None
+
+
+def _title(sheets: Sheets) -> str:
+    """Of a device its name, of a package what it is in short."""
+    device = sheets.root.find("Device")
+    of = device if device is not None else sheets.root.find("Package")
+    return "" if of is None else line(of.get("shortDescription") or of.get("name"), 100)
+
+
+def _group(sheets: Sheets, container: Element) -> Item:
+    """The package, where the file has several."""
+    return {"group": line(sheets.package(container), 200)} if len(sheets.own) > 1 else {}
+
+
+def _used(structs: list[Item], messages: list[Item]) -> list[Item]:
+    """The structs that messages have, or structs that these have."""
+    by_name = {one["name"]: one for one in structs}
+    left, used = list(messages), set()
+    while left:
+        for one in left.pop().get("fields", ()):
+            name = one.get("struct")
+            if name is not None and name not in used:
+                used.add(name)
+                left.append(by_name[name])
+    return [one for one in structs if one["name"] in used]
+
+
+def _say_process(found: list[_Found], to: Definitions) -> None:
+    """That application processes are what a parameter of the interface usually stands for."""
+    if not found:
+        return
+    parameters = sorted({one.parameter for one in found})
+    to.warn(
+        PROCESS,
+        f"nothing says the application processes of {len(found)} messages, only `{'`, `'.join(parameters)}` of their interfaces",
+        "their ids are what the library of cFS makes of these: correct them if your mission has code of its own for that",
+        line=found[0].line,
+    )
+
+
+def _say_unsent(alone: list[Element], sheets: Sheets, to: Definitions) -> None:
+    if alone:
+        shown = ", ".join(f"`{line(one.get('name'), 60)}`" for one in alone[:3]) + (" ..." if len(alone) > 3 else "")
+        what = "1 container" if len(alone) == 1 else f"{len(alone)} containers"
+        text = f"no interface carries {what}: {shown}"
+        to.warn(UNSENT, text, "they are left out", "note", sheets.line(alone[0]))

@@ -1,0 +1,203 @@
+"""What data sheets send: the containers that interfaces of components carry, which way, and by which number."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from icdgen.definitions import packets
+from icdgen.definitions.eds_sheets import Sheets
+from icdgen.definitions.eds_types import CONTAINER
+from icdgen.definitions.eds_values import whole
+from icdgen.definitions.model import NotHeld
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+_SETS = {"RequiredInterfaceSet": True, "ProvidedInterfaceSet": False}
+_DEEPEST = 20  # interfaces that are based on each other
+_APID_MASK = (1 << packets.APID_BITS) - 1
+_TOPIC_BITS, _GLOBAL = 8, 0x60  # as the library of cFS puts topics into application processes, for the first processor
+_TOPICS = {packets.TELECOMMAND: ("TELECOMMAND", "GLOBAL_CMD"), packets.TELEMETRY: ("TELEMETRY", "GLOBAL_TLM")}
+
+
+@dataclass
+class Sending:
+    """A container that is sent. ``kind`` and ``number`` are None where no interface says them."""
+
+    container: Element
+    kind: str | None = None
+    number: int | None = None  # the value of a parameter of the interface
+    parameter: str = ""
+    interface: str = ""  # that carries it, where several do with numbers of their own
+
+    def apid(self, sheets: Sheets) -> int | None:
+        """The application process that the number stands for, as usual; None where that is not known."""
+        if self.number is None or self.kind is None:
+            return None
+        if self.parameter.lower() != "topicid":
+            return self.number & _APID_MASK
+        local, everywhere = (sheets.defined(f"CFE_MISSION/{one}_BASE_TOPICID") for one in _TOPICS[self.kind])
+        if local is not None and local <= self.number < local + (1 << _TOPIC_BITS):
+            return self.number - local
+        if everywhere is not None and local is not None and everywhere <= self.number:
+            return (self.number - everywhere) ^ _GLOBAL
+        return self.number if self.number <= _APID_MASK else None
+
+
+class Interfaces:
+    """What the interfaces of a file carry."""
+
+    def __init__(self, sheets: Sheets) -> None:
+        self.sheets = sheets
+        self.own = [one for package in sheets.own for one in package.iter(CONTAINER)]
+        self._is_own = set(self.own)
+        self._derived: dict[Element, list[Element]] = {}
+        self._uses: dict[Element, set[Element]] = {}  # what a type holds or is based on
+        for package in sheets.all:
+            for one in package.iterfind(".//DataTypeSet/*"):
+                base = self._type(one, "baseType")
+                if base is not None:
+                    self._derived.setdefault(base, []).append(one)
+                inner = [self._type(entry, "type") for entry in one.iter() if entry.tag.endswith("Entry")]
+                used = {found for found in (base, self._type(one, "dataTypeRef"), *inner) if found is not None}
+                self._uses[one] = used
+
+    def _type(self, of: Element, key: str) -> Element | None:
+        """What an attribute names, if it is known."""
+        try:
+            reference = self.sheets.attribute(of, key)
+            return self.sheets.find("type", reference, of) if reference else None
+        except NotHeld:
+            return None  # said where it is read
+
+    def sent(self) -> tuple[list[Sending], list[Element]]:
+        """What is sent, in the order of the file; and containers that stand by themselves, and no interface carries."""
+        found: dict[Element, dict[int | None, Sending]] = {}
+        for is_mapped in (True, False):  # what an interface is made for tells more than what it can carry
+            for one in self._carried(is_mapped):
+                for container in self._leaves(one.container):
+                    ways = found.setdefault(container, {})
+                    if is_mapped or not ways:
+                        ways.setdefault(one.number, replace(one, container=container))
+        part = {one for used in self._uses.values() for one in used} - self._circles()
+        alone = [one for one in self.own if one not in part and not self._is_abstract(one) and one not in found]
+        if not found:
+            return [Sending(one) for one in alone], []
+        sent = [one for container in self.own for one in found.get(container, {}).values()]
+        for one in sent:
+            one.interface = one.interface if len(found[one.container]) > 1 else ""
+        return sent, alone
+
+    def _leaves(self, container: Element) -> Iterator[Element]:
+        """The containers of the file that are based on one, and on which none is based; it itself if there are none."""
+        left, seen = [container], {container}
+        leaves: list[Element] = []
+        while left:
+            one = left.pop()
+            more = [inner for inner in self._derived.get(one, ()) if inner not in seen]
+            seen.update(more)
+            left += reversed(more)
+            if not more and one in self._is_own and not self._is_abstract(one):
+                leaves.append(one)
+        yield from leaves
+
+    def _circles(self) -> set[Element]:
+        """Types that use themselves, or those that do: nothing else would tell of them."""
+        users: dict[Element, list[Element]] = {}
+        for one, used in self._uses.items():
+            for other in used:
+                users.setdefault(other, []).append(one)
+        waiting = {one: len(used) for one, used in self._uses.items()}
+        left = [one for one, count in waiting.items() if not count]
+        while left:
+            one = left.pop()
+            del waiting[one]
+            for user in users.get(one, ()):
+                waiting[user] -= 1
+                if not waiting[user]:
+                    left.append(user)
+        return set(waiting)
+
+    def _is_abstract(self, container: Element) -> bool:
+        try:
+            return self.sheets.says(container, "abstract")
+        except NotHeld:
+            return False
+
+    def _carried(self, is_mapped: bool) -> Iterator[Sending]:
+        """Containers that arguments of commands are, with what is mapped to a generic type, or of a type that they name."""
+        for package in self.sheets.own:
+            for component in package.iterfind("ComponentSet/Component"):
+                numbers = self._numbers(component)
+                for tag, is_required in _SETS.items():
+                    for interface in component.iterfind(f"{tag}/Interface"):
+                        yield from self._of(interface, is_required, is_mapped, numbers)
+
+    def _of(
+        self, interface: Element, is_required: bool, is_mapped: bool, numbers: dict[str, tuple[str, int]]
+    ) -> Iterator[Sending]:
+        maps = self._maps(interface)
+        parameter, number = numbers.get(interface.get("name", ""), ("", None))
+        ways: dict[Element, set[str]] = {}
+        for declared in self._declared(interface):
+            maps = {**self._maps(declared), **maps}
+            for argument in declared.iterfind("CommandSet/Command/Argument"):
+                type_ = argument.get("type", "")
+                container = maps.get(type_) if is_mapped else self._type(argument, "type")
+                if container is None or container.tag != CONTAINER or (not is_mapped and type_ in maps):
+                    continue
+                mode = argument.get("mode", "in").lower()
+                goes_out = (mode == "in") == is_required
+                kind = packets.TELEMETRY if goes_out else packets.TELECOMMAND
+                ways.setdefault(container, set()).update([kind] if mode in ("in", "out") else _TOPICS)
+        if is_mapped:
+            for container in maps.values():
+                if container.tag == CONTAINER:
+                    ways.setdefault(container, set())
+        for container, kinds in ways.items():
+            way = next(iter(kinds)) if len(kinds) == 1 else None
+            yield Sending(container, way, number, parameter, interface.get("name", ""))
+
+    def _declared(self, interface: Element) -> list[Element]:
+        """The interface that one is, and those on which that is based, as far as they are known."""
+        left = [interface]
+        found: list[Element] = []
+        while left and len(found) < _DEEPEST:
+            one = left.pop()
+            bases = [one] if one is interface else one.findall("BaseInterfaceSet/Interface")
+            for base in bases:
+                try:
+                    declared = self.sheets.find("interface", self.sheets.attribute(base, "type"), base)
+                except NotHeld:
+                    continue
+                if declared not in found:
+                    found.append(declared)
+                    left.append(declared)
+        return found
+
+    def _maps(self, interface: Element) -> dict[str, Element]:
+        """Types by the generic type for which they stand."""
+        found: dict[str, Element] = {}
+        for one in interface.iterfind(".//GenericTypeMapSet/GenericTypeMap"):
+            if (type_ := self._type(one, "type")) is not None:
+                found.setdefault(one.get("name", ""), type_)
+        return found
+
+    def _numbers(self, component: Element) -> dict[str, tuple[str, int]]:
+        """By interface: the parameter that is a number which never changes, and the number."""
+        values: dict[str, int] = {}
+        for variable in component.iterfind("Implementation/VariableSet/Variable"):
+            try:
+                text = self.sheets.attribute(variable, "initialValue")
+                values[variable.get("name", "")] = whole(text, "a value", 0)
+            except NotHeld:
+                continue
+        found: dict[str, tuple[str, int]] = {}
+        for one in component.iterfind("Implementation/ParameterMapSet/ParameterMap"):
+            name, parameter = one.get("interface", ""), one.get("parameter", "")
+            value = values.get(one.get("variableRef", ""))
+            if value is not None and (name not in found or parameter.lower().endswith("id")):
+                found[name] = (parameter, value)
+        return found

@@ -1,0 +1,139 @@
+"""Fields of a container in their places, and what gives one of them a value: the sheet, a constraint, or a length."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple
+
+from icdgen.definitions import eds_ranges
+from icdgen.definitions.eds_sheets import Sheets
+from icdgen.definitions.eds_types import Piece, Types
+from icdgen.definitions.eds_values import coded, evaluate
+from icdgen.definitions.model import Item, NotHeld, again
+from icdgen.definitions.wording import line
+from icdgen.icd.fmt.emit import Spelled
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+_INTEGERS = ("uint", "int")
+_MOST_FIXED = 64  # bits of a text that is a constant
+
+
+@dataclass
+class Part:
+    """A field in its place. ``path`` are the names of the entries that lead to it, ``bits`` all of it, or 0 if it is open."""
+
+    path: tuple[str, ...]
+    entry: Element
+    item: Item
+    at: int
+    bits: int
+    piece: Piece | None = None  # of a scalar
+    element: int = 0  # bits of an element of what is open
+    counter: tuple[str, ...] = ()  # of what is open: the path of the field that counts it
+
+    @property
+    def end(self) -> int:
+        return self.at + self.bits
+
+
+class Told(NamedTuple):
+    """A constraint, and the path of what it constrains."""
+
+    path: tuple[str, ...]
+    constraint: Element
+
+
+class Line(NamedTuple):
+    """How a length makes bytes."""
+
+    factor: Fraction
+    offset: Fraction
+
+
+def only(piece: Piece, raw: int, name: str) -> None:
+    """Makes a raw value the only one. Raises `NotHeld` if another was."""
+    item = piece.item
+    if item.get("const", raw) != raw:
+        raise NotHeld(f"it is told by `{name}`, which is both {item['const']} and {raw}")
+    kind = {"type": "uint"} if item["type"] == "bool" else {}  # a flag has no constant
+    kept = {key: value for key, value in item.items() if key not in ("min", "max", "special")}
+    again(item, {**kept, **kind, "const": raw})
+
+
+def fix(piece: Piece, text: str, name: str) -> None:
+    """Gives a field the value that the sheet fixes; a short text is a number of its bytes. Raises `NotHeld`."""
+    if piece.item["type"] == "text" and piece.bits:
+        data = text.encode("utf-8", "replace").ljust(piece.bits // 8, b"\0")
+        if len(data) > piece.bits // 8:
+            raise NotHeld(f"`{name}` is longer than its type: `{line(text, 60)}`")
+        if piece.bits <= _MOST_FIXED:
+            again(piece.item, {"type": "uint", "const": Spelled(f"0x{data.hex().upper()}")})
+    elif piece.item["type"] not in ("text", "bytes", "float"):
+        only(piece, piece.raw(text, f"`{name}`"), name)
+
+
+def constrain(part: Part | None, told: Told, sheets: Sheets, types: Types) -> int | None:
+    """Gives a field the value that a constraint says, or narrows its limits (None). Raises `NotHeld` for all others."""
+    one, name = told.constraint, line(".".join(told.path), 100)
+    if part is None or part.piece is None or part.bits != part.piece.bits:
+        raise NotHeld(f"it is told by `{name}`, which is no field that it has")
+    piece, where = part.piece, f"it is told by `{name}`, which"
+    if one.tag == "ValueConstraint":
+        raw = piece.raw(sheets.attribute(one, "value"), where)
+    elif one.tag in ("RangeConstraint", "TypeConstraint"):
+        labels = [(label.text or "").strip() for label in one.iterfind("EnumeratedRange/Label")]
+        found = _narrowed(one, sheets, types)
+        low, high = found.of_integers()
+        if len(labels) == 1:
+            raw = piece.raw(labels[0], where)
+        elif not labels and low is not None and low == high and piece.item["type"] in _INTEGERS:
+            raw = piece.raw(str(int(low)), where)
+        elif not labels and piece.item["type"] in (*_INTEGERS, "float") and found != eds_ranges.ALL:
+            piece.range = piece.range.within(found)
+            if not piece.item.keys() & {"formula", "points", "const", "special"}:
+                piece.item.update(eds_ranges.limited(piece.item, piece.bits, piece.range))
+            return None
+        else:
+            raise NotHeld(f"{where} has one of several values")
+    else:
+        raise NotHeld(f"it is constrained by a `{line(one.tag, 60)}`")
+    only(piece, raw, name)
+    return raw
+
+
+def _narrowed(constraint: Element, sheets: Sheets, types: Types) -> eds_ranges.Range:
+    """The range that a constraint says, or the type that it names."""
+    if constraint.tag == "RangeConstraint":
+        return eds_ranges.said(sheets, constraint)
+    type_ = sheets.find("type", sheets.attribute(constraint, "type"), constraint)
+    return types.piece(type_, type_, f"`{type_.get('name', '')}`").range
+
+
+def measure(part: Part, length: int, sheets: Sheets) -> None:
+    """Gives the length of a container the value that it has of so many bytes, if it has one. Raises `NotHeld`."""
+    how = line_of(part.entry, sheets)
+    if how is None or part.piece is None or part.item["type"] not in _INTEGERS or "const" in part.item:
+        return
+    raw = (length - how.offset) / how.factor
+    if raw.denominator == 1 and (value := coded(int(raw), part.piece.code, part.bits)) is not None:
+        only(part.piece, value, part.path[-1])
+
+
+def line_of(entry: Element, sheets: Sheets) -> Line | None:
+    """How a length makes bytes, where it is a line that says it."""
+    if entry.find("SplineCalibrator") is not None:
+        return None
+    terms = entry.findall("PolynomialCalibrator/Term")
+    found = {"0": Fraction(0), "1": Fraction(not terms)}
+    for one in terms:
+        power = sheets.attribute(one, "exponent")
+        if power not in found:
+            return None
+        try:
+            found[power] += evaluate(sheets.attribute(one, "coefficient"))
+        except ValueError:
+            return None
+    return Line(found["1"], found["0"]) if found["1"] else None

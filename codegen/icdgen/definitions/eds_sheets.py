@@ -1,0 +1,186 @@
+"""The data sheet, and those beside it: packages by their names, what they name, and values that design parameters define."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from icdgen.definitions import kinds, safe_xml
+from icdgen.definitions.eds_values import evaluate
+from icdgen.definitions.model import Definitions, NotHeld, unreadable
+from icdgen.definitions.wording import line
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+ROOTS = ("PackageFile", "DataSheet")
+_PARAMETERS = "DesignParameters"
+TWICE = "IMP076"
+MOST_FILES = 200
+MOST_BYTES = 32_000_000  # of all files
+_START = 65_536  # bytes by which a file is known
+_DEEPEST = 20  # values that are defined by values
+_LONGEST = 2000  # characters of a value
+_REFERENCE = re.compile(r"\$\{\s*([^${}]{1,200}?)\s*\}")
+
+
+class Sheets:
+    """What references reach. ``own`` are the packages of the file itself."""
+
+    def __init__(self, file: str, data: bytes, to: Definitions) -> None:
+        """Raises `Findings` for a file that cannot be read."""
+        self.to = to
+        self.lines: dict[Element, int] = {}
+        self.root = safe_xml.parse(file, data, self.lines)
+        self.own: list[Element] = []
+        self.all: list[Element] = []  # packages
+        self._found: dict[tuple[str, str], Element] = {}
+        self._scopes: dict[Element, tuple[str, str]] = {}  # package and component in which something stands
+        self._files: dict[str, str] = {}  # by package
+        self._defines: dict[str, tuple[str, str, str]] = {}  # value, package and file
+        self._again: dict[str, str] = {}  # what is there again, and where
+        self._values: dict[tuple[str, str], str] = {}
+        self._note(file, self.root)
+        self.own = list(self.all)
+        for path, root in _beside(file, len(data)):
+            self._note(path, root)
+
+    def _note(self, file: str, root: Element) -> None:
+        for element in root.iter():
+            element.tag = safe_xml.local(element.tag)
+        for package in root.iterfind("Package"):
+            name = package.get("name", "")
+            for define in package.iterfind("Define"):
+                self._define(name, define, file)
+            if root.tag == _PARAMETERS:
+                continue
+            if name in self._files:
+                self._again.setdefault(name, file)
+                continue
+            self._files[name] = file
+            self.all.append(package)
+            for set_ in package.iter():
+                self._scopes[set_] = (name, "")
+            for component in package.iterfind("ComponentSet/Component"):
+                for inner in component.iter():
+                    self._scopes[inner] = (name, component.get("name", ""))
+                self._types(component, f"{name}/{component.get('name', '')}//")
+            self._types(package, f"{name}/")
+            for one in package.iterfind("DeclaredInterfaceSet/Interface"):
+                self._found.setdefault(("interface", f"{name}/{one.get('name', '')}"), one)
+
+    def _types(self, owner: Element, before: str) -> None:
+        for one in owner.iterfind("DataTypeSet/*"):
+            self._found.setdefault(("type", f"{before}{one.get('name', '')}"), one)
+
+    def _define(self, package: str, define: Element, file: str) -> None:
+        name, value = f"{package}/{define.get('name', '')}", define.get("value", "")
+        known = self._defines.setdefault(name, (value, package, file))
+        if known[0] != value:
+            self._again.setdefault(f"${{{name}}}", file)
+
+    def line(self, element: Element) -> int | None:
+        """Where something stands, if that is in the file itself."""
+        return self.lines.get(element)
+
+    def package(self, element: Element) -> str:
+        """The name of the package in which something stands."""
+        return self._scopes[element][0]
+
+    def attribute(self, element: Element, key: str, default: str = "") -> str:
+        """What an attribute says, with what it refers to. Raises `NotHeld` where that is defined nowhere."""
+        text = element.get(key)
+        if text is None:
+            return default
+        return self._filled(text, self._scopes.get(element, ("", ""))[0], 0).strip() if "${" in text else text.strip()
+
+    def says(self, element: Element, key: str) -> bool:
+        """Whether an attribute says `true`."""
+        return self.attribute(element, key).lower() in ("true", "1")
+
+    def _filled(self, text: str, package: str, depth: int) -> str:
+        if depth > _DEEPEST:
+            raise NotHeld(f"`{line(text, 60)}` is defined by itself, or by more than {_DEEPEST} others")
+        made, at = "", 0
+        for found in _REFERENCE.finditer(text):
+            made += text[at : found.start()] + self._value(found[1], package, depth)
+            at = found.end()
+            if len(made) > _LONGEST:
+                raise NotHeld(f"`{line(text, 60)}` becomes longer than {_LONGEST} characters")
+        return made + text[at:]
+
+    def _value(self, name: str, package: str, depth: int) -> str:
+        """What stands for a reference: a number where it is a sum of such."""
+        if (known := self._values.get((name, package))) is not None:
+            return known
+        of = next((one for one in (name, f"{package}/{name}") if one in self._defines), None)
+        if of is None:
+            raise NotHeld(f"nothing in the file or beside it defines `${{{line(name, 100)}}}`")
+        text, where, _ = self._defines[of]
+        self._twice(f"${{{of}}}", self._defines[of][2])
+        text = self._filled(text, where, depth + 1)
+        try:
+            value = evaluate(text)
+            text = str(value) if value.denominator == 1 else f"({value})"
+        except ValueError:
+            pass  # a name
+        self._values[name, package] = text
+        return text
+
+    def defined(self, name: str) -> int | None:
+        """A whole number that a design parameter is, if it is one."""
+        try:
+            value = evaluate(self._value(name, "", 0))
+        except (NotHeld, ValueError):
+            return None
+        return int(value) if value.denominator == 1 else None
+
+    def _twice(self, what: str, first: str) -> None:
+        """Says, once, that something is there twice."""
+        if (other := self._again.pop(what, None)) is not None:
+            of = "package " if not what.startswith("$") else ""
+            self.to.warn(
+                TWICE,
+                f"{of}`{line(what, 100)}` is in `{Path(first).name}` and otherwise in `{Path(other).name}`",
+                "the first one is taken",
+            )
+
+    def find(self, kind: str, reference: str, seen_from: Element) -> Element:
+        """The type or interface that a reference names. Raises `NotHeld` if there is none."""
+        package, component = self._scopes[seen_from]
+        inner = f"{package}/{component}//{reference}" if component else ""
+        for path in (inner, f"{package}/{reference}", reference):
+            found = self._found.get((kind, path)) if path else None
+            if found is not None:
+                self._twice(self.package(found), self._files[self.package(found)])
+                return found
+        of = reference.rpartition("/")[0]
+        if of and of not in self._files:
+            raise NotHeld(
+                f"`{line(reference, 100)}` is of the package `{line(of, 60)}`, which is neither in the file nor beside it"
+            )
+        raise NotHeld(f"there is no {kind} `{line(reference, 100)}`")
+
+
+def _beside(file: str, size: int) -> Iterator[tuple[str, Element]]:
+    """Other data sheets and design parameters in the folder of a file, by name. Raises `Findings` for one that cannot be read."""
+    own = Path(file)
+    count = 0
+    for path in sorted(own.parent.glob("*.xml")):
+        if path.name == own.name or not path.is_file():
+            continue
+        with open(path, "rb") as opened:
+            start = opened.read(_START).decode("utf-8-sig", "replace")
+        if safe_xml.root_of(start) not in (*ROOTS, _PARAMETERS):
+            continue
+        data = kinds.contents(path)
+        count, size = count + 1, size + len(data)
+        if count > MOST_FILES or size > MOST_BYTES:
+            raise unreadable(
+                file,
+                f"beside it are more than {MOST_FILES} data sheets, or {MOST_BYTES:,} bytes of them",
+                "move those away that it does not need",
+            )
+        yield str(path), safe_xml.parse(str(path), data)

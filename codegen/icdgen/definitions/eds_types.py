@@ -1,0 +1,272 @@
+"""Scalar types of electronic data sheets as fields: how they are encoded, named and limited."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from icdgen.definitions import eds_ranges
+from icdgen.definitions.eds_ranges import ALL, Range
+from icdgen.definitions.eds_sheets import Sheets
+from icdgen.definitions.eds_values import CODES, TWOS, UNSIGNED, coded, whole
+from icdgen.definitions.enumerations import Enumerations, members, special
+from icdgen.definitions.frames import BIG, LITTLE
+from icdgen.definitions.model import Definitions, Item, NotHeld
+from icdgen.definitions.wording import line, summary, unit
+from icdgen.definitions.xtce_calibration import calibrated
+from icdgen.icd.tails import MOST_BYTES
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+RAW_ONLY = "IMP078"
+MOST_STEPS = 1_000_000  # types and labels of all messages
+CONTAINER, ARRAY, SUBRANGE = "ContainerDataType", "ArrayDataType", "SubRangeDataType"
+_SPECIAL = 16  # names that a field may have as special values
+_DEEPEST = 20  # types that are based on each other
+_WORD = 64  # bits of the largest number
+_FLOATS = {"ieee754_2008_single": 32, "ieee754_2008_double": 64}
+_SI = {
+    "second": "s", "metre": "m", "meter": "m", "kilogram": "kg", "gram": "g", "ampere": "A", "kelvin": "K", "volt": "V",
+    "watt": "W", "newton": "N", "pascal": "Pa", "joule": "J", "hertz": "Hz", "ohm": "ohm", "tesla": "T",
+    "radian": "rad", "degree": "deg", "degreescelsius": "C", "degreecelsius": "C", "percent": "%", "bit": "bit",
+}  # fmt: skip
+_MARKUP = re.compile(r"(?<!\S)[\\@][A-Za-z]\w*\s*")  # of Doxygen
+
+
+@dataclass
+class Piece:
+    """What a type makes of a field, without place and name. ``bits`` are those of it; 0 where its length is not fixed."""
+
+    item: Item
+    bits: int
+    order: str = BIG
+    code: str = UNSIGNED  # of an integer; nothing of what is none
+    values: dict[str, int] = field(default_factory=dict)  # raw values by label
+    range: Range = ALL
+
+    def raw(self, text: str, where: str) -> int:
+        """The raw value that a literal means. Raises `NotHeld` for one that the field never has."""
+        if self.item["type"] not in ("uint", "int", "enum", "bool"):
+            raise NotHeld(f"{where} has a value and is of the type {self.item['type']}")
+        if (label := text if self.code else text.lower()) in self.values:  # those of flags in any case
+            return self.values[label]
+        try:
+            raw = coded(whole(text, "a value"), self.code, self.bits) if self.code else None
+        except NotHeld:
+            raw = None
+        if raw is None:
+            raise NotHeld(f"{where} is never `{line(text, 60)}`")
+        return raw
+
+
+@dataclass
+class Types:
+    """Makes pieces of types, and enumerations of those with labels."""
+
+    sheets: Sheets
+    to: Definitions
+    enums: Enumerations = field(default_factory=Enumerations)
+    steps: int = 0
+    warned: set[object] = field(default_factory=set)
+
+    def step(self, count: int = 1) -> None:
+        """Counts what is done, so that a small file cannot ask for much. Raises `NotHeld`."""
+        self.steps += count
+        if self.steps > MOST_STEPS:
+            raise NotHeld(f"with it the file says more than {MOST_STEPS:,} things")
+
+    def is_new(self, what: object) -> bool:
+        """Whether something is to be said for the first time."""
+        is_new = what not in self.warned
+        self.warned.add(what)
+        return is_new
+
+    def chain(self, type_: Element) -> list[Element]:
+        """A type, and those of which it is a range. Raises `NotHeld`."""
+        chain = [type_]
+        while chain[-1].tag == SUBRANGE:
+            base = self.sheets.find("type", self.sheets.attribute(chain[-1], "baseType"), chain[-1])
+            if base in chain or len(chain) >= _DEEPEST:
+                raise NotHeld(f"the type `{type_.get('name', '')}` is based on itself, or on too many others")
+            chain.append(base)
+        return chain
+
+    def piece(self, type_: Element, entry: Element, where: str) -> Piece:
+        """A scalar, encoded as its type says, or the entry. Raises `NotHeld` with the reason."""
+        self.step()
+        chain = self.chain(type_)
+        kind = chain[-1].tag.removesuffix("DataType")
+        encoding = next((one for of in (entry, *chain) for one in of if one.tag.endswith("DataEncoding")), None)
+        if kind in ("Integer", "Enumerated"):
+            made = self._integer(encoding, where, kind == "Enumerated")
+        elif kind == "Boolean":
+            made = self._flag(encoding, chain[-1])
+        elif kind == "Float":
+            made = self._float(encoding, where)
+        elif kind == "String":
+            made = self._text(encoding, chain[-1])
+        elif kind == "Binary":
+            made = self._binary(chain[-1])
+        else:
+            raise NotHeld(f"{where} is a `{line(chain[-1].tag, 60)}`")
+        if kind == "Enumerated":
+            self._labels(made, chain[-1], where)
+        made.range = self._range(chain, entry)
+        if made.item["type"] in ("uint", "int", "float") and made.code in (UNSIGNED, TWOS):
+            made.item |= self._meaning(chain, entry, made, where)
+        return made
+
+    def _integer(self, encoding: Element | None, where: str, has_names: bool) -> Piece:
+        if encoding is None or encoding.tag != "IntegerDataEncoding":
+            raise NotHeld(f"{where} has a type without an encoding")
+        code = self._word(encoding, "encoding", UNSIGNED, CODES)
+        bits = self._size(encoding, where)
+        order = self._order(encoding, bits, where)
+        if code not in (UNSIGNED, TWOS) and not has_names:  # those are given to the bits
+            self._raw_only(where, f"it is encoded as {code}")
+        if bits > _WORD:
+            return self._wide(bits, order, where)
+        return Piece({"type": "int" if code == TWOS else "uint"}, bits, order, code)
+
+    def _float(self, encoding: Element | None, where: str) -> Piece:
+        if encoding is None or encoding.tag != "FloatDataEncoding":
+            raise NotHeld(f"{where} has a type without an encoding")
+        said = self.sheets.attribute(encoding, "encodingAndPrecision", "IEEE754_2008_single")
+        bits = self._size(encoding, where, _FLOATS.get(said.lower()))
+        order = self._order(encoding, bits, where)
+        if _FLOATS.get(said.lower()) == bits:
+            return Piece({"type": "float"}, bits, order)
+        self._raw_only(where, f"it is encoded as {line(said, 60)} of {bits} bits")
+        return self._wide(bits, order, where) if bits > _WORD else Piece({"type": "uint"}, bits, order, "")
+
+    def _wide(self, bits: int, order: str, where: str) -> Piece:
+        """What is wider than any number, as bytes."""
+        if bits % 8:
+            raise NotHeld(f"{where} has {bits} bits")
+        return Piece({"type": "bytes"}, bits, code="")
+
+    def _flag(self, encoding: Element | None, type_: Element) -> Piece:
+        bits = 1 if encoding is None else self._size(encoding, f"`{type_.get('name', '')}`")
+        is_inverse = encoding is not None and self.sheets.attribute(encoding, "falseValue").lower() == "nonzeroisfalse"
+        if bits > _WORD:
+            raise NotHeld(f"the flag `{type_.get('name', '')}` has {bits} bits")
+        values = {"true": int(not is_inverse), "false": int(is_inverse)}
+        made = Piece({"type": "bool"}, bits, code="", values=values)
+        if bits > 1 or is_inverse:
+            named = [{"value": values[name], "name": name.capitalize()} for name in ("false", "true")]
+            made.item = {"type": "enum"}
+            self._enum(made, type_, sorted(named, key=lambda one: int(one["value"])))
+        return made
+
+    def _text(self, encoding: Element | None, type_: Element) -> Piece:
+        length = whole(self.sheets.attribute(type_, "length"), "the length of a text", 1, MOST_BYTES)
+        ends = "" if encoding is None else self.sheets.attribute(encoding, "terminationCharacter")
+        if self.sheets.attribute(type_, "fixedLength", "true").lower() not in ("false", "0"):
+            return Piece({"type": "text"}, 8 * length)
+        if ends:
+            raise NotHeld(f"`{type_.get('name', '')}` ends at the character `{line(ends, 20)}`")
+        return Piece({"type": "text", "up_to": length}, 0)
+
+    def _binary(self, type_: Element) -> Piece:
+        bits = self._size(type_, f"`{type_.get('name', '')}`")
+        if self.sheets.attribute(type_, "fixedSize", "true").lower() in ("false", "0"):
+            if bits % 8:
+                raise NotHeld(f"`{type_.get('name', '')}` has up to {bits} bits")
+            return Piece({"type": "bytes", "up_to": bits // 8}, 0)
+        if bits % 8 and bits <= _WORD:
+            return Piece({"type": "uint"}, bits)
+        return self._wide(bits, BIG, f"`{type_.get('name', '')}`")
+
+    def _size(self, encoding: Element, where: str, default: int | None = None) -> int:
+        text = self.sheets.attribute(encoding, "sizeInBits", "" if default is None else str(default))
+        return whole(text, f"the size of {where}", 1, 8 * MOST_BYTES)
+
+    def _order(self, encoding: Element, bits: int, where: str) -> str:
+        is_little = self._word(encoding, "byteOrder", "bigEndian", ("bigEndian", "littleEndian")) == "littleEndian"
+        if is_little and bits % 8:
+            raise NotHeld(f"the least significant byte of {where}, of {bits} bits, is sent first")
+        return LITTLE if is_little else BIG
+
+    def _word(self, of: Element, key: str, default: str, known: tuple[str, ...]) -> str:
+        """What an attribute says, in the case of what is known. Raises `NotHeld`."""
+        said = self.sheets.attribute(of, key, default)
+        found = next((one for one in known if one.lower() == said.lower()), None)
+        if found is None:
+            raise NotHeld(f"its `{key}` is `{line(said, 60)}`")
+        return found
+
+    def _labels(self, made: Piece, type_: Element, where: str) -> None:
+        choices: dict[int, str] = {}
+        for one in type_.iterfind("EnumerationList/Enumeration"):
+            self.step()
+            label, value = self.sheets.attribute(one, "label"), self.sheets.attribute(one, "value")
+            raw = (
+                coded(whole(value, "the value of a label"), made.code, made.bits)
+                if made.item["type"] != "bytes"
+                else None
+            )
+            if raw is None:
+                raise NotHeld(f"{where} never has the value `{line(value, 60)}` of `{line(label, 60)}`")
+            choices.setdefault(raw, label)
+            made.values.setdefault(label, raw)
+        if not choices:
+            return
+        is_signed = made.item["type"] == "int"
+        low, high = (-(1 << made.bits - 1), (1 << made.bits - 1) - 1) if is_signed else (0, (1 << made.bits) - 1)
+        to = self.to if self.is_new(f"labels of {id(type_)}") else Definitions("")  # it is said once of a type
+        named = members(choices, low, high, f"`{_called(type_)}`", to)
+        if is_signed == (min(choices) < 0):
+            made.item["type"] = "enum"
+            self._enum(made, type_, named)
+        elif len(named) <= _SPECIAL:
+            made.item |= special(named)
+
+    def _enum(self, made: Piece, type_: Element, named: list[Item]) -> None:
+        self.enums.give(made.item, _called(type_), self.sheets.package(type_).rsplit("/", 1)[-1], named)
+
+    def _range(self, chain: list[Element], entry: Element) -> Range:
+        found = ALL
+        for of in (*chain, entry):
+            for one in (inner for inner in of if inner.tag in ("Range", "ValidRange")):
+                found = found.within(eds_ranges.said(self.sheets, one))
+        return found
+
+    def _meaning(self, chain: list[Element], entry: Element, made: Piece, where: str) -> Item:
+        """Calibration and unit of the entry; the limits of its type, where no calibration makes others of them."""
+        found: Item = {}
+        try:
+            if entry.tag != "LengthEntry":  # whose calibration says how long a container is
+                found |= calibrated(entry) or {}
+        except ValueError as error:
+            self._raw_only(where, str(error))
+            return found
+        if not found and "special" not in made.item and made.range != ALL:
+            found |= eds_ranges.limited(made.item, made.bits, made.range)
+        return {**self._unit((entry, *chain)), **found}
+
+    def _unit(self, chain: tuple[Element, ...]) -> Item:
+        for of in chain:
+            for one in (of.find("Semantics"), of):
+                for key in ("unit", "units") if one is not None else ():
+                    if one is not None and (text := self.sheets.attribute(one, key)):
+                        return {**unit(_SI.get(text.lower(), text))}
+        return {}
+
+    def _raw_only(self, where: str, why: str) -> None:
+        if self.is_new(f"{where}: {why}"):
+            self.to.warn(RAW_ONLY, f"{where}: {why}", "its raw bits are held as a number, without unit and limits")
+
+
+def described(element: Element) -> dict[str, str]:
+    """The key of what an element is in short, or of the first paragraph of what is said at length."""
+    paragraphs = re.split(r"\n[ \t\r]*\n", (element.findtext("LongDescription") or "")[:20_000])
+    texts = (_MARKUP.sub("", text) for text in (element.get("shortDescription") or "", *paragraphs))
+    return next((found for found in map(summary, texts) if found), {})
+
+
+def _called(type_: Element) -> str:
+    """What an enumeration is called: the type, without the word."""
+    name = line(type_.get("name"), 60)
+    return re.sub("[ _]?([Tt]ype|_t)$", "", name) or name

@@ -1,0 +1,130 @@
+"""Numbers of electronic data sheets: what an attribute says, and the bits by which a value is sent."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+
+from icdgen.definitions.model import NotHeld
+from icdgen.definitions.wording import line
+
+UNSIGNED, TWOS = "unsigned", "twosComplement"
+CODES = (UNSIGNED, TWOS, "onesComplement", "signMagnitude", "BCD", "packedBCD")
+_LONGEST = 500  # characters of a number
+_PLAIN = 20  # digits of a number that needs no reading
+_DEEPEST = 20  # parentheses
+_MOST_BITS = 256  # of a number on the way
+_MOST_POWER = 128
+_TOKEN = re.compile(
+    r"\s*(0[xX][0-9A-Fa-f]{1,32}|(?:[0-9]{1,40}(?:\.[0-9]{0,40})?|\.[0-9]{1,40})(?:[eE][-+]?[0-9]{1,2})?|[-+*/^()])"
+)
+
+
+def evaluate(text: str) -> Fraction:
+    """A number, or a sum of numbers (`2 ^ (16) - 1`). Raises `ValueError`."""
+    tokens, at, text = [], 0, text.strip()
+    if len(text) > _LONGEST:
+        raise ValueError("too long")
+    while at < len(text):
+        found = _TOKEN.match(text, at)
+        if found is None:
+            raise ValueError("no number")
+        tokens.append(found[1])
+        at = found.end()
+    sum_ = _Sum(tokens[::-1])
+    value = sum_.terms(0)
+    if sum_.left:
+        raise ValueError("more behind it")
+    return value
+
+
+class _Sum:
+    """What is left of the tokens, the next one last."""
+
+    def __init__(self, left: list[str]) -> None:
+        self.left = left
+
+    def _next(self, of: str) -> str:
+        return self.left.pop() if self.left and self.left[-1] in of else ""
+
+    def terms(self, depth: int) -> Fraction:
+        value = self._factors(depth)
+        while sign := self._next("+-"):
+            other = self._factors(depth)
+            value = _bounded(value + other if sign == "+" else value - other)
+        return value
+
+    def _factors(self, depth: int) -> Fraction:
+        value = self._power(depth)
+        while sign := self._next("*/"):
+            other = self._power(depth)
+            if sign == "/" and not other:
+                raise ValueError("divided by 0")
+            value = _bounded(value * other if sign == "*" else value / other)
+        return value
+
+    def _power(self, depth: int) -> Fraction:
+        if self._next("-"):
+            return -self._power(depth + 1)
+        if self._next("+"):
+            return self._power(depth + 1)
+        value = self._single(depth)
+        if not self._next("^"):
+            return value
+        power = self._power(depth + 1)
+        if power.denominator != 1 or not 0 <= power <= _MOST_POWER:
+            raise ValueError("a power that is no small number")
+        return _bounded(Fraction(value ** int(power)))
+
+    def _single(self, depth: int) -> Fraction:
+        if depth > _DEEPEST or not self.left:
+            raise ValueError("no number")
+        token = self.left.pop()
+        if token == "(":
+            value = self.terms(depth + 1)
+            if not self._next(")"):
+                raise ValueError("a parenthesis is not closed")
+            return value
+        if token in "+-*/^)":
+            raise ValueError("no number")
+        return Fraction(int(token, 16)) if token[:2].lower() == "0x" else Fraction(token)
+
+
+def _bounded(value: Fraction) -> Fraction:
+    if max(value.numerator.bit_length(), value.denominator.bit_length()) > _MOST_BITS:
+        raise ValueError("too large")
+    return value
+
+
+def whole(text: str, what: str, least: int | None = None, most: int | None = None) -> int:
+    """An integer. Raises `NotHeld`."""
+    plain = int(text) if text.isascii() and text.isdigit() and len(text) < _PLAIN else _whole(text)
+    if plain is None or (least is not None and plain < least) or (most is not None and plain > most):
+        raise NotHeld(f"{what} is `{line(text, 60)}`")
+    return plain
+
+
+def _whole(text: str) -> int | None:
+    try:
+        value = evaluate(text)
+    except ValueError:
+        return None
+    return int(value) if value.denominator == 1 else None
+
+
+def coded(value: int, code: str, bits: int) -> int | None:
+    """The raw value by which a number is sent: signed of two's complement, else its bits. None where it does not fit."""
+    if code == TWOS:
+        return value if -(1 << bits - 1) <= value < 1 << bits - 1 else None
+    if code == UNSIGNED:
+        return value if 0 <= value < 1 << bits else None
+    if code in ("BCD", "packedBCD"):
+        width = 8 if code == "BCD" else 4
+        if value < 0 or len(str(value)) > bits // width:
+            return None
+        return sum(int(digit) << width * place for place, digit in enumerate(reversed(str(value))))
+    if abs(value) >= 1 << bits - 1:
+        return None
+    if value >= 0:
+        return value
+    return (1 << bits - 1 | -value) if code == "signMagnitude" else (1 << bits) - 1 + value

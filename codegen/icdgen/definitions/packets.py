@@ -1,0 +1,176 @@
+"""Messages of space packets, and those without an envelope: their ids, and the header that they have alike."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Hashable, Iterable, Sequence
+from typing import NamedTuple, Protocol
+
+from icdgen.definitions.model import Definitions, Item, Network, NotHeld
+
+UNTOLD = "IMP079"
+TELECOMMAND, TELEMETRY = "telecommand", "telemetry"
+HEADER_BITS = 48
+MOST_PARTS = 7  # of the primary header
+APID_BITS = 11
+_HEADERS = (  # places of the primary header; type and flag of the secondary header may be one field
+    ((0, 3), (3, 1), (4, 1), (5, 11), (16, 2), (18, 14), (32, 16)),
+    ((0, 3), (3, 2), (5, 11), (16, 2), (18, 14), (32, 16)),
+)
+_MOST_ID_BITS = 32
+
+
+class Header(NamedTuple):
+    """The primary header of a space packet: the only value of each field, or None."""
+
+    version: int | None
+    type: int | None
+    secondary: int | None
+    apid: int | None
+
+    @property
+    def kind(self) -> str | None:
+        """Which way the packet goes."""
+        return None if self.type is None else TELECOMMAND if self.type else TELEMETRY
+
+
+class Sent(Protocol):
+    """What becomes a message."""
+
+    name: str
+    kind: str
+    header: Header | None  # None where it does not begin with one
+    front: (
+        tuple[Hashable, int] | None
+    )  # what it begins with, as in `told`, and its bits, if a header can have it as an id
+    told: dict[Hashable, int]  # by what tells it: the only value of that
+
+    def message(self, id: int, start: int, to: Definitions) -> Item:
+        """As it stands in an ICD, from a bit on. Raises `NotHeld`."""
+
+
+def header(parts: Iterable[tuple[int, int, int | None]]) -> Header | None:
+    """The primary header that the first parts make, if they do: place, bits and only value of each."""
+    listed = list(parts)
+    for places in _HEADERS:
+        if [part[:2] for part in listed[: len(places)]] != list(places):
+            continue
+        values = [part[2] for part in listed[: len(places)]]
+        if len(places) < MOST_PARTS:
+            both = values[1]
+            values[1:2] = (None, None) if both is None else (both >> 1, both & 1)
+        return Header(*values[:4])
+    return None
+
+
+def fill(network: Network, found: Sequence[Sent], to: Definitions) -> None:
+    """Puts everything that is sent into the network, with ids and envelope. What is not held is noted."""
+    if any(one.header is not None for one in found):
+        network.head["id_bits"] = APID_BITS
+        _packets(found, network, to)
+    else:
+        _counted(found, network, to)
+
+
+def _packets(found: Sequence[Sent], network: Network, to: Definitions) -> None:
+    """Messages of space packets: the header is the envelope, and the application process the id."""
+    held: list[tuple[str, Header]] = []
+    versions = [one.header.version for one in found if one.header is not None]
+    version = next((one for one in versions if one is not None), 0)
+    for one in found:
+        try:
+            if one.header is None:
+                raise NotHeld("it does not begin with the header of a space packet, as others do")
+            if one.header.apid is None:
+                raise NotHeld("nothing says of which application process it is")
+            if one.header.version not in (None, version) or one.header.kind not in (None, one.kind):
+                raise NotHeld(f"its header is not that of a space packet with {one.kind}")
+            network.messages.append(one.message(one.header.apid, HEADER_BITS, to))
+            held.append((one.kind, one.header))
+        except NotHeld as why:
+            to.left_out(one.name, why)
+    network.protocol = {
+        "stream": {
+            "delimited_by": "length",
+            "header": [
+                {"at": 0, "bits": 3, "role": "constant", "value": version},
+                {"at": 3, "bits": 1, "role": "constant", "value": {TELECOMMAND: 1, TELEMETRY: 0}},
+                {"at": 4, "bits": 1, "role": "flags", **_usual(held)},
+                {"at": 5, "bits": APID_BITS, "role": "id"},
+                {
+                    "at": 16,
+                    "bits": 2,
+                    "role": "type",
+                    "value": 3,
+                },  # a packet of its own, unless the sender says otherwise
+                {"at": 18, "bits": 14, "role": "sequence", "per": "id"},
+                {"at": 32, "bits": 16, "role": "length", "plus": -1},
+            ],
+        }
+    }
+
+
+def _usual(held: list[tuple[str, Header]]) -> Item:
+    """The flag of a secondary header, where all messages of a direction have it alike."""
+    values = {kind: {head.secondary for of, head in held if of == kind} for kind in (TELECOMMAND, TELEMETRY)}
+    said = {kind: of.copy().pop() if len(of) == 1 else None for kind, of in values.items()}
+    if all(value is None for value in said.values()):
+        return {}
+    return {"value": {kind: value or 0 for kind, value in said.items()}}
+
+
+def _counted(found: Sequence[Sent], network: Network, to: Definitions) -> None:
+    """Messages without a header: ids are what tells all of a direction, or counted."""
+    widest, start = 8, _id_in_front(found)
+    if start:
+        network.protocol = {"stream": {"delimited_by": "none", "header": [{"at": 0, "bits": start, "role": "id"}]}}
+    for kind in (TELEMETRY, TELECOMMAND):
+        ours = [one for one in found if one.kind == kind]
+        tells = _telling(ours)
+        untold = []
+        for number, one in enumerate(ours, 1):
+            id = one.told[tells] if tells is not None else number
+            widest = max(widest, id.bit_length())
+            if tells is None:
+                untold.append(one.name)
+            try:
+                network.messages.append(one.message(id, start, to))
+            except NotHeld as why:
+                to.left_out(one.name, why)
+        if len(untold) > 1:
+            shown = ", ".join(f"`{name}`" for name in untold[:3]) + (" ..." if len(untold) > 3 else "")
+            to.warn(
+                UNTOLD,
+                f"no parameter tells all {len(untold)} messages of {kind}: {shown}",
+                "their ids are counted from 1",
+            )
+    network.head["id_bits"] = widest
+
+
+def _id_in_front(found: Sequence[Sent]) -> int:
+    """The bits of what tells all messages, where all of both directions begin with it and it is whole bytes; else 0."""
+    sizes = set()
+    for kind in (TELEMETRY, TELECOMMAND):
+        ours = [one for one in found if one.kind == kind]
+        tells = _telling(ours)
+        for one in ours:
+            is_id = one.front is not None and tells is not None and one.front[0] == tells
+            sizes.add(one.front[1] if is_id and one.front is not None else 0)
+    size, *others = sizes or {0}
+    return 0 if others else size
+
+
+def _telling(ours: list[Sent]) -> Hashable | None:
+    """What has one value in each message, of those the one with the most different ones."""
+    common = [key for key in (ours[0].told if ours else ()) if all(key in one.told for one in ours)]
+    fits = [key for key in common if all(0 <= one.told[key] < 1 << _MOST_ID_BITS for one in ours)]
+    return max(fits, key=lambda key: len({one.told[key] for one in ours}), default=None)
+
+
+def apart(messages: list[Item]) -> None:
+    """Messages of one name get their system in front, or what they are, or a number."""
+    for said in (lambda one: one.get("group", ""), lambda one: one["kind"], lambda one: str(one["id"])):
+        times = Counter(one["name"] for one in messages)
+        for one in messages:
+            if times[one["name"]] > 1 and (more := said(one)):
+                one["name"] = f"{more} {one['name']}"

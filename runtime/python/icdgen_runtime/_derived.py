@@ -1,0 +1,87 @@
+"""Values that are derived from several fields, computed in doubles.
+
+``fields`` are the attributes of physical values, or of raw ones without such; their
+values, the ``numbers`` and the result of each step make up a row, whose last one is it.
+"""
+
+from __future__ import annotations
+
+import math
+
+from . import _lazy
+
+
+def derived(derivation: _lazy.Derivation, values: list[float]) -> float:
+    """The result for values of the fields.
+
+    >>> derived((("volts", "amperes"), (1000.0,), (("*", 0, 1), ("/", 3, 2))), [2.0, 250.0])
+    0.5
+    """
+    _, numbers, steps = derivation
+    row = [*map(float, values), *numbers]
+    for operator, left, right in steps:
+        row.append(_OPERATORS[operator](row[left], row[right]))
+    return math.nan if math.isnan(row[-1]) else row[-1]
+
+
+def quotient(one: float, other: float) -> float:
+    """As IEEE 754 divides: by zero, too."""
+    if other:
+        return one / other
+    if not one or math.isnan(one):
+        return math.nan
+    return math.copysign(math.inf, one) * math.copysign(1.0, other)
+
+
+def power(base: float, exponent: float) -> float:
+    """By squaring, from the lowest bit of a whole exponent on; of a negative one the reciprocal."""
+    left, found = abs(int(exponent)), 1.0
+    while left:
+        if left & 1:
+            found *= base
+        base *= base
+        left >>= 1
+    return quotient(1.0, found) if exponent < 0 else found
+
+
+_OPERATORS = {
+    "+": float.__add__,
+    "-": float.__sub__,
+    "*": float.__mul__,
+    "/": quotient,
+    "^": power,
+}
+
+
+def column(
+    numpy: _lazy.Any, derivation: _lazy.Derivation, columns: list[_lazy.Any]
+) -> _lazy.Any:
+    """The results of whole columns of values."""
+    _, numbers, steps = derivation
+    with numpy.errstate(all="ignore"):
+        row = [one.astype(numpy.float64) for one in columns]
+        row += [numpy.full(len(row[0]), number) for number in numbers]
+        for operator, left, right in steps:
+            row.append(_on_columns(numpy, operator, row[left], row[right]))
+    found = row[-1].copy()
+    found[numpy.isnan(found)] = numpy.nan
+    return found
+
+
+def _on_columns(
+    numpy: _lazy.Any, operator: str, one: _lazy.Any, other: _lazy.Any
+) -> _lazy.Any:
+    if operator == "^":
+        return _powers(numpy, one, other)
+    name = {"+": "add", "-": "subtract", "*": "multiply", "/": "divide"}[operator]
+    return getattr(numpy, name)(one, other)
+
+
+def _powers(numpy: _lazy.Any, base: _lazy.Any, exponent: _lazy.Any) -> _lazy.Any:
+    left = numpy.abs(exponent).astype(numpy.int64)
+    found = numpy.ones(len(base))
+    while left.any():
+        found = numpy.where(left & 1, found * base, found)
+        base = base * base
+        left = left >> 1
+    return numpy.where(exponent < 0, 1.0 / found, found)

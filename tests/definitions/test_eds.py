@@ -1,0 +1,380 @@
+"""Electronic data sheets become ICDs: what components send, packages beside the file, and values that design parameters define.
+
+What is read of random frames is compared with a reader of bits of its own in tests/devices.
+"""
+
+from __future__ import annotations
+
+import shutil
+
+import pytest
+
+from icdgen.definitions import eds, eds_sheets, eds_types, kinds, run
+from icdgen.diagnostics import Findings
+from tests.definitions.test_can import FILES, field, message
+from tests.importer.test_command import icdgen
+
+SHEETS = FILES / "eds"
+
+
+@pytest.fixture(scope="module")
+def camera():
+    return imported("camera.xml")
+
+
+@pytest.fixture(scope="module")
+def gyro():
+    return imported("gyro.xml")
+
+
+def imported(name, folder=SHEETS):
+    reader = kinds.of(folder / name)
+    assert isinstance(reader, eds.Eds)
+    return run.read(folder / name, reader)
+
+
+def said(read):
+    return [(one.code, one.message) for one in read.definitions.troubles]
+
+
+def test_what_interfaces_carry_are_the_messages_and_which_way_they_go(camera):
+    (tree,) = camera.trees.values()
+    assert [(one["name"], one["kind"]) for one in tree["messages"]] == [
+        ("Housekeeping", "telemetry"), ("Picture", "telemetry"), ("Noop", "telecommand"), ("Shoot", "telecommand"),
+    ]  # fmt: skip
+    assert ("IMP084", "no interface carries 1 container: `Settings`") in said(camera) and not camera.failed
+
+
+def test_the_header_of_space_packets_in_another_file_is_the_envelope(camera):
+    (tree,) = camera.trees.values()
+    header = tree["protocol"]["stream"]["header"]
+    assert [(one["at"], one["bits"], one["role"]) for one in header if one["role"] in ("id", "length", "sequence")] == [
+        (5, 11, "id"), (18, 14, "sequence"), (32, 16, "length"),
+    ]  # fmt: skip
+    assert header[2]["value"] == {"telecommand": 1, "telemetry": 1} and tree["node"]["id_bits"] == 11
+    assert message(camera, "Noop")["length"] == 2 and field(camera, "Housekeeping", "Time")["at"] == 0
+
+
+def test_ids_are_the_application_processes_that_are_said_or_those_of_topics(camera):
+    assert [message(camera, name)["id"] for name in ("Picture", "Housekeeping", "Noop", "Shoot")] == [300, 20, 10, 10]
+    assert [field(camera, name, "Code")["const"] for name in ("Noop", "Shoot")] == [0, 1]
+    (process,) = [one for one in camera.definitions.troubles if one.code == "IMP083"]
+    assert process.message == "nothing says the application processes of 3 messages, only `TopicId` of their interfaces"
+
+
+@pytest.mark.parametrize(("topic", "id"), [("3", 2 ^ 0x60), ("${CFE_MISSION/TELECOMMAND_BASE_TOPICID} + 255", 255)])
+def test_topics_become_application_processes_as_those_of_cfs(tmp_path, topic, id):
+    folder = copied(tmp_path, "mission.xml", "${CFE_MISSION/TELECOMMAND_BASE_TOPICID} + 010", topic)
+    assert message(imported("camera.xml", folder), "Noop")["id"] == id
+
+
+def test_a_parameter_that_is_no_topic_is_the_number_of_the_process(tmp_path):
+    said = 'parameter="{}" variableRef="Commands"'
+    folder = copied(tmp_path, "camera.xml", said.format("TopicId"), said.format("MsgId"))
+    text = (folder / "mission.xml").read_text()
+    (folder / "mission.xml").write_text(text.replace("${CFE_MISSION/TELECOMMAND_BASE_TOPICID} + 010", "0x1880"))
+    assert message(imported("camera.xml", folder), "Noop")["id"] == 0x80
+
+
+def test_a_container_that_interfaces_carry_by_several_numbers_is_as_many_messages(tmp_path):
+    interface = '<Interface name="{}" type="LINK/PACKETS/Out">'
+    folder = copied(tmp_path, "camera.xml", interface.format("PICTURES"), interface.format("MORE"))
+    text = (folder / "camera.xml").read_text().replace('name="Data" type="Picture"', 'name="Data" type="Housekeeping"')
+    end = '<ParameterMap interface="MORE" parameter="TopicId" variableRef="Commands"/></ParameterMapSet>'
+    (folder / "camera.xml").write_text(text.replace("</ParameterMapSet>", end))
+    read = imported("camera.xml", folder)
+    assert [message(read, name)["id"] for name in ("Housekeeping HK", "Housekeeping MORE")] == [20, 19]
+
+
+def test_names_are_those_that_tell_fields_apart_and_containers_in_arrays_are_structs(camera):
+    (tree,) = camera.trees.values()
+    assert [one["name"] for one in message(camera, "Housekeeping")["fields"]] == [
+        "Time", "Mode", "Ready", "Shutter", "Exposure", "Front Lens", "Front Sensor", "Back Lens", "Back Sensor", "Peaks", "Matrix",
+    ]  # fmt: skip
+    (peak,) = tree["structs"]
+    assert (peak["name"], peak["length"], [one["name"] for one in peak["fields"]]) == (
+        "Peak",
+        5,
+        ["Row", "Column", "Level"],
+    )
+    assert field(camera, "Housekeeping", "Peaks") == {"at": 136, "name": "Peaks", "struct": "Peak", "count": 3}
+    assert field(camera, "Housekeeping", "Matrix")["count"] == 6  # three rows of two
+
+
+def test_units_ranges_and_calibrations_arrive(camera):
+    exposure = field(camera, "Shoot", "Exposure")
+    assert {key: exposure[key] for key in ("unit", "min", "max")} == {"unit": "ms", "min": 1, "max": 5000}
+    assert field(camera, "Housekeeping", "Front Lens")["formula"] == "raw*0.01 - 20"
+    sensor = field(camera, "Housekeeping", "Back Sensor")
+    assert (sensor["unit"], sensor["points"][2], sensor["outside"]) == ("C", [400, 125.5], "extrapolate")
+    assert message(camera, "Picture")["summary"] == "A piece of a picture."
+
+
+def test_a_list_is_an_open_end_that_its_field_counts(camera):
+    assert field(camera, "Picture", "Piece") == {
+        "at": 64, "name": "Piece", "struct": "Peak", "count": "Pieces", "up_to": 20,
+    }  # fmt: skip
+    log = imported("log.xml")
+    assert field(log, "Note", "Words")["size"] == {"field": "Length", "plus": -5}
+    assert field(log, "Values", "Value")["up_to"] == 255 and field(log, "Dump", "Block")["type"] == "bytes"
+
+
+def test_what_a_container_is_based_on_stands_around_it(gyro):
+    names = [one["name"] for one in message(gyro, "Serial")["fields"]]
+    assert (names[0], names[-1]) == ("Mark", "Crc") and field(gyro, "Serial", "Crc")["at"] == 168
+    assert (message(gyro, "State")["id"], message(gyro, "Serial")["id"]) == (16, 17)
+    assert field(gyro, "State", "Mark")["const"] == int.from_bytes(b"GYR1", "big")
+
+
+def test_the_length_of_a_container_is_a_constant_where_it_is_always_the_same(gyro):
+    assert field(gyro, "State", "Bits")["const"] == 8 * (message(gyro, "State")["length"] - 7)
+    assert "const" not in field(imported("log.xml"), "Note", "Length")
+
+
+def test_encodings_that_no_field_has_are_held_raw_and_said_and_names_are_given_to_their_bits(gyro):
+    raw = {name: field(gyro, "State", name)["type"] for name in ("Offset", "Scale", "Drift")}
+    assert raw == {"Offset": "uint", "Scale": "uint", "Drift": "int"}
+    told = [text for code, text in said(gyro) if code == "IMP078"]
+    assert "`Offset`: it is encoded as onesComplement" in told and "`Number`: it is encoded as packedBCD" in told
+    enums = {one["name"]: [member["value"] for member in one["members"]] for one in gyro.trees["gyro"]["enums"]}
+    assert enums == {"Sign": [0, 1, 129], "Trend": [-1, 1], "Wide": [0, 1]}
+    assert field(gyro, "Serial", "Revision")["const"] == -3
+
+
+def test_an_error_control_is_a_field_and_what_is_not_held_is_said_with_its_line(gyro):
+    assert field(gyro, "State", "Crc")["summary"] == "CRC16_CCITT."
+    assert ("IMP082", "`Crc` is CRC16_CCITT of what is in the frame") in said(gyro)
+    (missing,) = [one for one in gyro.definitions.troubles if one.severity == "error"]
+    assert missing.message == "message `Sometimes` is not held: `Extra` is there only on a condition"
+    lines = (SHEETS / "gyro.xml").read_text().splitlines()
+    assert 'name="Sometimes"' in lines[missing.spot.line - 1]
+
+
+def copied(folder, name, old="", new=""):
+    """The data sheets, with something else in one of them."""
+    made = folder / "sheets"
+    shutil.copytree(SHEETS, made)
+    text = (made / name).read_text()
+    assert old in text
+    (made / name).write_text(text.replace(old, new))
+    return made
+
+
+def test_a_value_that_nothing_defines_costs_what_uses_it(tmp_path):
+    folder = copied(tmp_path, "mission.xml", '<Define name="NAME_LENGTH" value="${WORD} + 4"/>', "")
+    read = imported("camera.xml", folder)
+    why = "nothing in the file or beside it defines `${MISSION/NAME_LENGTH}`"
+    assert ("IMP070", f"message `Shoot` is not held: {why}") in said(read)
+    assert read.held == 3
+    (folder / "mission.xml").unlink()
+    assert "nothing in the file or beside it defines `${MISSION/HEADER}`" in why_not("camera.xml", folder)
+
+
+def test_a_package_that_lies_elsewhere_is_said(tmp_path):
+    folder = copied(tmp_path, "packets.xml")
+    (folder / "packets.xml").unlink()
+    said = why_not("camera.xml", folder)
+    assert "is of the package `LINK/PACKETS`, which is neither in the file nor beside it" in said
+
+
+def test_a_package_and_a_value_that_are_there_twice_are_said_once(tmp_path):
+    folder = copied(tmp_path, "packets.xml")
+    shutil.copy(folder / "packets.xml", folder / "packets_old.xml")
+    text = (folder / "mission.xml").read_text().replace('name="PEAKS" value="2 ^ 2 - 1"', 'name="PEAKS" value="9"')
+    (folder / "mission_old.xml").write_text(text)
+    read = imported("camera.xml", folder)
+    assert [text for code, text in said(read) if code == "IMP076"] == [
+        "package `LINK/PACKETS` is in `packets.xml` and otherwise in `packets_old.xml`",
+        "`${MISSION/PEAKS}` is in `mission.xml` and otherwise in `mission_old.xml`",
+    ]
+    assert field(read, "Housekeeping", "Peaks")["count"] == 3
+
+
+def test_packets_of_another_version_have_it_in_their_envelope(tmp_path):
+    folder = copied(tmp_path, "packets.xml", 'entry="Version" value="0"', 'entry="Version" value="1"')
+    header = imported("camera.xml", folder).trees["camera"]["protocol"]["stream"]["header"]
+    assert header[0] == {"at": 0, "bits": 3, "role": "constant", "value": 1}
+
+
+BYTE = '<IntegerDataType name="byte"><IntegerDataEncoding sizeInBits="8" encoding="unsigned"/></IntegerDataType>'
+WORD = BYTE.replace('"byte"', '"w"').replace('"8"', '"16"')
+ENTRY = '<Entry name="P" type="byte"/>'
+
+
+def container(name, entries=ENTRY, more="", **attributes):
+    said = "".join(f' {key}="{value}"' for key, value in attributes.items())
+    return f'<ContainerDataType name="{name}"{said}>{more}<EntryList>{entries}</EntryList></ContainerDataType>'
+
+
+def sheet(types, byte=BYTE):
+    return (
+        '<PackageFile xmlns="http://www.ccsds.org/schema/sois/seds"><Package name="S"><DataTypeSet>'
+        f"{byte}{types}</DataTypeSet></Package></PackageFile>"
+    )
+
+
+def entry(type_, name="Q", tag="Entry", inner="", more=""):
+    return f'<{tag} name="{name}" type="{type_}"{more}>{inner}</{tag}>'
+
+
+def array(name, of, size):
+    return f'<ArrayDataType name="{name}" dataTypeRef="{of}"><DimensionList><Dimension {size}/></DimensionList></ArrayDataType>'
+
+
+def constrained(one):
+    return container("B") + container("A", "", f"<ConstraintSet>{one}</ConstraintSet>", baseType="B")
+
+
+SEVERAL = "<EnumeratedRange><Label>A</Label><Label>B</Label></EnumeratedRange>"
+
+
+def nested(depth, times):
+    return "".join(container(f"C{n}", "".join(entry(f"C{n + 1}", f"E{k}") for k in range(times))) for n in range(depth))
+
+
+FLOAT = '<FloatDataType name="f"><FloatDataEncoding sizeInBits="32" encodingAndPrecision="IEEE754_2008_single"/></FloatDataType>'
+OPEN = '<StringDataType name="open" length="9" fixedLength="false"{}</StringDataType>'
+
+
+@pytest.mark.parametrize(
+    ("types", "says"),
+    [
+        (container("A", baseType="A"), "based on each other in a circle, or too deep: A -> A"),
+        (container("A", baseType="B") + container("B", baseType="A"), "in a circle, or too deep: A -> B -> A"),
+        (container("A", entry("A")) + container("B", baseType="A"), "hold each other in a circle, or too deep: A -> A"),
+        (container("A", entry("x/y/nothing")), "`x/y/nothing` is of the package `x/y`, which is neither in the file nor beside it"),
+        (container("A", entry("nothing")), "there is no type `nothing`"),
+        (container("A", baseType="byte"), "it is based on `byte`, which is no container"),
+        (container("A", ENTRY, abstract="true") + container("B", entry("A")), "`Q` is any container that is based on `A`"),
+        (container("A", "<SegmentEntry/>"), "it has a `SegmentEntry`"),
+        (container("A", ENTRY * 5001), "it has more than 5000 fields or 65535 bytes"),
+        (container("A", '<PaddingEntry sizeInBits="2 ^ 60"/>'), "the size of a padding is `2 ^ 60`"),
+        (array("many", "byte", 'size="99999999999"') + container("A", entry("many")), "a dimension of `Q` is `99999999999`"),
+        (array("many", "many", 'size="2"') + container("A", entry("many")), "`Q` is an array of "),
+        (array("wide", "w", 'size="2000"') + WORD + container("A", entry("wide")), "`Q` is an array of 2,000 elements"),
+        (array("many", "byte", 'indexTypeRef="byte"') + container("A", entry("many")), "nothing says how many elements `Q` has"),
+        (array("odd", "I", 'size="2"') + container("I", '<PaddingEntry sizeInBits="4"/>') + container("A", entry("odd")),
+         "`Q` is an array of containers that are not of so many bytes each"),
+        (OPEN.format(">") + container("A", entry("open") + ENTRY), "`P` stands behind `Q`, whose length is not fixed"),
+        (OPEN.format('><StringDataEncoding terminationCharacter="0"/>') + container("A", entry("open")),
+         "`open` ends at the character `0`"),
+        (container("A", entry("byte", tag="ListEntry", more=' listLengthField="N"')),
+         "`Q` is there as often as `N` says, which is no number"),
+        (container("A", entry("byte", tag="FixedValueEntry", more=' fixedValue="256"')), "`Q` is never `256`"),
+        (constrained('<ValueConstraint entry="X.Y" value="1"/>'), "it is told by `X.Y`, which is no field that it has"),
+        (constrained('<ValueConstraint entry="P" value="-1"/>'), "it is told by `P`, which is never `-1`"),
+        (constrained('<ValueConstraint entry="P" value="1"/><ValueConstraint entry="P" value="2"/>'), "is both 1 and 2"),
+        (constrained(f'<RangeConstraint entry="P">{SEVERAL}</RangeConstraint>'), "`P`, which has one of several values"),
+        (constrained('<SizeConstraint entry="P"/>'), "it is constrained by a `SizeConstraint`"),
+        (FLOAT + container("A", entry("f", tag="FixedValueEntry", more=' fixedValue="1.5"'))
+         + container("C", "", '<ConstraintSet><ValueConstraint entry="Q" value="1"/></ConstraintSet>', baseType="A"),
+         "has a value and is of the type float"),
+        (nested(20, 3) + container("C20", ENTRY), "it has more than 5000 fields or 65535 bytes"),
+        (nested(40, 1) + container("C40", ENTRY), "containers hold each other in a circle, or too deep"),
+    ],
+)  # fmt: skip
+def test_containers_that_cannot_be_held_are_left_out_and_end(types, says, tmp_path):
+    assert says in refused(sheet(types), tmp_path)
+
+
+def integer(said):
+    return f'<IntegerDataType name="byte"><IntegerDataEncoding {said}/></IntegerDataType>'
+
+
+@pytest.mark.parametrize(
+    ("byte", "says"),
+    [
+        ('<IntegerDataType name="byte"/>', "`P` has a type without an encoding"),
+        (integer('sizeInBits="1e9"'), "the size of `P` is `1e9`"),
+        (integer('sizeInBits="8" encoding="gray"'), "its `encoding` is `gray`"),
+        (integer('sizeInBits="12" byteOrder="littleEndian"'), "byte of `P`, of 12 bits, is sent first"),
+        (integer('sizeInBits="99"'), "`P` has 99 bits"),
+        ('<FloatDataType name="byte"/>', "`P` has a type without an encoding"),
+        ('<SubRangeDataType name="byte" baseType="byte"/>', "the type `byte` is based on itself"),
+        ('<StringDataType name="byte" length="0"/>', "the length of a text is `0`"),
+        ('<BooleanDataType name="byte"><BooleanDataEncoding sizeInBits="65"/></BooleanDataType>', "the flag `byte` has 65 bits"),
+        ('<CoolDataType name="byte"/>', "`P` is a `CoolDataType`"),
+        ('<EnumeratedDataType name="byte"><IntegerDataEncoding sizeInBits="2"/><EnumerationList><Enumeration label="A" value="4"/>'
+         "</EnumerationList></EnumeratedDataType>", "`P` never has the value `4` of `A`"),
+    ],
+)  # fmt: skip
+def test_types_that_cannot_be_held_are_said(byte, says, tmp_path):
+    assert says in refused(sheet(container("A"), byte), tmp_path)
+
+
+BOMB = "<!DOCTYPE x [" + "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10}">' for n in range(1, 10)) + '<!ENTITY e0 "ha">]>'
+ITSELF = '<Define name="A" value="${B}"/><Define name="B" value="${A}"/>'
+GROWS = '<Define name="A0" value="word word word word"/>' + "".join(
+    f'<Define name="A{n}" value="{f"${{A{n - 1}}} " * 10}"/>' for n in range(1, 15)
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (BOMB + sheet(container("A", entry("&e9;"))), "the XML has a document type"),
+        (sheet(container("A"))[:-20], "not XML: "),
+        (sheet(container("A", abstract="true")), "no message can be held, for none is defined"),
+        (sheet(container("A", entry("${A}"))).replace("<DataTypeSet>", f"{ITSELF}<DataTypeSet>"), "` is defined by itself"),
+        (sheet(container("A", entry("${A14}"))).replace("<DataTypeSet>", f"{GROWS}<DataTypeSet>"),
+         "becomes longer than 2000 characters"),
+    ],
+)  # fmt: skip
+def test_hostile_files_are_refused(text, says, tmp_path):
+    assert says in refused(text, tmp_path)
+
+
+def test_what_is_read_of_a_file_and_those_beside_it_is_bounded(tmp_path, monkeypatch):
+    monkeypatch.setattr(eds_types, "MOST_STEPS", 100)
+    assert "the file says more than 100 things" in refused(sheet(nested(5, 4) + container("C5", ENTRY)), tmp_path)
+    monkeypatch.setattr(eds_sheets, "MOST_FILES", 1)
+    for name in ("b.xml", "c.xml"):
+        (tmp_path / name).write_text(sheet(""))
+    assert "beside it are more than 1 data sheets" in refused(sheet(container("A")), tmp_path)
+
+
+def test_a_file_beside_it_that_is_broken_is_named_and_others_are_not_looked_at(tmp_path):
+    (tmp_path / "other.xml").write_text("<other><unclosed></other>")
+    (tmp_path / "good.xml").write_text(sheet(container("A")))
+    assert run.read(tmp_path / "good.xml", eds.Eds()).held == 1
+    (tmp_path / "broken.xml").write_text(sheet("")[:-5])
+    with pytest.raises(Findings) as raised:
+        run.read(tmp_path / "good.xml", eds.Eds())
+    assert raised.value.findings[0].place.file.endswith("broken.xml")
+
+
+def refused(text, folder):
+    (folder / "bad.xml").write_text(text)
+    return why_not("bad.xml", folder)
+
+
+def why_not(name, folder):
+    with pytest.raises(Findings) as raised:
+        run.read(folder / name, eds.Eds())
+    (finding,) = raised.value.findings
+    assert finding.code == "IMP005"
+    return finding.message
+
+
+def test_a_container_may_hold_one_that_is_based_on_what_it_is_based_on_itself(tmp_path):
+    inner = container("I", entry("byte", "R"), baseType="X")
+    (tmp_path / "one.xml").write_text(
+        sheet(container("X", abstract="true") + inner + container("A", entry("I"), baseType="X"))
+    )
+    fields = message(run.read(tmp_path / "one.xml", eds.Eds()), "A")["fields"]
+    assert [one["name"] for one in fields] == ["P", "Q P", "R"]
+
+
+def test_messages_that_nothing_tells_apart_are_counted_and_that_is_said(tmp_path):
+    (tmp_path / "two.xml").write_text(sheet(container("A") + container("B")))
+    read = run.read(tmp_path / "two.xml", eds.Eds())
+    assert [(one["name"], one["id"]) for one in read.trees["two"]["messages"]] == [("A", 1), ("B", 2)]
+    assert said(read) == [("IMP079", "no parameter tells all 2 messages of telemetry: `A`, `B`")]
+
+
+def test_the_command_reads_them_and_says_what_it_found(tmp_path):
+    result = icdgen("import", str(SHEETS / "camera.xml"), "--out", "icd", cwd=tmp_path)
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "camera.xml: an electronic data sheet (CCSDS SOIS), 4 of 4 messages held\n" in result.stdout
+    assert result.stdout.endswith("`icdgen check icd/camera.yaml`: no findings\n")
+    assert icdgen("fmt", "--check", "icd", cwd=tmp_path).returncode == 0

@@ -1,0 +1,148 @@
+"""Values that are derived from fields: what formulas mean, and that each step is a double."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from importlib import import_module
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from icdgen.icd import derived
+from icdgen.icd.derived import parse
+from icdgen.icd.formula import FormulaError
+from icdgen.shipped import provide_runtime
+
+NAMES = ("Lon", "Lon HP", "C", "N0", "C/N0", "2D", "W_SF", "x", "-")
+NUMBERS = st.floats() | st.sampled_from((0.0, -0.0, 1.0, math.inf, -math.inf, math.nan, 5e-324, 1.7e308))
+
+
+provide_runtime()
+_derived = import_module("icdgen_runtime._derived")
+
+
+def result(text: str, **values: float) -> float:
+    found = parse(text, values)
+    return found.double([values[name] for name in found.fields])
+
+
+@pytest.mark.parametrize(
+    ("text", "fields"),
+    [
+        ("Lon + Lon HP", ("Lon", "Lon HP")),
+        ("Lon HP-Lon", ("Lon HP", "Lon")),
+        ("C/N0", ("C/N0",)),
+        ("C / N0", ("C", "N0")),
+        ("C*N0", ("C", "N0")),
+        ("2D*2", ("2D",)),
+        ("x*10^W_SF", ("x", "W_SF")),
+        ("(x)", ("x",)),
+        ("x - C", ("x", "C")),
+    ],
+)
+def test_a_name_is_the_longest_that_stands_there(text, fields):
+    assert set(parse(text, NAMES).fields) == set(fields)
+
+
+@pytest.mark.parametrize("text", ["Long + Lon", "Lonx", "x1", "x_y + Lon", "HP"])
+def test_a_name_does_not_end_within_a_word(text):
+    with pytest.raises(FormulaError, match="there is no field"):
+        parse(text, NAMES)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("2 + x*3", 17.0),
+        ("2 - x - 3", -6.0),
+        ("60/x/2", 6.0),
+        ("(2 + x)*3", 21.0),
+        ("-x^2", -25.0),
+        ("(-x)^2", 25.0),
+        ("x^0", 1.0),
+        ("x^-2", 0.04),
+        ("2^x", 32.0),
+        ("x*2/3", 10 / 3),
+        ("2/3*x", 2 / 3 * 5),
+        ("x + 1/3 + 1/3", 5 + 1 / 3 + 1 / 3),
+        ("x + (1/3 + 1/3)", 5 + 2 / 3),
+        ("--x", 5.0),
+        ("x - x*2^-1", 2.5),
+    ],
+)
+def test_operations_are_done_in_the_usual_order(text, value):
+    assert result(text, x=5.0) == value
+
+
+def test_numbers_without_a_field_are_exact_and_rounded_once():
+    (number,) = parse("x + (0.1 + 0.2)", ["x"]).numbers
+    assert number == 0.3 != 0.1 + 0.2
+    (number,) = parse("x*(10^40 + 1 - 10^40)", ["x"]).numbers
+    assert number == 1.0
+
+
+def test_dividing_by_zero_gives_what_ieee_754_says():
+    assert result("x/(y - y)", x=1.0, y=2.0) == math.inf
+    assert result("x/(y*0)", x=-1.0, y=2.0) == -math.inf
+    assert result("1/(y*0)", y=-2.0) == -math.inf
+    assert math.isnan(result("x/x", x=0.0))
+    assert result("x^-3", x=0.0) == math.inf
+
+
+def test_a_minus_gives_no_negative_zero():
+    assert math.copysign(1.0, result("-x", x=0.0)) == 1.0
+
+
+@given(NUMBERS, NUMBERS)
+def test_the_runtime_divides_as_the_reference(one, other):
+    assert _same(derived.quotient(one, other), _derived.quotient(one, other))
+    if math.isfinite(one) and math.isfinite(other) and other:
+        try:
+            exact = Fraction(one) / Fraction(other)
+            assert derived.quotient(one, other) == exact.numerator / exact.denominator
+        except OverflowError:
+            assert math.isinf(derived.quotient(one, other))
+
+
+@given(NUMBERS, st.integers(-65535, 65535) | st.integers(-20, 20))
+def test_the_runtime_has_the_powers_of_the_reference(base, exponent):
+    assert _same(derived.power(base, float(exponent)), _derived.power(base, float(exponent)))
+
+
+@pytest.mark.parametrize("exponent", range(23))
+def test_powers_of_ten_are_exact_as_long_as_they_can_be(exponent):
+    assert derived.power(10.0, float(exponent)) == 10**exponent
+    assert derived.power(10.0, float(-exponent)) == 1 / 10**exponent
+
+
+@given(NUMBERS)
+def test_powers_are_found_by_squaring(x):
+    square = x * x
+    assert _same(derived.power(x, 5.0), 1.0 * x * (square * square))
+    assert _same(derived.power(x, 3.0), 1.0 * x * square)
+
+
+def test_what_changes_places_in_a_sum_or_a_product_is_the_same():
+    assert parse("x*2 + C", NAMES).sense({}) == parse("C + 2*x", NAMES).sense({})
+    assert parse("x - C", NAMES).sense({}) != parse("C - x", NAMES).sense({})
+    assert parse("x - C", NAMES).sense({"C": "N0"}) == parse("x - N0", NAMES).sense({})
+
+
+@given(st.text("x+-*/^() 0123456789.eE\u00e9_[]", max_size=40))
+def test_any_text_is_a_formula_or_says_why_it_is_none(text):
+    try:
+        found = parse(text, ["x", "0e", "+"])
+    except FormulaError as error:
+        assert str(error)
+    else:
+        assert isinstance(found.double([1.5] * len(found.fields)), float)
+
+
+def test_a_long_formula_is_read():
+    assert result("+".join(["x"] * 500), x=1.0) == 500.0
+
+
+def _same(one: float, other: float) -> bool:
+    return one == other or (math.isnan(one) and math.isnan(other))

@@ -1,0 +1,57 @@
+"""Values that are derived from fields."""
+
+from __future__ import annotations
+
+import math
+import struct
+from random import Random
+
+import pytest
+
+
+@pytest.fixture(scope="module")
+def derived(odd):
+    return odd.module("odd").Derived
+
+
+def test_a_derived_value_follows_the_fields(derived):
+    message = derived(lon=123456789, lon_hp=-55, scale=-2, c_n0=4000, wide=2.0, most=5)
+    assert message.longitude_deg == message.lon_deg + message.lon_hp_deg == 12.345678845
+    assert message.power_v == message.c_n0_v * (1 / 100.0)
+    assert message.mixed == message.longitude_deg / 2.0 + message.low_v * 0.25 - 2 / 3
+    message.lon_hp_deg = 1e-9
+    assert message.longitude_deg == 12.345678901
+
+
+def test_it_may_be_infinite_or_no_number(derived):
+    message = derived(most=3, lon=1, wide=1.0)
+    assert message.mixed == math.inf
+    message.lon = message.lon_hp = 0
+    assert struct.pack(">d", message.mixed).hex() == "7ff8000000000000"
+
+
+def test_it_is_not_set(derived):
+    message = derived()
+    with pytest.raises(AttributeError):
+        message.longitude_deg = 1.0
+    with pytest.raises(TypeError):
+        derived(longitude_deg=1.0)
+
+
+def test_it_stands_behind_the_fields_of_a_message(derived):
+    message = derived(lon=5)
+    assert [info.attribute for info in derived.VIEWS] == ["low", "longitude_deg", "power_v", "class_name", "mixed"]
+    assert list(message.as_dict())[-4:] == list(message.as_dict(physical=True))[-4:]
+    assert derived.from_dict(message.as_dict()) == derived.from_json(message.to_json(physical=True)) == message
+
+
+@pytest.mark.parametrize("physical", [False, True])
+def test_columns_have_the_same_bits(derived, physical):
+    chance = Random(1)
+    frames = [chance.randbytes(24) for _ in range(300)] + [bytes(24)]
+    columns = derived.decode_many(b"".join(frames), physical=physical)
+    for name in ("longitude_deg", "power_v", "class_name", "mixed"):
+        expected = [struct.pack("<d", getattr(derived.from_bytes(frame), name)) for frame in frames]
+        assert [struct.pack("<d", value) for value in columns[name]] == expected, name
+    table = derived.decode_table(b"".join(frames), physical=physical)
+    assert table.schema.field("longitude_deg").metadata == {b"name": b"longitude", b"unit": b"deg"}
