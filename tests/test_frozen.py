@@ -7,7 +7,6 @@ import dataclasses
 import pytest
 
 from icdgen.frozen import dataclass as frozen
-from icdgen.frozen import rare
 from icdgen.icd.model import Field, Limits, Member
 
 
@@ -33,6 +32,29 @@ def test_values_compare_hash_and_show_themselves_alike(dataclass):
     assert not hasattr(one("a"), "__dict__")
 
 
+@pytest.mark.parametrize("dataclass", [dataclasses.dataclass, frozen])
+def test_objects_begin_alike(dataclass):
+    @dataclass(frozen=True, kw_only=True)
+    class One:
+        name: str
+        at: int = 0
+        source: list = dataclasses.field(default_factory=list)
+
+    @dataclass(frozen=True)
+    class More(One):
+        first: int
+
+    one, other = One(name="a"), One(at=2, name="b", source=[1])
+    assert (one.name, one.at, one.source, other.source) == ("a", 0, [], [1]) and one.source is not One(name="a").source
+    more = More(7, name="c")
+    assert (more.first, more.name, more.at) == (7, "c", 0) and dataclasses.replace(more, at=3) == More(
+        7, name="c", at=3
+    )
+    for wrong in (lambda: One("a"), lambda: One(), lambda: One(name="a", no=1), lambda: More(name="a")):
+        with pytest.raises(TypeError):
+            wrong()
+
+
 def test_without_eq_an_object_is_equal_to_itself_alone():
     @frozen(frozen=True, eq=False, repr=False)
     class One:
@@ -44,35 +66,3 @@ def test_without_eq_an_object_is_equal_to_itself_alone():
 def test_a_field_of_another_class_is_never_equal():
     assert Member(1, "a") != Limits() and Member(1, "a") == Member(1, "a")
     assert dataclasses.replace(Field("a", 0, 8, "uint"), at=8) == Field("a", 8, 8, "uint")
-
-
-@rare(frozen=True)
-class Rare:
-    """Few are made of it."""
-
-    first: int
-    second: str = "b"
-    more: dict = dataclasses.field(default_factory=dict)
-
-
-def test_an_object_of_a_rare_class_has_what_it_is_given_and_its_defaults():
-    one, other = Rare(1), Rare(1, second="c")
-    assert (one.first, one.second, one.more) == (1, "b", {}) and other.second == "c"
-    assert one.more is not other.more and one != Rare(1)
-    assert dataclasses.replace(one, first=2).first == 2
-
-
-@pytest.mark.parametrize("given, named", [((), {}), ((1, "b", {}, 4), {}), ((1,), {"first": 2}), ((1,), {"fourth": 2})])
-def test_a_rare_class_refuses_what_its_declaration_does_not_allow(given, named):
-    with pytest.raises(TypeError, match="Rare is made of first, second, more"):
-        Rare(*given, **named)
-
-
-def test_what_is_given_by_name_only_is_not_taken_by_its_place():
-    @rare(frozen=True, kw_only=True)
-    class Named:
-        only: int
-
-    assert Named(only=1).only == 1
-    with pytest.raises(TypeError):
-        Named(1)

@@ -9,7 +9,7 @@ import shutil
 
 import pytest
 
-from icdgen.definitions import eds, eds_sheets, eds_types, kinds, run
+from icdgen.definitions import eds, eds_interfaces, eds_sheets, eds_types, kinds, run
 from icdgen.diagnostics import Findings
 from tests.definitions.test_can import FILES, field, message
 from tests.importer.test_command import icdgen
@@ -327,6 +327,8 @@ def test_hostile_files_are_refused(text, says, tmp_path):
 def test_what_is_read_of_a_file_and_those_beside_it_is_bounded(tmp_path, monkeypatch):
     monkeypatch.setattr(eds_types, "MOST_STEPS", 100)
     assert "the file says more than 100 things" in refused(sheet(nested(5, 4) + container("C5", ENTRY)), tmp_path)
+    monkeypatch.setattr(eds_interfaces, "MOST_STEPS", 3)
+    assert "its interfaces carry more than 3 containers" in why_not("camera.xml", SHEETS)
     monkeypatch.setattr(eds_sheets, "MOST_FILES", 1)
     for name in ("b.xml", "c.xml"):
         (tmp_path / name).write_text(sheet(""))
@@ -363,6 +365,20 @@ def test_a_container_may_hold_one_that_is_based_on_what_it_is_based_on_itself(tm
     )
     fields = message(run.read(tmp_path / "one.xml", eds.Eds()), "A")["fields"]
     assert [one["name"] for one in fields] == ["P", "Q P", "R"]
+
+
+def test_an_id_in_front_of_all_is_the_envelope(tmp_path):
+    told = '<ConstraintSet><ValueConstraint entry="P" value="{}"/></ConstraintSet>'
+    types = "".join(
+        container(name, entry("byte", "R"), told.format(id), baseType="X") for name, id in (("A", 7), ("B", 9))
+    )
+    (tmp_path / "ids.xml").write_text(sheet(container("X", abstract="true") + types))
+    (tree,) = run.read(tmp_path / "ids.xml", eds.Eds()).trees.values()
+    assert tree["protocol"]["stream"]["header"] == [{"at": 0, "bits": 8, "role": "id"}]
+    assert [(one["id"], one["length"], one["fields"][0]["name"]) for one in tree["messages"]] == [
+        (7, 1, "R"),
+        (9, 1, "R"),
+    ]
 
 
 def test_messages_that_nothing_tells_apart_are_counted_and_that_is_said(tmp_path):

@@ -168,11 +168,22 @@ def rust(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
 
 def rust_wire(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
     """The same on the stream decoders and the client of the wire layer."""
+    return _rust_links(icd, folder, "wire")
+
+
+def rust_stream(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
+    """The same on the decoders of envelopes."""
+    return _rust_links(icd, folder, "stream")
+
+
+def _rust_links(icd: Icd, folder: Path, target: str) -> tuple[list[str], dict[str, str]]:
     nodes = [node.name for node in icd.nodes if icd.protocol_of(node)]
     longest = "".join(f" if icd::{name}::LONGEST > longest {{ longest = icd::{name}::LONGEST; }}" for name in nodes)
-    text = f"static LINKS: &[&Link] = &[{', '.join(f'&icd::{name}::LINK' for name in nodes)}];\n"
+    links = ", ".join(f"&icd::{name}::LINK" for name in nodes)
+    text = f"fn link_of(node: usize) -> Option<&'static Link> {{\n    let all: [&Link; {len(nodes)}] = [{links}];\n"
+    text += "    all.get(node.checked_rem(all.len())?).copied()\n}\n"
     text += f"const LONGEST: usize = {{ let mut longest = 0;{longest} longest }};\n"
-    return _cargo_fuzz(icd, folder, "wire", HERE / "rust_wire_target.rs", {"links.rs": text})
+    return _cargo_fuzz(icd, folder, target, HERE / f"rust_{target}_target.rs", {"links.rs": text})
 
 
 def _cargo_fuzz(
@@ -206,6 +217,9 @@ def stream_seeds(icd: Icd) -> Iterator[bytes]:
                 yield bytes((part, index + 1, len(case.why))) + bytes.fromhex(asked["bytes"])
             elif asked["op"] == "uart_events":
                 yield bytes((0, index + 1, 7)) + bytes.fromhex("".join(asked["chunks"]))
+            elif asked["op"] == "stream_events":
+                head = bytes((7, index, asked["direction"] == "telemetry"))
+                yield head + bytes.fromhex("".join(asked["chunks"]))[:LONGEST]
             elif asked["op"] == "client":
                 part = 3 + ("uart", "can", "i2c").index(asked["bus"])
                 heard = [row["receive"] for row in asked["script"] if isinstance(row.get("receive"), str)]
@@ -229,13 +243,20 @@ def atheris(icd: Icd, folder: Path, target: str) -> tuple[list[str], dict[str, s
     return command, {"PYTHONPATH": str(package.parent)}
 
 
-SEEDS = {"c-wire": c_wire_seeds, "c-stream": c_stream_seeds, "rust-wire": rust_wire_seeds, "python-wire": stream_seeds}
+SEEDS = {
+    "c-wire": c_wire_seeds,
+    "c-stream": c_stream_seeds,
+    "rust-wire": rust_wire_seeds,
+    "rust-stream": c_stream_seeds,
+    "python-wire": stream_seeds,
+}
 HARNESSES = {
     "c": c,
     "c-wire": c_wire,
     "c-stream": c_stream,
     "rust": rust,
     "rust-wire": rust_wire,
+    "rust-stream": rust_stream,
     "python": python,
     "python-wire": python_streams,
 }

@@ -16,7 +16,8 @@ class Streams:
         nodes = [getattr(package, name) for name in package.NODES]
         self.links = [node.LINK for node in nodes if hasattr(node, "LINK")]
         self.wire = package.wire
-        self.parts = (self.uart, self.can, self.log, self.client_uart, self.client_can, self.client_i2c, self.download)
+        clients = (self.client_uart, self.client_can, self.client_i2c)
+        self.parts = (self.uart, self.can, self.log, *clients, self.download, self.envelopes)
 
     def one(self, data: bytes) -> None:
         """Part, node, and how it is cut: a byte each; then the stream."""
@@ -43,6 +44,21 @@ class Streams:
         assert whole.discarded + whole.pending + on_line == len(data) or link.framing.ignores_other
         for message in messages:
             self.wire.uart_kind(link, message)
+
+    def envelopes(self, link, size: int, data: bytes) -> None:
+        """The lowest bit of ``size`` is the direction."""
+        direction = "telemetry" if size & 1 else "telecommand"
+        whole, cut = (self.wire.StreamDecoder(link, direction) for _ in range(2))
+        found = whole.feed(data)
+        assert whole.discarded + whole.pending <= len(data)
+        if link.stream.delimited_by != "none":
+            assert found == [event for piece in pieces(data, size) for event in cut.feed(piece)]
+            assert (whole.discarded, whole.pending) == (cut.discarded, cut.pending)
+        for event in (event for event in found if event.event == "message"):
+            sent = self.wire.stream_encode(link, event.id, event.data, direction, **event.values)
+            (again,) = self.wire.StreamDecoder(link, direction).feed(sent)
+            assert (again.event, again.id, again.values) == ("message", event.id, event.values)
+            assert again.data.rstrip(b"\0") == event.data.rstrip(b"\0")
 
     def packets(self, data: bytes) -> Iterator[tuple[int, object]]:
         """Packets that mostly belong together: 29 bits of which few differ, up to 8 bytes, and times."""

@@ -129,10 +129,7 @@ fn client(link: &'static Link, size: usize, id: u8, data: &[u8]) {
 
 fuzz_target!(|input: &[u8]| {
     let [node, part, size, id, data @ ..] = input else { return };
-    let link = match LINKS.get(usize::from(*node) % LINKS.len().max(1)) {
-        Some(link) => *link,
-        None => return,
-    };
+    let Some(link) = link_of((*node).into()) else { return };
     let size = usize::from(*size).max(1);
     match part % 4 {
         0 => streams(link, size, data),

@@ -133,6 +133,19 @@ def test_the_python_harness_of_streams_finds_nothing(icd, package):
         streams.one(source.randbytes(source.randrange(200)))
 
 
+def test_the_python_harness_of_streams_finds_nothing_in_envelopes(linked, tmp_path, monkeypatch):
+    for package in _imported(linked, tmp_path, monkeypatch):
+        importlib.import_module(f"{package.__name__}.wire")
+        streams, source = Streams(package), random.Random(1)
+        seeds = list(stream_seeds(linked))
+        assert {seed[0] for seed in seeds} == {7}
+        for seed in seeds:
+            streams.one(seed)
+            spoilt = bytearray(seed)
+            spoilt[source.randrange(1, len(spoilt))] = source.randrange(256)
+            streams.one(bytes(spoilt))
+
+
 def test_the_python_harness_of_streams_notices_a_decoder_that_is_wrong(package, monkeypatch):
     wire = importlib.import_module(f"{package.__name__}.wire")
     streams = Streams(package)

@@ -8,9 +8,12 @@ from pathlib import Path
 import pytest
 
 from tests.conformance.build import cache_folder
+from tests.conftest import ROOT
+from tests.rust import harness
 from tests.rust.tools import Toolchain, run, toolchains
 
 USER = Path(__file__).parent / "user.rs"
+PORTS = Path(__file__).parent / "ports.rs"
 NEWEST_FEATURES = (1, 85)  # the current serde and defmt want no older Rust
 
 MANIFEST = """\
@@ -70,3 +73,25 @@ def test_its_features(shipped, tmp_path):
     run("cargo", "run", "--quiet", "--target-dir", target, cwd=tmp_path)
     command = ("cargo", "clippy", "--quiet", "--all-features", "--target-dir", target, "--")
     run(*command, "-D", "warnings", "-W", "clippy::pedantic", cwd=crate)
+
+
+def test_its_clients_over_the_ports_of_embedded_programs(shipped, tmp_path):
+    """`embedded-io` and `embedded-hal` come from a registry."""
+    receiver = harness.generate(harness.read(ROOT / "examples" / "links" / "ubx.yaml"), tmp_path).parent.parent
+    manifest = receiver / "Cargo.toml"
+    manifest.write_text(manifest.read_text().replace('name = "icd"', 'name = "receiver"'))
+    user = tmp_path / "user"
+    (user / "src").mkdir(parents=True)
+    (user / "src" / "main.rs").write_text(PORTS.read_text())
+    dependencies = f"""\
+[dependencies]
+icd = {{ path = "{shipped.crate.parent.parent}", features = ["embedded-io", "embedded-hal"] }}
+receiver = {{ path = "{receiver}", features = ["embedded-io"] }}
+embedded-io = "0.6"
+embedded-hal = "1"
+"""
+    (user / "Cargo.toml").write_text(MANIFEST + dependencies)
+    fetched = subprocess.run(["cargo", "fetch", "--quiet"], cwd=user, capture_output=True, text=True)
+    if fetched.returncode:
+        pytest.skip(f"no registry: {fetched.stderr[-200:]}")
+    run("cargo", "run", "--quiet", "--target-dir", cache_folder() / "rust-features", cwd=user)

@@ -10,12 +10,13 @@ from icdgen.definitions import packets
 from icdgen.definitions.eds_sheets import Sheets
 from icdgen.definitions.eds_types import CONTAINER
 from icdgen.definitions.eds_values import whole
-from icdgen.definitions.model import NotHeld
+from icdgen.definitions.model import NotHeld, unreadable
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
 _SETS = {"RequiredInterfaceSet": True, "ProvidedInterfaceSet": False}
+MOST_STEPS = 200_000  # containers that interfaces carry, and those on which they are based
 _DEEPEST = 20  # interfaces that are based on each other
 _APID_MASK = (1 << packets.APID_BITS) - 1
 _TOPIC_BITS, _GLOBAL = 8, 0x60  # as the library of cFS puts topics into application processes, for the first processor
@@ -51,16 +52,18 @@ class Interfaces:
 
     def __init__(self, sheets: Sheets) -> None:
         self.sheets = sheets
-        self.own = [one for package in sheets.own for one in package.iter(CONTAINER)]
+        self.own = [one for package in sheets.own for one in sheets.types(package) if one.tag == CONTAINER]
         self._is_own = set(self.own)
+        self._steps = 0
         self._derived: dict[Element, list[Element]] = {}
         self._uses: dict[Element, set[Element]] = {}  # what a type holds or is based on
         for package in sheets.all:
-            for one in package.iterfind(".//DataTypeSet/*"):
+            for one in sheets.types(package):
                 base = self._type(one, "baseType")
                 if base is not None:
                     self._derived.setdefault(base, []).append(one)
-                inner = [self._type(entry, "type") for entry in one.iter() if entry.tag.endswith("Entry")]
+                entries = (entry for tag in ("EntryList", "TrailerEntryList") for entry in one.iterfind(f"{tag}/*"))
+                inner = [self._type(entry, "type") for entry in entries]
                 used = {found for found in (base, self._type(one, "dataTypeRef"), *inner) if found is not None}
                 self._uses[one] = used
 
@@ -73,7 +76,10 @@ class Interfaces:
             return None  # said where it is read
 
     def sent(self) -> tuple[list[Sending], list[Element]]:
-        """What is sent, in the order of the file; and containers that stand by themselves, and no interface carries."""
+        """What is sent, in the order of the file; and containers that stand by themselves, and no interface carries.
+
+        Raises `Findings` where that is too much.
+        """
         found: dict[Element, dict[int | None, Sending]] = {}
         for is_mapped in (True, False):  # what an interface is made for tells more than what it can carry
             for one in self._carried(is_mapped):
@@ -96,6 +102,13 @@ class Interfaces:
         leaves: list[Element] = []
         while left:
             one = left.pop()
+            self._steps += 1
+            if self._steps > MOST_STEPS:
+                raise unreadable(
+                    self.sheets.to.file,
+                    f"its interfaces carry more than {MOST_STEPS:,} containers",
+                    "import it in parts",
+                )
             more = [inner for inner in self._derived.get(one, ()) if inner not in seen]
             seen.update(more)
             left += reversed(more)
@@ -180,7 +193,7 @@ class Interfaces:
     def _maps(self, interface: Element) -> dict[str, Element]:
         """Types by the generic type for which they stand."""
         found: dict[str, Element] = {}
-        for one in interface.iterfind(".//GenericTypeMapSet/GenericTypeMap"):
+        for one in interface.iterfind("GenericTypeMapSet/GenericTypeMap"):
             if (type_ := self._type(one, "type")) is not None:
                 found.setdefault(one.get("name", ""), type_)
         return found

@@ -23,7 +23,7 @@ MOST_BYTES = 32_000_000  # of all files
 _START = 65_536  # bytes by which a file is known
 _DEEPEST = 20  # values that are defined by values
 _LONGEST = 2000  # characters of a value
-_REFERENCE = re.compile(r"\$\{\s*([^${}]{1,200}?)\s*\}")
+_REFERENCE = re.compile(r"\$\{([^${}]{1,200})\}")
 
 
 class Sheets:
@@ -81,6 +81,11 @@ class Sheets:
         if known[0] != value:
             self._again.setdefault(f"${{{name}}}", file)
 
+    def types(self, package: Element) -> Iterator[Element]:
+        """The types of a package, and of its components."""
+        yield from package.iterfind("DataTypeSet/*")
+        yield from package.iterfind("ComponentSet/Component/DataTypeSet/*")
+
     def line(self, element: Element) -> int | None:
         """Where something stands, if that is in the file itself."""
         return self.lines.get(element)
@@ -105,7 +110,7 @@ class Sheets:
             raise NotHeld(f"`{line(text, 60)}` is defined by itself, or by more than {_DEEPEST} others")
         made, at = "", 0
         for found in _REFERENCE.finditer(text):
-            made += text[at : found.start()] + self._value(found[1], package, depth)
+            made += text[at : found.start()] + self._value(found[1].strip(), package, depth)
             at = found.end()
             if len(made) > _LONGEST:
                 raise NotHeld(f"`{line(text, 60)}` becomes longer than {_LONGEST} characters")
@@ -171,8 +176,11 @@ def _beside(file: str, size: int) -> Iterator[tuple[str, Element]]:
     for path in sorted(own.parent.glob("*.xml")):
         if path.name == own.name or not path.is_file():
             continue
-        with open(path, "rb") as opened:
-            start = opened.read(_START).decode("utf-8-sig", "replace")
+        try:
+            with open(path, "rb") as opened:
+                start = opened.read(_START).decode("utf-8-sig", "replace")
+        except OSError:
+            continue  # nobody's, as far as is known
         if safe_xml.root_of(start) not in (*ROOTS, _PARAMETERS):
             continue
         data = kinds.contents(path)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
 RAW_ONLY = "IMP078"
-MOST_STEPS = 1_000_000  # types and labels of all messages
+MOST_STEPS = 500_000  # types and labels of all messages
 CONTAINER, ARRAY, SUBRANGE = "ContainerDataType", "ArrayDataType", "SubRangeDataType"
 _SPECIAL = 16  # names that a field may have as special values
 _DEEPEST = 20  # types that are based on each other

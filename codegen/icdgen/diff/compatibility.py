@@ -74,7 +74,7 @@ def _facts(comparison: Comparison) -> tuple[tuple[str, ...], tuple[str, ...]]:
     wires: list[str] = []
     logs: list[str] = []
     for change in comparison.changes:
-        if change.code in ("DIF120", "DIF121") and change.breaks:
+        if change.code in ("DIF120", "DIF121", "DIF134") and change.breaks:
             steps = change.where.section.split(".")
             (logs if any("log" in step for step in steps[1:2]) else wires).append(change.message)
         elif change.code == "DIF116" and change.breaks:

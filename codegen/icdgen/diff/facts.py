@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
@@ -11,7 +12,7 @@ from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
 
 WORDS = frozenset(("source", "summary", "printed_constant"))  # keys that say something about the manual, not the device
-NAMES = ("name", "value")  # what tells the rows of a list apart
+NAMES = ("name", "role", "value")  # what tells the rows of a list apart
 
 
 class Fact(NamedTuple):
@@ -53,10 +54,13 @@ def _compare(path: str, values: Two, trees: Two, places: Places, is_word: bool) 
 
 
 def _row_names(rows: list[Any]) -> dict[str, int]:
+    """The place of each row by its name; of several that are called alike the second is ``constant#2``."""
     found: dict[str, int] = {}
+    seen: Counter[str] = Counter()
     for index, row in enumerate(rows):
         key = next((str(row[k]) for k in NAMES if k in row), str(index)) if isinstance(row, dict) else str(index)
-        found[f"{key}#{index}" if key in found else key] = index
+        seen[key] += 1
+        found[f"{key}#{seen[key]}" if seen[key] > 1 else key] = index
     return found
 
 

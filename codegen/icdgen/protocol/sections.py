@@ -10,7 +10,7 @@ from dataclasses import field
 from typing import Any
 
 from icdgen import codec
-from icdgen.frozen import rare
+from icdgen.frozen import dataclass
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message, Node
 from icdgen.protocol.declared import (
     BYTE,
@@ -40,7 +40,7 @@ CAN_KINDS = ("telecommand", "acknowledge", "refusal", "request", "reply", "reque
 _POLL = "time between two polls of "
 
 
-@rare(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Direction:
     """Ids of one direction."""
 
@@ -48,7 +48,7 @@ class Direction:
     last: int
 
 
-@rare(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Framing:
     """How messages are delimited on the UART. The escape byte comes before each of the other three."""
 
@@ -66,7 +66,7 @@ class Framing:
     )  # fmt: skip
 
 
-@rare(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Acknowledge:
     """The acknowledge as a message on the UART, which counts from its first byte."""
 
@@ -75,7 +75,7 @@ class Acknowledge:
     error_at: int = octets("", "where the error code stands")
 
 
-@rare(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Polled:
     """The frame that tells what became of a telecommand, with the names of its fields."""
 
@@ -86,7 +86,7 @@ class Polled:
     parameter: str
 
 
-@rare(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Crc:
     """Parameters of a CRC in the notation of the usual catalogues."""
 
@@ -99,7 +99,7 @@ class Crc:
     empty: int | None = code("empty", "checksum of no bytes at all, where it is not what the algorithm gives", None)
 
 
-@rare(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Checksum:
     """The checksum of telecommands and frames."""
 
@@ -112,7 +112,7 @@ class Checksum:
     bytes: int = octets("", "bytes that it adds to a message", 1, BYTE)
 
 
-@rare(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class CanPart:
     """A part of the CAN identifier."""
 
@@ -120,7 +120,7 @@ class CanPart:
     shift: int
 
 
-@rare(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Extended:
     """CAN messages of several packets."""
 
@@ -137,7 +137,7 @@ class Extended:
     packet_timeout: int = time("packet_timeout_ms", "longest time between two packets of a message", 1000)
 
 
-@rare(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Can:
     """CAN: parts of the identifier by role (type, channel, source, destination), and types by kind of message."""
 
@@ -155,7 +155,7 @@ class Can:
     extended: Extended | None
 
 
-@rare(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class LogBit:
     """A bit of the log mask and the frame that it selects; ``id`` and ``name`` are None for an unassigned bit."""
 
@@ -165,7 +165,7 @@ class LogBit:
     name: str | None
 
 
-@rare(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class LogMask:
     """The mask of a log. Frames stand in slots, in the order of rising bits."""
 
@@ -185,7 +185,7 @@ class LogMask:
         return found
 
 
-@rare(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class LogFile:
     """The file form of a log."""
 
@@ -197,7 +197,7 @@ class LogFile:
     file_type: int | None = number("file_type.value", "type of such a file", 0, BYTE, None)
 
 
-@rare(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class LogMessage:
     """The unsolicited form of a log. Places count from the id."""
 
@@ -206,7 +206,7 @@ class LogMessage:
     frames_at: int = octets("frames_byte", "where the selected frames begin, counted from the id", 0)
 
 
-@rare(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class TimePart:
     at: int
     bits: int
@@ -214,13 +214,13 @@ class TimePart:
     offset: int
 
 
-@rare(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class IndexField:
     at: int
     bytes: int
 
 
-@rare(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Index:
     """Entries of the index file: fields by role (type, counter, checksum, size, time, meta)."""
 
@@ -229,7 +229,7 @@ class Index:
     fields: dict[str, IndexField]
 
 
-@rare(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class HoleMap:
     """A bit for each packet of a block."""
 
@@ -251,7 +251,7 @@ class HoleMap:
     field: str
 
 
-@rare(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Step:
     """A message that plays a part in a procedure, and its fields by role."""
 
@@ -264,7 +264,7 @@ class Step:
         return codec.encode(node, self.message, self.message.fresh | given)
 
 
-@rare(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Listing:
     """How the list of files is read one by one."""
 
@@ -278,7 +278,7 @@ class Listing:
 _COVERS_FILL = "whether the checksum of a block covers the fill of its last packet"
 
 
-@rare(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Download:
     """How a file is downloaded."""
 
@@ -294,7 +294,7 @@ class Download:
     rounds: int = number("rounds", "most bursts for one block", 1, U32)
 
 
-@rare(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Upload:
     """How a file is uploaded."""
 
@@ -319,7 +319,7 @@ class Upload:
     )
 
 
-@rare(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Erasure:
     """How files are deleted, or their medium is formatted."""
 
@@ -334,7 +334,7 @@ PROCEDURES: dict[str, type[Any]] = {
 }  # fmt: skip
 
 
-@rare(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Files:
     """File transfer. A procedure that the ICD does not describe completely is None."""
 
@@ -367,7 +367,7 @@ class Files:
         }
 
 
-@rare(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Operation:
     """What a telecommand starts; its frame says when it is done: ``busy`` is clear, or ``ready`` is set."""
 
@@ -382,7 +382,7 @@ class Operation:
     )
 
 
-@rare(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Settings:
     """How a client waits and tries again, unless it is told otherwise."""
 

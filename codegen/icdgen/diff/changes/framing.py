@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from icdgen.diff.context import Context
@@ -12,6 +13,7 @@ from icdgen.icd.annex import Loggable
 from icdgen.icd.rules.wording import quote
 
 LONGEST = 80
+_ENVELOPE = re.compile(r"protocol\.stream(\.(header|trailer)(\.[^.]+)?)?")  # without which a message looks otherwise
 
 
 def _short(text: str) -> str:
@@ -20,6 +22,7 @@ def _short(text: str) -> str:
 
 @rule("DIF120", "node")
 @rule("DIF121", "node", severity="warning")
+@rule("DIF134", "node")
 @rule("DIF413", "node", severity="note")
 def fact_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
     for fact in facts(pair.old, pair.new):
@@ -29,10 +32,11 @@ def fact_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
             code, said, keys = "DIF413", "says otherwise", ()
         else:
             was, now = _short(was), _short(now)
+            gone = "DIF134" if _ENVELOPE.fullmatch(fact.path) else "DIF121"
             if fact.new is None:
-                code, said = "DIF121", f"is no longer stated; it was {was}"
+                code, said = gone, f"is no longer stated; it was {was}"
             elif fact.old is None:
-                code, said = "DIF121", f"is stated now: {now}"
+                code, said = gone, f"is stated now: {now}"
             else:
                 code, said = "DIF120", f"is {now}, was {was}"
         where = pair.where()._replace(section=fact.path)

@@ -31,7 +31,8 @@ def requests(known: Facts, source: Random) -> Requests:
         slots = layout.selected(mask)
         data = [[source.randbytes(slot.length) for slot in slots] for _ in range(2)]
         if known.log_file:
-            times = [(0, 0), (0xFFFFFFFF, 999)]
+            most = [(1 << 8 * size) - 1 for _, size in (known.log_file.seconds, known.log_file.milliseconds)]
+            times = [(0, 0), (min(0xFFFFFFFF, most[0]), min(999, most[1]))]
             entries = [
                 {"seconds": s, "milliseconds": ms, "frames": [f.hex() for f in one]}
                 for (s, ms), one in zip(times, data, strict=True)

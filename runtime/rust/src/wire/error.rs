@@ -12,7 +12,7 @@ pub enum Error {
     /// The node has no message of that id.
     UnknownId {
         /// The id.
-        id: u8,
+        id: u32,
     },
     /// Another request is going on, or its output has not been taken.
     Busy,
@@ -59,9 +59,7 @@ impl From<crate::Error> for Error {
         match error {
             crate::Error::Length { expected, actual } => Self::Length { expected, actual },
             crate::Error::Range { field, allowed } => Self::Range { field, allowed },
-            crate::Error::UnknownId { id } => Self::UnknownId {
-                id: u8::try_from(id).unwrap_or(u8::MAX),
-            },
+            crate::Error::UnknownId { id } => Self::UnknownId { id },
         }
     }
 }

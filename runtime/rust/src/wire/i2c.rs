@@ -54,7 +54,9 @@ pub fn write(
 ///
 /// [`Error::UnknownId`] if there is no such frame, [`Error::Unsupported`] if the ICD has no checksum.
 pub fn read_length(link: &Link, id: u8, checked: bool) -> Result<usize, Error> {
-    let message = link.telemetry(id).ok_or(Error::UnknownId { id })?;
+    let message = link
+        .telemetry(id)
+        .ok_or_else(|| Error::UnknownId { id: id.into() })?;
     Ok(message.length + form(link, checked)?.map_or(0, |form| form.bytes))
 }
 

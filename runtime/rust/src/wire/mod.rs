@@ -6,7 +6,8 @@
 //! it takes: those of another node do not compile.
 //!
 //! With the feature `std` there is also a `Session`, for programs that may wait: a client over any port
-//! that reads and writes.
+//! that reads and writes. With `embedded-io` and `embedded-hal` clients have a `poll` and a `poll_i2c`
+//! over the ports of embedded programs.
 
 mod bits;
 pub mod can;
@@ -21,6 +22,8 @@ pub mod link;
 pub(crate) mod links;
 pub mod log;
 mod message;
+#[cfg(feature = "embedded-io")]
+mod port;
 mod request;
 #[cfg(feature = "std")]
 pub mod session;
@@ -35,6 +38,8 @@ pub use self::event::{Event, NodeEvent};
 pub use self::identity::{identify, Identity};
 pub use self::link::{Bus, Link, Reason, Settings};
 pub use self::message::{Linked, NodeLink, TelecommandOf, TelemetryOf};
+#[cfg(feature = "embedded-io")]
+pub use self::port::PortError;
 pub use self::request::{Direction, Request, Started};
 #[cfg(feature = "std")]
 pub use self::session::{Failure, Session};

@@ -108,7 +108,7 @@ impl<const N: usize, const R: usize> Slots<N, R> {
         let reply = match request.reply {
             Some(named) if !asks => {
                 form.row(Direction::Telemetry, named)
-                    .ok_or_else(|| unknown(named))?;
+                    .ok_or(Error::UnknownId { id: named })?;
                 Some(named)
             }
             _ => row.reply,
@@ -267,7 +267,7 @@ fn telecommand(form: &Stream, request: &Request<'_>) -> Result<&'static StreamRo
     let id = request.id;
     if request.direction == Direction::Telecommand {
         let row = form.row(Direction::Telecommand, id);
-        return row.map(|(_, row)| row).ok_or_else(|| unknown(id));
+        return row.map(|(_, row)| row).ok_or(Error::UnknownId { id });
     }
     let mut rows = form.telecommands.iter();
     let asking = rows.find(|row| row.reply == Some(id) && row.least == 0);
@@ -275,12 +275,6 @@ fn telecommand(form: &Stream, request: &Request<'_>) -> Result<&'static StreamRo
     asking.ok_or(if is_known {
         Error::Unsupported
     } else {
-        unknown(id)
+        Error::UnknownId { id }
     })
-}
-
-fn unknown(id: u32) -> Error {
-    Error::UnknownId {
-        id: u8::try_from(id).unwrap_or(u8::MAX),
-    }
 }

@@ -1,5 +1,7 @@
 //! The client: one request at a time, from sending to its outcome, over any bus.
 
+#[cfg(feature = "embedded-hal")]
+mod i2c;
 mod machine;
 
 use self::machine::Machine;

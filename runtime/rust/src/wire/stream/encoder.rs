@@ -100,9 +100,7 @@ pub fn encode(
     out: &mut [u8],
 ) -> Result<usize, Error> {
     let form = link.stream.as_ref().ok_or(Error::Unsupported)?;
-    let (_, row) = form.row(direction, id).ok_or(Error::UnknownId {
-        id: u8::try_from(id).unwrap_or(u8::MAX),
-    })?;
+    let (_, row) = form.row(direction, id).ok_or(Error::UnknownId { id })?;
     if data.len() < row.least || data.len() > row.most {
         return Err(Error::Length {
             expected: if data.len() > row.most {

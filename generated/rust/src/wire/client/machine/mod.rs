@@ -94,7 +94,7 @@ impl<const N: usize> Machine<N> {
     pub(super) fn start(&mut self, now: u32, request: &Request<'_>) -> Result<Started, Error> {
         let id = request.id;
         let form = self.form(request.direction, id);
-        let form = form.ok_or(Error::UnknownId { id })?;
+        let form = form.ok_or_else(|| Error::UnknownId { id: id.into() })?;
         if self.is_busy() {
             return Err(Error::Busy);
         }

@@ -1,0 +1,37 @@
+//! A client over an I2C bus that has the trait of `embedded-hal`. Feature `embedded-hal`.
+
+use super::{head, Client, NodeEvent};
+use embedded_hal::i2c::I2c;
+
+impl<T, const N: usize> Client<T, N> {
+    /// I2C: lets time pass, and makes the transactions that are due. One that fails is told to the client,
+    /// which asks again; so does this.
+    ///
+    /// # Errors
+    ///
+    /// That of the bus, of the last transaction that failed.
+    pub fn poll_i2c<B: I2c>(
+        &mut self,
+        now: u32,
+        bus: &mut B,
+        mut on_event: impl FnMut(NodeEvent<'_, T>),
+    ) -> Result<(), B::Error> {
+        self.tick(now, &mut on_event);
+        let address = self.machine.link.i2c_address.unwrap_or(0);
+        let mut result = Ok(());
+        let mut input = [0; N];
+        while let Some(transaction) = self.output_transaction() {
+            let size = transaction.read;
+            let made = match input.get_mut(..size) {
+                Some(read) if size > 0 => bus.write_read(address, transaction.write, read),
+                _ => bus.write(address, transaction.write),
+            };
+            let bytes = made.is_ok().then(|| head(&input, size));
+            self.transferred(now, bytes, &mut on_event);
+            if made.is_err() {
+                result = made;
+            }
+        }
+        result
+    }
+}

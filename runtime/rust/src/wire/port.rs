@@ -1,0 +1,102 @@
+//! Clients over the ports of embedded programs, by the traits of `embedded-io`. Feature `embedded-io`.
+//!
+//! A client's `poll` sends what is to be sent, takes what has come, and comes back. It is called again
+//! and again, with the time in milliseconds, which may wrap, and tells of what happened.
+
+use super::{bits, stream, Client, Error, NodeEvent};
+use core::fmt;
+use embedded_io::{Read, ReadReady, Write};
+
+const PIECE: usize = 64; // bytes that are read at once
+
+/// Why a client could not go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PortError<E> {
+    /// The port failed.
+    Port(E),
+    /// The client's output does not fit the buffer.
+    Wire(Error),
+}
+
+impl<E: fmt::Debug> fmt::Display for PortError<E> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Port(error) => write!(out, "the port failed: {error:?}"),
+            Self::Wire(error) => error.fmt(out),
+        }
+    }
+}
+
+impl<T, const N: usize> Client<T, N> {
+    /// UART: lets time pass, sends what is to be sent, and takes what has come, without waiting for it.
+    ///
+    /// # Errors
+    ///
+    /// [`PortError::Port`]; the request goes on, unless it is cancelled.
+    pub fn poll<P: Read + ReadReady + Write>(
+        &mut self,
+        now: u32,
+        port: &mut P,
+        mut on_event: impl FnMut(NodeEvent<'_, T>),
+    ) -> Result<(), PortError<P::Error>> {
+        self.tick(now, &mut on_event);
+        let mut is_sent = false;
+        while let Some(bytes) = self.output() {
+            port.write_all(bytes).map_err(PortError::Port)?;
+            is_sent = true;
+        }
+        if is_sent {
+            port.flush().map_err(PortError::Port)?;
+        }
+        let mut input = [0; PIECE];
+        while let Some(bytes) = came(port, &mut input)? {
+            self.received(now, bytes, &mut on_event);
+        }
+        Ok(())
+    }
+}
+
+impl<T, const N: usize, const S: usize, const R: usize> stream::Client<T, N, S, R> {
+    /// Lets time pass, sends what is to be sent, and takes what has come, without waiting for it. The
+    /// `line` holds one message as it is sent, with what delimits it.
+    ///
+    /// # Errors
+    ///
+    /// [`PortError::Port`], [`PortError::Wire`] if a message does not fit the `line`; requests go on,
+    /// unless they are cancelled.
+    pub fn poll<P: Read + ReadReady + Write>(
+        &mut self,
+        now: u32,
+        port: &mut P,
+        line: &mut [u8],
+        mut on_event: impl FnMut(stream::NodeEvent<'_, T>),
+    ) -> Result<(), PortError<P::Error>> {
+        self.tick(now, &mut on_event);
+        let mut is_sent = false;
+        while let Some(bytes) = self.output(line).map_err(PortError::Wire)? {
+            port.write_all(bytes).map_err(PortError::Port)?;
+            is_sent = true;
+        }
+        if is_sent {
+            port.flush().map_err(PortError::Port)?;
+        }
+        let mut input = [0; PIECE];
+        while let Some(bytes) = came(port, &mut input)? {
+            self.received(now, bytes, &mut on_event);
+        }
+        Ok(())
+    }
+}
+
+/// What has come; None if there is nothing now.
+fn came<'a, P: Read + ReadReady>(
+    port: &mut P,
+    input: &'a mut [u8; PIECE],
+) -> Result<Option<&'a [u8]>, PortError<P::Error>> {
+    if !port.read_ready().map_err(PortError::Port)? {
+        return Ok(None);
+    }
+    let count = port.read(input).map_err(PortError::Port)?;
+    Ok((count > 0).then(|| bits::head(input, count)))
+}

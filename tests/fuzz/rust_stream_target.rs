@@ -1,0 +1,42 @@
+//! cargo-fuzz harness on the decoders of envelopes of the generated crate. See README.md.
+#![no_main]
+
+use icd::wire::stream::{encode, Decoder, Event};
+use icd::wire::{Direction, Link};
+use libfuzzer_sys::fuzz_target;
+
+include!("links.rs");
+
+const SEQUENCES: usize = 4;
+
+/// The events of a stream in pieces of `size` bytes, and what became of its other bytes.
+fn heard(link: &'static Link, direction: Direction, stream: &[u8], size: usize, limit: usize) -> Option<(Vec<String>, u64, u64)> {
+    let mut decoder = Decoder::<LONGEST, SEQUENCES>::with_limit(link, direction, limit).ok()?;
+    let mut events = Vec::new();
+    for piece in stream.chunks(size.max(1)) {
+        decoder.feed(piece, |event| {
+            if let Event::Message { id, data, values } = event {
+                assert!(data.len() <= limit);
+                let mut line = vec![0; 2 * data.len() + 600];
+                let written = encode(link, direction, id, data, &values, &mut line).unwrap();
+                assert!(written > 0);
+            }
+            events.push(format!("{event:?}"));
+        });
+    }
+    assert!(decoder.discarded() + decoder.pending() <= stream.len() as u64);
+    Some((events, decoder.discarded(), decoder.pending()))
+}
+
+fuzz_target!(|input: &[u8]| {
+    let [node, direction, room, size, stream @ ..] = input else { return };
+    let Some(link) = link_of((*node).into()) else { return };
+    let Some(form) = link.stream.as_ref() else { return };
+    let direction = if direction & 1 == 0 { Direction::Telecommand } else { Direction::Telemetry };
+    let limit = link.longest.saturating_sub(usize::from(*room)).max(form.header_bytes + form.trailer_bytes);
+    let whole = heard(link, direction, stream, stream.len(), limit);
+    if form.delimited_by != icd::wire::link::Delimiter::Packet {
+        assert_eq!(whole, heard(link, direction, stream, usize::from(*size), limit));
+        assert_eq!(whole, heard(link, direction, stream, 1, limit));
+    }
+});
