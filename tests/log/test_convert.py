@@ -202,5 +202,17 @@ def test_every_type_in_both_byte_orders(tmp_path, text_of_icd):
     assert [[row[index] for index in numbers] for row in lines] == [[row[index] for index in numbers] for row in wanted]
 
 
+def test_golden_vectors_have_times_that_a_log_can_hold(tmp_path):
+    from icdgen.loading import load
+    from icdgen.vectors import protocol
+
+    (tmp_path / "odd.yaml").write_text(ODD)  # seconds of three bytes
+    loaded = load([tmp_path / "odd.yaml"])
+    assert loaded.icd is not None and loaded.ok
+    (node,) = json.loads(protocol.text(loaded.icd) or "")["nodes"]
+    asked = [case["request"] for case in node["cases"] if case["request"]["op"] == "log_encode"]
+    assert {entry["seconds"] for one in asked for entry in one["entries"]} >= {0, 0xFFFFFF}
+
+
 def _same(value: object) -> object:
     return "nan" if isinstance(value, float) and math.isnan(value) else value

@@ -75,6 +75,22 @@ def outside_is_said(ctx: Context) -> Iterator[Fault]:
             yield Fault(field.source, field.source.at("outside"), message, "add `points`, or remove it")
 
 
+@rule("ICD069", severity="warning")
+def points_are_in_reach(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.having["points"]:
+        line, source = field.curve, field.source
+        if line is None or line.outside not in (curve.CLAMP, curve.REFUSE) or field.type == "float":
+            continue
+        first, last = line.points[0][0], line.points[-1][0]
+        if last < field.raw_min or field.raw_max < first:
+            what = "the same physical value" if line.outside == curve.CLAMP else "no physical value"
+            message = (
+                f"the points of {quote(field.name)} go from {first:g} to {last:g}, "
+                f"its raw values from {field.raw_min:,} to {field.raw_max:,}: each of them has {what}"
+            )
+            yield Fault(source, source.at("points"), message, "correct the points, or `bits` or `type`")
+
+
 @rule("ICD062")
 def formula_direction(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.having["formula_for"]:
