@@ -22,7 +22,7 @@ def differences(icd: Icd, node: Node, file: Path, frames: int, seed: int) -> Ite
     for type_ in judge.parameter_types.values():
         if hasattr(type_, "enumeration"):
             type_.enumeration = _Any(type_.enumeration)
-    names = {one.get("name"): _alias(one) for one in ElementTree.parse(file).iterfind(f".//{SPACE}Parameter")}
+    names = {one.get("name"): alias(one) for one in ElementTree.parse(file).iterfind(f".//{SPACE}Parameter")}
     width = next(one for one in judge.parameters.values() if one.name == "Id").parameter_type.encoding.size_in_bits // 8
     for message in icd.messages_of(node):
         if message.telemetry_id is None:
@@ -47,9 +47,9 @@ class _Any(dict):
         return f"value {value}"
 
 
-def _alias(parameter: ElementTree.Element) -> str:
-    alias = parameter.find(f"{SPACE}AliasSet/{SPACE}Alias")
-    return parameter.get("name", "") if alias is None else alias.get("alias", "")
+def alias(parameter: ElementTree.Element) -> str:
+    found = parameter.find(f"{SPACE}AliasSet/{SPACE}Alias")
+    return parameter.get("name", "") if found is None else found.get("alias", "")
 
 
 def _compare(node: Node, message: Message, frame: bytes, theirs: dict) -> tuple[int, str]:

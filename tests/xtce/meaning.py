@@ -33,39 +33,39 @@ def messages(icd: Icd, node: Node) -> dict[tuple[str, str], dict]:
     for one in icd.messages_of(node):
         for direction, id in (("telecommand", one.telecommand_id), ("telemetry", one.telemetry_id)):
             if id is not None and not (direction == "telecommand" and _lacks(one, icd.node(one.node))):
-                found[direction, _line(one.name)] = _message(one, icd.node(one.node), direction, id)
+                found[direction, line(one.name)] = _message(one, icd.node(one.node), direction, id)
     return found
 
 
 def _message(one: Message, node: Node, direction: str, id: int) -> dict:
     is_sent = direction == "telecommand"
-    has_views = not is_sent and all(_is_ordered(field, node) for field in one.owners)
+    has_views = not is_sent and all(is_ordered(field, node) for field in one.owners)
     fields = [field for field in one.fields if not (field.implied or field.derived) and (has_views or not field.view)]
-    fields = [field for field in fields if not (one.tail and field.at >= one.begin * 8) and _is_ordered(field, node)]
+    fields = [field for field in fields if not (one.tail and field.at >= one.begin * 8) and is_ordered(field, node)]
     runs = [(field, _bits(field, node)) for field in fields]
     told = [(field.const, bits) for field, bits in runs if field.const is not None and is_sent]
     constants = {bit: value >> at & 1 for value, bits in told for at, bit in enumerate(bits)}
     return {
         "id": id, "is both": one.kind == "configuration" and not _lacks(one, node), "bytes": one.begin, 
-        "summary": _line(one.summary), "group": _line(one.group),
-        "hazard": _line(one.hazard) if is_sent else "", "constants": constants,
-        "fields": {_line(field.name): _field(field, bits) for field, bits in runs if not (told and field.const is not None)},
+        "summary": line(one.summary), "group": line(one.group),
+        "hazard": line(one.hazard) if is_sent else "", "constants": constants,
+        "fields": {line(field.name): _field(field, bits) for field, bits in runs if not (told and field.const is not None)},
     }  # fmt: skip
 
 
 def _lacks(one: Message, node: Node) -> bool:
     """Whether a telecommand is left out, as XTCE has no word for a part of it."""
-    return one.tail is not None or not all(_is_ordered(field, node) for field in one.owners)
+    return one.tail is not None or not all(is_ordered(field, node) for field in one.owners)
 
 
-def _is_ordered(field: Field, node: Node) -> bool:
+def is_ordered(field: Field, node: Node) -> bool:
     """Whether the bits of a field follow each other, from the most significant one on or from the least significant one."""
     bits = _bits(field, node)
     falling = [bit // 8 * 8 + 7 - bit % 8 for bit in reversed(bits)]
     return field.is_bytes or any(list(range(one[0], one[0] + len(one))) == one for one in (bits, falling))
 
 
-def _line(text: str) -> str:
+def line(text: str) -> str:
     """What can be printed of a text, in one line."""
     return " ".join("".join(one if one.isprintable() or one == "\xa0" else " " for one in text).split())
 
@@ -89,9 +89,9 @@ def _field(field: Field, bits: list[int]) -> dict:
         "scale": _scale(field),
         "curve": field.curve and _curve(field),
         "constant": field.const,
-        "special": {(one.value, one.number): _line(one.meaning) for one in field.special},
+        "special": {(one.value, one.number): line(one.meaning) for one in field.special},
         "limits": _limits(field),
-        "summary": _line(field.summary),
+        "summary": line(field.summary),
         "view": field.view,
         "when": {(one.field, tuple(sorted(one.values))) for one in field.when},
     }
@@ -100,8 +100,8 @@ def _field(field: Field, bits: list[int]) -> dict:
 def _enum(enum: Enum) -> tuple[str, dict]:
     times = Counter(one.name for one in enum.members)
     held = [one for one in enum.members if one.value >= -(1 << 63) and one.last < 1 << 63]
-    names = {one: _line(one.name if times[one.name] == 1 else f"{one.name} {one.value}") for one in held}
-    return _line(enum.name), {(one.value, one.last): name for one, name in names.items()}
+    names = {one: line(one.name if times[one.name] == 1 else f"{one.name} {one.value}") for one in held}
+    return line(enum.name), {(one.value, one.last): name for one, name in names.items()}
 
 
 def _scale(field: Field) -> tuple[float, float] | None:

@@ -131,6 +131,7 @@ class Layout:
             piece = self.types.piece(type_, where)
         said = {**meant(of), **described(of, type_)}
         said |= {"view": True} if "view" in beside(of) else {}
+        said |= {"const": number(constant, "a constant")} if (constant := beside(of).get("constant")) else {}
         self._place(of, called(of), repeated(piece, count, where), said, 0)
 
     def _place(self, of: Element, name: str, piece: Piece, said: Item, depth: int) -> None:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain, count
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from icdgen import naming
 from icdgen.backends.xtce.places import Run, gaps, run_of, run_of_all
-from icdgen.backends.xtce.types import Type, Types, is_said
+from icdgen.backends.xtce.types import Type, Types, is_said, type_of
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.icd.model import TELECOMMAND, Special
 
@@ -22,6 +22,7 @@ class Row(NamedTuple):
     alias: str = ""  # what the ICD calls it
     summary: str = ""
     special: tuple[Special, ...] = ()
+    constant: int | None = None
     is_reserved: bool = False
     is_view: bool = False
 
@@ -38,6 +39,15 @@ class Entry(NamedTuple):
 
 
 @dataclass
+class Base:
+    """What messages of telemetry that share an id begin with: the numbers that tell them."""
+
+    name: str
+    id: int
+    entries: dict[str, Entry] = field(default_factory=dict)
+
+
+@dataclass
 class Frame:
     """A message in one direction."""
 
@@ -47,12 +57,23 @@ class Frame:
     rows: list[Row] = field(default_factory=list)
     entries: list[Entry] = field(default_factory=list)
     size: int = 0  # bits of every frame, where entries that are not always there leave it open
-    told: list[tuple[str, int]] = field(default_factory=list)  # parameters that have one value in it
+    base: Base | None = None  # of one that shares its id
+    told: list[tuple[str, int]] = field(default_factory=list)  # numbers of the base, with their values
     lacks: list[str] = field(
         default_factory=list
     )  # what is left out, as XTCE has no word for it: such a command cannot be sent
     notes: list[str] = field(default_factory=list)  # what else is not said
     names: dict[str, str] = field(default_factory=dict)  # of parameters or arguments, by those of fields
+
+
+_PLAIN: dict[str, Any] = {"terms": (), "points": (), "extrapolates": False, "limits": (), "labels": ()}
+
+
+def _named(of: Type) -> str:
+    """What a type is called of which there is nothing to say but how many bits it has."""
+    if of.kind == "Binary":
+        return f"bytes{of.bits // 8}"
+    return f"{'' if of.is_signed else 'u'}int{of.bits}{'_le' if of.byte_order.startswith('least') else ''}"
 
 
 def _camel(name: str) -> str:
@@ -76,6 +97,10 @@ class Frames:
     types: Types
     head: int
     reserved: dict[str, Row] = field(default_factory=dict)
+    shared: dict[int, int] = field(
+        default_factory=dict
+    )  # ids of several messages, with bytes that all their frames have
+    bases: dict[int, Base] = field(default_factory=dict)  # of these
     taken: set[str] = field(default_factory=set)  # names of containers or commands, and of parameters
 
     def frame(self, message: MessageDescription) -> Frame:
@@ -84,6 +109,8 @@ class Frames:
         id = message.model.telecommand_id if is_sent else message.model.telemetry_id
         assert id is not None
         made = Frame(unique(_camel(message.name) or "Message", self.taken), message, id)
+        if id in self.shared and not is_sent:
+            made.base = self.bases.setdefault(id, Base(unique(f"Id{id}", self.taken), id))
         parts = tuple(_parts(message))
         self._give_names(made, parts)
         needed = {need.field.name for one in parts for need in one.needs}
@@ -118,12 +145,30 @@ class Frames:
     def _entry(self, made: Frame, one: FieldDescription, run: Run) -> Entry:
         name = made.names[one.name]
         type_ = self.types.of(one, name if name.startswith(made.name) else f"{made.name}_{name}", run.is_little)
-        made.rows.append(Row(name, type_, one.model.name, one.model.summary, one.model.special, is_view=one.model.view))
-        if one.model.const is not None:
-            made.told.append((name, one.model.const))
+        made.rows.append(
+            Row(
+                name,
+                type_,
+                one.model.name,
+                one.model.summary,
+                one.model.special,
+                one.model.const,
+                is_view=one.model.view,
+            )
+        )
+        if one.model.const is not None and made.base is not None and run.at + run.bits <= 8 * self.shared[made.id]:
+            self._tell(made, made.base, one.model.const, one, run)
         if not is_said(one.model):
             made.notes.append(f"`{one.model.name}`: beyond its table it has the value of the last point")
         return Entry(name, run._replace(at=self.head + run.at), bool(one.count), self._needs(made, one))
+
+    def _tell(self, made: Frame, base: Base, value: int, one: FieldDescription, run: Run) -> None:
+        """The container below reads a constant, too: it must be known before a program looks for the message."""
+        name = f"{base.name}_{run.at}_{run.bits}{'_le' if run.is_little else ''}{'_signed' if one.model.signed else ''}"
+        type_ = replace(type_of(one.model, run.is_little), kind="Integer", unit="", enum="", **_PLAIN)
+        self.reserved.setdefault(name, Row(name, self.types.name(type_, _named(type_)), is_reserved=True))
+        base.entries[name] = Entry(name, run, at=self.head + run.at)
+        made.told.append((name, value))
 
     def _needs(self, made: Frame, one: FieldDescription) -> tuple[tuple[str, tuple[int, ...]], ...]:
         return tuple((made.names[need.field.name], need.values) for need in one.needs)
@@ -144,7 +189,8 @@ class Frames:
 
     def _lay_out(self, made: Frame, found: list[Entry], end: int) -> None:
         """Gives entries their places, and reserved bits entries: each then follows the one before it, if that can be."""
-        is_plain = all(one.run.is_usual and not one.needs for one in found) and not made.message.seen
+        is_plain = all(one.run.is_usual and not one.needs for one in found)
+        is_plain = is_plain and not made.message.seen and made.base is None
         is_plain = is_plain and not any("order of its bits" in text for text in made.lacks)
         if is_plain:
             found += map(self._reserved, gaps((one.run for one in found), self.head, end))
@@ -162,8 +208,7 @@ class Frames:
         name = f"Reserved{run.bits}"
         is_wide = run.bits > 64
         type_ = Type("Binary", run.bits) if is_wide else Type("Integer", run.bits, "unsigned", _first(run.bits))
-        wanted = f"bytes{run.bits // 8}" if is_wide else f"uint{run.bits}"
-        self.reserved.setdefault(name, Row(name, self.types.name(type_, wanted), is_reserved=True))
+        self.reserved.setdefault(name, Row(name, self.types.name(type_, _named(type_)), is_reserved=True))
         return Entry(name, run)
 
 

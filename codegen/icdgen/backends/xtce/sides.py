@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from icdgen.backends.xtce.frames import Frame, Frames, Row
+from icdgen.backends.xtce.frames import Base, Frame, Frames, Row
 from icdgen.backends.xtce.heads import Head, head_of
 from icdgen.backends.xtce.types import Type, Types
 from icdgen.describe import NodeDescription
@@ -21,6 +21,7 @@ class Side(NamedTuple):
     head: Head
     rows: list[Row]  # parameters; arguments stand with their commands
     frames: list[Frame]
+    bases: list[Base]  # of frames that share an id
     notes: list[str]
 
 
@@ -32,7 +33,12 @@ def side(icd: Icd, node: NodeDescription, direction: str) -> Side | None:
     types = Types()
     id_bits = max(node.model.id_bits, *(id.bit_length() for one in node.spoken for id in one.model.ids))
     head = head_of(id_bits, icd.protocol_of(node.model), direction, types)
-    maker = Frames(direction, types, head.bits, taken={"TelemetryFrame", "TelecommandFrame"})
+    shared = {
+        one.id: min(among.message.model.least for among in one.candidates)
+        for one in node.ids(direction)
+        if one.is_shared
+    }
+    maker = Frames(direction, types, head.bits, shared=shared, taken={"TelemetryFrame", "TelecommandFrame"})
     frames = [maker.frame(message) for message, _ in spoken]
     notes = [f"{direction} `{one.message.model.name}`: {note}" for one in frames for note in (*one.lacks, *one.notes)]
     if direction == TELECOMMAND:
@@ -40,7 +46,7 @@ def side(icd: Icd, node: NodeDescription, direction: str) -> Side | None:
         frames = [one for one in frames if not one.lacks]
     rows = [*head.rows, *maker.reserved.values(), *(row for one in frames for row in one.rows)]
     named = {name: type_ for type_, name in types.names.items()}
-    return Side(named, head, rows, frames, notes)
+    return Side(named, head, rows, frames, list(maker.bases.values()), notes)
 
 
 def text(value: object) -> str:
