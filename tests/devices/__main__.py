@@ -36,6 +36,11 @@ class Row:
         return sum(len(node.messages) for node in self.nodes)
 
     @property
+    def unread(self) -> Counter[str]:
+        """What stands in the library's tables and is not counted, for the library itself reads no frame of it."""
+        return Counter(one.unread for node in self.nodes for one in node.definitions.messages if one.unread)
+
+    @property
     def raw_only(self) -> Counter[str]:
         """Of what is held, why some physical values are not."""
         return Counter(one.raw_only for node in self.nodes for one in node.messages if one.raw_only)
@@ -59,7 +64,7 @@ def measure(
         if sample is not None and len(definitions.messages) > sample:
             definitions.messages = random.Random(seed).sample(definitions.messages, sample)
         one = held(definitions, folder)
-        row.total += len(definitions.messages)
+        row.total += sum(not one.unread for one in definitions.messages)
         row.causes.update(one.causes.values())
         row.nodes.append(one)
         if one.messages:
@@ -101,6 +106,8 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"{name} ({PROTOCOLS[name].library}): {row.held} of {row.total} messages held")
         for cause, count in row.causes.most_common():
             print(f"    {count:5} {cause}")
+        for cause, count in row.unread.most_common():
+            print(f"    {count:5} not counted: {cause}")
         for cause, count in row.raw_only.most_common():
             print(f"    {count:5} held, some values only raw: {cause}")
         for language, one in row.by_language.items():

@@ -191,7 +191,7 @@ def random_frames(one: Definition, chance: random.Random, count: int) -> list[by
         length = one.length + elements * (one.element(end) if end else 0)
         data = bytes(length) if number == 0 else b"\xff" * length if number == 1 else chance.randbytes(length)
         if end is not None and end.get("type") == "text":
-            data = data[: one.length] + bytes(chance.choices(range(32, 127), k=elements))
+            data = data[: one.length] + bytes(chance.choices(range(32, 127), k=length - one.length))
         for part in one.fields:
             if "const" in part:
                 data = _put(data, part, part["const"])
@@ -217,9 +217,9 @@ def _chosen(one: Definition, data: bytes, chance: random.Random) -> bytes:
 
 
 def _elements(end: dict | None, number: int, chance: random.Random) -> int:
-    """How many elements the frame of a number has: none, all, one, or any number."""
-    most = end["up_to"] if end else 0
-    return (0, most, min(1, most))[number] if number < 3 else chance.randint(0, most)
+    """How many elements the frame of a number has: as few as can be, all, one more, or any number."""
+    least, most = (max(0, _counter(end)[1]), end["up_to"]) if end else (0, 0)
+    return (least, most, min(least + 1, most))[number] if number < 3 else chance.randint(least, most)
 
 
 def _put(data: bytes, part: dict, value: int) -> bytes:
@@ -251,6 +251,8 @@ def _double(bits: str) -> float:
 
 def _same(ours: object, theirs: object, part: dict) -> bool:
     """Whether a testee's raw value is the library's. Of text a library keeps what stands before a NUL."""
+    if isinstance(ours, list) and part["type"] == "text":
+        return isinstance(theirs, list) and all(_same(*pair, part) for pair in zip(ours, theirs, strict=True))
     if part["type"] in ("bytes", "text"):
         wide = isinstance(theirs, int)  # some read bytes as one number
         data = theirs.to_bytes(part["bits"] // 8, "little") if wide else bytes(theirs)  # type: ignore

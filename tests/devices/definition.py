@@ -33,6 +33,7 @@ class Definition:
     more: dict = field(default_factory=dict)
     structs: list[dict] = field(default_factory=list)
     raw_only: str = ""  # why some physical values of it cannot be said
+    unread: str = ""  # why the library itself reads no frame of it, so that it is no message to be held
     may_end_early: bool = False  # whether zeros at the end may be cut off
     encoded: Callable[[bytes], bytes] | None = None  # the library's own frame of the values of a frame
 
@@ -62,14 +63,14 @@ class Definition:
         )
 
 
-def open_end(name: str, at: int, bits: int, type_: str, counter: str, most: int) -> dict:
+def open_end(name: str, at: int, bits: int, type_: str, counter: str | dict, most: int) -> dict:
     """What ends a message of variable length: elements that a field counts, or up to the end (`rest`); bytes and text as one."""
     number = {"size": counter} if type_ in ("bytes", "text") else {"bits": bits, "count": counter}
     return {"at": at, "name": name, "type": type_, **number, "up_to": most}
 
 
 def open_structs(
-    owner: str, name: str, at: int, fields: list[dict], bits: int, counter: str, most: int
+    owner: str, name: str, at: int, fields: list[dict], bits: int, counter: str | dict, most: int
 ) -> tuple[dict, dict]:
     """Likewise with elements that are structs of so many bits: the field, and the struct. Raises `NotHeld`."""
     if bits % 8:

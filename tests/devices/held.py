@@ -30,7 +30,7 @@ class Held:
 def held(definitions: Definitions, folder: Path) -> Held:
     """Writes the node into ``folder`` and takes out what is refused, until nothing is."""
     causes = {one.name: one.cause for one in definitions.messages if one.cause}
-    left = [one for one in definitions.messages if not one.cause]
+    left = [one for one in definitions.messages if not one.cause and not one.unread]
     file = folder / f"{definitions.name}.yaml"
     if definitions.tree is not None:
         return _imported(definitions, definitions.tree, file, left, causes)

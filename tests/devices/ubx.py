@@ -28,6 +28,8 @@ VARIANTS: dict[tuple[str, str], tuple[str, dict[str, int]]] = {
     ("get", "SEC-SIG-V1"): ("SEC-SIG", {"version": 1}),
     ("get", "SEC-SIG-V2"): ("SEC-SIG", {}),
     ("set", "CFG-DAT-NUM"): ("CFG-DAT", {}),
+    ("set", "ESF-MEAS"): ("ESF-MEAS", {"calibTtagValid": 0}),
+    ("set", "ESF-MEAS-TTAG"): ("ESF-MEAS", {"calibTtagValid": 1}),
     ("set", "RXM-PMP-V0"): ("RXM-PMP", {"version": 0}),
     ("set", "RXM-PMP-V1"): ("RXM-PMP", {}),
     ("set", "RXM-PMREQ-S"): ("RXM-PMREQ", {}),
@@ -38,12 +40,17 @@ VARIANTS: dict[tuple[str, str], tuple[str, dict[str, int]]] = {
 
 TYPES = {"U": "uint", "E": "uint", "L": "uint", "I": "int", "R": "float", "X": "bytes", "C": "bytes", "A": "bytes"}
 
+KNOWN = (*TYPES, "CH", "UPMP")
+"""How the names of types begin."""
+
 CAUSES = {
     ("get", "CFG-VALGET"): "values whose types a table of keys tells",
     ("set", "CFG-VALSET"): "values whose types a table of keys tells",
-    ("set", "ESF-MEAS"): "a count to which a flag adds one",
 }
 """What the library does by code of its own."""
+
+PLUS = {("set", "ESF-MEAS-TTAG"): 1}
+"""So many elements more than the counter says: one payload of the library, in which a flag adds them, is two messages."""
 
 
 def tables() -> Iterator[Definitions]:
@@ -56,7 +63,9 @@ def tables() -> Iterator[Definitions]:
         ("poll", "telecommand", pyubx2.POLL, pyubx2.UBX_PAYLOADS_POLL),
     )
     for name, kind, mode, payloads in sets:
-        messages = [_definition(name, key, kind, mode, one) for key, one in payloads.items()]
+        layouts = dict(payloads)
+        layouts |= {key: payloads[VARIANTS[way, key][0]] for way, key in PLUS if way == name}
+        messages = [_definition(name, key, kind, mode, one) for key, one in layouts.items()]
         yield Definitions(node(f"ubx_{name}", f"u-blox {name}", id_bits=16), messages)
 
 
@@ -77,11 +86,13 @@ def _definition(direction: str, name: str, kind: str, mode: int, payload: dict) 
     structs: list[dict] = []
     key, constants = _key(direction, name)
     if key is None:
-        return Definition(name, 0, kind, 0, [], cause="a layout without an id, which the library never reads")
+        return Definition(name, 0, kind, 0, [], unread="layouts without an id, which the library never reads")
+    if any(isinstance(what, str) and what[0] not in KNOWN for what in payload.values()):
+        return Definition(name, 0, kind, 0, [], unread="a dummy of the library's tests, of types that it does not know")
     if (direction, name) in CAUSES:
         return Definition(name, 0, kind, 0, [], cause=CAUSES[direction, name])
     try:
-        end = _fields(payload, fields, 0, "", structs, name)
+        end = _fields(payload, fields, 0, "", structs, name, PLUS.get((direction, name), 0))
     except NotHeld as error:
         return Definition(name, 0, kind, 0, [], cause=str(error))
     high = {
@@ -144,7 +155,7 @@ def _of_structs(values: dict[str, object], end: str, parts: list[dict]) -> dict[
 def _gathered(values: dict[str, object], end: dict) -> dict[str, object]:
     """With what is open at the end as one value: the library has an attribute of each element, or one number of all bytes."""
     name, known = end["name"], dict(values)
-    if end["type"] == "text":
+    if "size" in end and end["type"] == "text":
         return known | {name: str(known.get(name, "")).encode()}
     if name in known:
         number, count = int(str(known[name])), int(str(known[end["count"]]))
@@ -155,8 +166,13 @@ def _gathered(values: dict[str, object], end: dict) -> dict[str, object]:
     return known | {name: elements}
 
 
-def _fields(payload: dict, fields: list[dict], at: int, before: str, structs: list[dict], owner: str) -> int:
-    """Appends the fields of a payload, and the struct of an open group; where those that every frame has end. Raises `NotHeld`."""
+def _fields(
+    payload: dict, fields: list[dict], at: int, before: str, structs: list[dict], owner: str, plus: int = 0
+) -> int:
+    """Appends the fields of a payload, and the struct of an open group; where those that every frame has end. Raises `NotHeld`.
+
+    ``plus``: so many elements more than its counter says.
+    """
     for name, what in payload.items():
         factor = "1"
         if fields and "up_to" in fields[-1]:
@@ -170,7 +186,7 @@ def _fields(payload: dict, fields: list[dict], at: int, before: str, structs: li
             if not (isinstance(count, str) and count[0] == "X"):
                 if name != list(payload)[-1]:
                     raise NotHeld("more behind a counted group")
-                fields.append(_group(name, inner, count, fields, at, structs, owner))
+                fields.append(_group(name, inner, count, fields, at, structs, owner, plus))
                 continue
             bit = at
             for member, type_ in inner.items():
@@ -190,17 +206,21 @@ def _fields(payload: dict, fields: list[dict], at: int, before: str, structs: li
     return at
 
 
-def _group(group: str, inner: dict, count: str, fields: list[dict], at: int, structs: list[dict], owner: str) -> dict:
-    """A group that a field counts, or that goes up to the end: an array of one number, else of structs. Raises `NotHeld`."""
+def _group(
+    group: str, inner: dict, count: str, fields: list[dict], at: int, structs: list[dict], owner: str, plus: int
+) -> dict:
+    """A group that a field counts, or that goes up to the end: an array of numbers or texts, else of structs. Raises `NotHeld`."""
     parts: list[dict] = []
     bits = _fields(inner, parts, 0, "", structs, owner)
     counter = next((one for one in fields if one["name"] == count), None)
     most = LONGEST * 8 // bits
-    most = most if counter is None else min(most, (1 << counter["bits"]) - 1)
-    told = "rest" if count == "None" else count
+    most = most if counter is None else min(most, (1 << counter["bits"]) - 1 + plus)
+    told: str | dict = "rest" if count == "None" else {"field": count, "plus": plus} if plus else count
     if len(inner) == 1 and "formula" not in parts[0] and not isinstance(next(iter(inner.values())), tuple):
+        if next(iter(inner.values()))[0] == "C":
+            return {"at": at, "bits": bits, "name": parts[0]["name"], "type": "text", "count": told, "up_to": most}
         if parts[0]["type"] == "bytes":
-            raise NotHeld("an array of bytes or text")
+            raise NotHeld("an array of bytes")
         return open_end(parts[0]["name"], at, bits, parts[0]["type"], told, most)
     end, struct = open_structs(owner, group, at, parts, bits, told, most)
     structs.append(struct)
@@ -208,8 +228,6 @@ def _group(group: str, inner: dict, count: str, fields: list[dict], at: int, str
 
 
 def _single(name: str, what: str, factor: str, fields: list[dict], at: int) -> int:
-    if what[0] not in TYPES:
-        raise NotHeld("a type that the library does not know itself")
     type_, bits = TYPES[what[0]], 8 * int(what[1:])
     if bits > 64:
         type_ = "bytes"
