@@ -68,10 +68,9 @@ class CBackend:
                 link = {**_link(node, links[node.name]), **shared}
                 yield folder / "link.h", render("link.h.j2", **link)
                 yield folder / "link.c", render("link.c.j2", **link)
-                made, of_client = (
-                    ("client.h.j2", _client) if node.has_client else ("stream_client.h.j2", _stream_client)
-                )
-                yield folder / "client.h", render(made, **of_client(node, links[node.name]), **shared)
+                client = _client(node, links[node.name]) if node.has_client else _stream_client(node, links[node.name])
+                template = "client.h.j2" if node.has_client else "stream_client.h.j2"
+                yield folder / "client.h", render(template, **client, **shared)
             of_node = {**_node(node), "id_type": f"uint{description.id_bits}_t"}
             yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", node=node, **of_node, **shared)
 
