@@ -235,7 +235,7 @@ def test_over_other_links_several_are_asked_for_in_turn(shipped):
         for event in decoder.feed(data):
             assert not replies  # to the request before
             asked.append(event.message[0])
-            kind = next(one for one in kinds if one.ID == asked[-1])
+            (kind,) = (one for one in kinds if event.message[0] == one.ID)
             replies.append(wire.uart_encode(acp.LINK, bytes([kind.ID]) + kind().to_bytes()))
 
     session = wire.Session(acp.LINK, write, lambda seconds: replies.pop() if replies else b"")
