@@ -41,12 +41,12 @@ def _message(one: Message, node: Node, direction: str, id: int) -> dict:
     is_sent = direction == "telecommand"
     has_views = not is_sent and all(is_ordered(field, node) for field in one.owners)
     fields = [field for field in one.fields if not (field.implied or field.derived) and (has_views or not field.view)]
-    fields = [field for field in fields if not (one.tail and field.at >= one.begin * 8) and is_ordered(field, node)]
+    fields = [field for field in fields if not (one.tail and field.at >= one.fixed * 8) and is_ordered(field, node)]
     runs = [(field, _bits(field, node)) for field in fields]
     told = [(field.const, bits) for field, bits in runs if field.const is not None and is_sent]
     constants = {bit: value >> at & 1 for value, bits in told for at, bit in enumerate(bits)}
     return {
-        "id": id, "is both": one.kind == "configuration" and not _lacks(one, node), "bytes": one.begin, 
+        "id": id, "is both": one.kind == "configuration" and not _lacks(one, node), "bytes": one.fixed, 
         "summary": line(one.summary), "group": line(one.group),
         "hazard": line(one.hazard) if is_sent else "", "constants": constants,
         "fields": {line(field.name): _field(field, bits) for field, bits in runs if not (told and field.const is not None)},

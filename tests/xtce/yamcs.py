@@ -56,10 +56,10 @@ def _compared(icd: Icd, node: Node, file: Path, classes: list[str], frames: int)
     head, width = _head(file)
     for message in messages:
         for _ in range(frames):
-            frame = chance.randbytes(message.begin) + bytes(message.length - message.begin)
+            frame = chance.randbytes(message.fixed) + bytes(message.length - message.fixed)
             fixed = {one: one.const for one in message.fields if one.const is not None}
-            if message.tail is not None and message.counter is not None and not message.counter.implied:
-                fixed[message.counter] = message.tail.low
+            low = {part.counter: part.low for part in message.open_parts}
+            fixed |= {one: low[one.name] for one in message.fields if one.name in low and not one.implied}
             frame = codec.frame_of(icd.node(message.node), frame, fixed)[: _least(message)]
             asked.append((message, frame, (message.telemetry_id << head).to_bytes(width, "big") + frame))
     root = ElementTree.parse(file).getroot()
@@ -76,7 +76,7 @@ def _compared(icd: Icd, node: Node, file: Path, classes: list[str], frames: int)
 
 def _least(message: Message) -> int:
     """Bytes of the shortest frame, but for zeros that may be cut off."""
-    return message.begin + (message.tail.fewest * message.tail.step if message.tail else 0)
+    return message.length if message.may_end_early else message.least
 
 
 def _head(file: Path) -> tuple[int, int]:
@@ -106,7 +106,7 @@ def _pair(text: str) -> tuple[str, str]:
 def _unlike(node: Node, message: Message, frame: bytes, theirs: Values) -> tuple[int, str]:
     raw, count = codec.decode(node, message, frame), 0
     for field in message.fields:
-        is_left_out = field.implied or field.derived or field.at >= message.begin * 8 or not is_ordered(field, node)
+        is_left_out = field.implied or field.derived or field.at >= message.fixed * 8 or not is_ordered(field, node)
         if is_left_out or field.is_bytes or (field.view and not all(is_ordered(one, node) for one in message.owners)):
             continue
         name, index = line(field.name), None
