@@ -1036,8 +1036,8 @@ static inline icd_status_t icdgen_set_curve_f32(float *raw, double value, const 
 #ifndef ICDGEN_NO_DOUBLE
 
 /*
- * Values that are derived from several fields: each step is a double of its own. That steps are volatile keeps compilers
- * from making one of two, and from reckoning with more digits in between.
+ * Values that are derived from several fields: each step is a double of its own. That steps are volatile keeps
+ * compilers from making one of two, and from reckoning with more digits in between.
  */
 
 /* A value that is no number has always the same bits. */

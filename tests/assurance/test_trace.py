@@ -88,12 +88,14 @@ def structs(field: Field) -> Iterator[Struct]:
 def _value(text: str) -> str:
     """A scalar of YAML or JSON as a table shows it: numbers as Python does, texts without quotes."""
     text = text.strip()
-    if text[:1] in ("'", '"'):
-        return text[1:-1] if len(text) > 1 and text[-1] == text[0] else ""
+    if text[:1] == "'":
+        return text[1:-1] if len(text) > 1 and text[-1] == "'" else ""
     try:
+        if text[:1] == '"':  # names in formulas of derived values have what must be escaped
+            return str(json.loads(text))
         return str(int(text, 0) if text.lower().startswith("0x") else text)
     except ValueError:
-        return text
+        return "" if text[:1] == '"' else text
 
 
 def noticed(cell: str) -> dict[str, set[int]]:
@@ -190,6 +192,37 @@ def test_each_change_of_a_range_or_of_a_special_value_fails_the_vectors_that_the
     named = [change for change in pack.changes if change["kind"] in ("enum value", "special")]
     assert len(named) == 14
     for number, change in enumerate(named):
+        assert change["vectors"], change
+        hold(pack, change, tmp_path / str(number))
+
+
+DERIVED = """\
+icdgen: 1
+node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}
+messages:
+  - name: Status
+    id: 130
+    kind: telemetry
+    length: 3
+    fields:
+      - {at: 0, bits: 8, name: A "quoted" one, type: uint}
+      - {at: 8, bits: 1, name: Flag, type: bool}
+      - {at: 9, bits: 7, name: Level, type: uint, when: {Flag: 1}}
+      - {at: 24, bits: 16, name: Levels, type: uint, count: rest, up_to: 2}
+    derived:
+      - {name: Triple, formula: 'A "quoted" one*3'}
+      - {name: Power, formula: 'Triple*A "quoted" one'}
+"""
+
+
+def test_each_change_of_a_derived_value_and_of_a_condition_fails_the_vectors_that_the_trace_names(tmp_path):
+    (tmp_path / "icd").mkdir()
+    (tmp_path / "icd" / "demo.yaml").write_text(DERIVED, "utf-8")
+    pack = Pack(tmp_path / "icd")
+    told = [change for change in pack.changes if change["key"] == "formula" or change["kind"] == "condition"]
+    assert [change["changed to"] for change in told if change["kind"] == "condition"] == ["0"]
+    assert {change["name"] for change in told} == {"Triple", "Power", "Level"}
+    for number, change in enumerate(told):
         assert change["vectors"], change
         hold(pack, change, tmp_path / str(number))
 

@@ -116,8 +116,8 @@ def test_it_compiles_in_c(folder, compiler):
 
 def test_cargo_builds_it(folder):
     manifest = folder / "rust/Cargo.toml"
-    text = re.sub(r"^(serde|defmt) = \{.*\n", "", manifest.read_text(), flags=re.M)  # nothing is fetched
-    manifest.write_text(re.sub(r"\[\"dep:\w+\"\]", "[]", text))
+    text = re.sub(r"^[\w-]+ = \{.*optional = true.*\n", "", manifest.read_text(), flags=re.M)  # nothing is fetched
+    manifest.write_text(re.sub(r"\[\"dep:[\w-]+\"\]", "[]", text))
     run("cargo", "check", "--offline", "--quiet", "--all-targets", "--features", "std", cwd=folder / "rust")
 
 

@@ -270,6 +270,62 @@ def test_a_size_that_the_packet_itself_says_is_not_looked_at_and_that_is_said(tm
     assert field(read, "A", "D") == {"at": 8, "name": "D", "type": "bytes", "size": "rest", "up_to": 65_534}
 
 
+def counted(dynamic, kind="array"):
+    """A system whose message has a byte `P` and, behind it, what the value counts."""
+    if kind == "array":
+        end = f"<StartingIndex><FixedValue>0</FixedValue></StartingIndex><EndingIndex>{dynamic}</EndingIndex>"
+        dimensions = f"<DimensionList><Dimension>{end}</Dimension></DimensionList>"
+        type_ = f"<ArrayParameterType name='data' arrayTypeRef='byte'>{dimensions}</ArrayParameterType>"
+        entry = f'{ENTRY}<ArrayParameterRefEntry parameterRef="D"/>'
+    else:
+        encoding = f"<BinaryDataEncoding><SizeInBits>{dynamic}</SizeInBits></BinaryDataEncoding>"
+        type_ = f"<BinaryParameterType name='data'>{encoding}</BinaryParameterType>"
+        entry = f'{ENTRY}<ParameterRefEntry parameterRef="D"/>'
+    text = system(container("A", entry), BYTE + type_)
+    return text.replace("</ParameterSet>", '<Parameter name="D" parameterTypeRef="data"/></ParameterSet>')
+
+
+def value(slope, intercept):
+    adjusted = f"<LinearAdjustment slope='{slope}' intercept='{intercept}'/>"
+    return f"<DynamicValue><ParameterInstanceRef parameterRef='P'/>{adjusted}</DynamicValue>"
+
+
+@pytest.mark.parametrize(
+    ("text", "held"),
+    [
+        (counted(value(1, -1)), {"bits": 8, "type": "uint", "count": "P", "up_to": 255}),
+        (counted(value(1, 1)), {"bits": 8, "type": "uint", "count": {"field": "P", "plus": 2}, "up_to": 257}),
+        (counted(value(8, 0), "bytes"), {"type": "bytes", "size": "P", "up_to": 255}),
+        (counted(value("8.0", -32), "bytes"), {"type": "bytes", "size": {"field": "P", "plus": -4}, "up_to": 251}),
+        (counted(value(8, 4), "bytes"), {"type": "bytes", "size": "rest", "up_to": 65_534}),
+        (counted(value(8, -8 * 255), "bytes"), {"type": "bytes", "size": "rest", "up_to": 65_534}),
+        (counted(value("x", 0), "bytes"), {"type": "bytes", "size": "rest", "up_to": 65_534}),
+    ],
+)
+def test_what_a_parameter_counts_is_an_open_end(text, held, tmp_path):
+    (tmp_path / "one.xml").write_text(text)
+    read = run.read(tmp_path / "one.xml", xtce.Xtce())
+    assert field(read, "A", "D") == {"at": 8, "name": "D", **held}
+
+
+@pytest.mark.parametrize("dynamic", [value(2, 0), value(1, 0.5), "<DynamicValue/>"])
+def test_an_array_that_no_parameter_counts_is_not_held(dynamic, tmp_path):
+    (tmp_path / "one.xml").write_text(counted(dynamic))
+    with pytest.raises(Findings) as raised:
+        run.read(tmp_path / "one.xml", xtce.Xtce())
+    assert any("no parameter counts" in one.message for one in raised.value.findings)
+
+
+@pytest.mark.parametrize("bits", [8 * 65_536, 10**12])
+def test_a_place_beyond_every_frame_costs_the_message_and_no_memory(bits, tmp_path):
+    there = f"<LocationInContainerInBits><FixedValue>{bits}</FixedValue></LocationInContainerInBits>"
+    entry = f'{ENTRY}<ParameterRefEntry parameterRef="P">{there}</ParameterRefEntry>'
+    (tmp_path / "one.xml").write_text(system(container("A", entry), BYTE))
+    with pytest.raises(Findings) as raised:
+        run.read(tmp_path / "one.xml", xtce.Xtce())
+    assert any("more than 65,535 bytes" in one.message for one in raised.value.findings)
+
+
 @pytest.mark.parametrize("scale", ["x", "1e9999"])
 def test_a_time_whose_scale_is_no_number_is_held_raw(scale, tmp_path):
     text = (FILES / "lander.xml").read_text().replace('scale="0.001"', f'scale="{scale}"')

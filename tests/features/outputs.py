@@ -41,6 +41,7 @@ from tests.features import enveloped
 from tests.features.data import Feature
 from tests.features.link import LINK, envelope
 from tests.python import packages
+from tests.xtce import readback
 
 FRAMES = 30  # of the vectors of each message
 WORDS = 8  # of them
@@ -320,6 +321,12 @@ def _plain(column: object) -> str:
     return f"{getattr(column, 'dtype', '')} {column.tolist() if hasattr(column, 'tolist') else column!r}"
 
 
+def _xtce(subject: Subject) -> object:
+    """What other programs may read of the file: what comes back of it."""
+    folder = Path(tempfile.mkdtemp(dir=subject.folder))
+    return {name: readback.read_back(file, folder) for name, file in readback.write(subject.icd, folder).items()}
+
+
 def differs(old: Subject, new: Subject) -> bool:
     """Whether the diff tells of the change."""
     return bool(compare(old.icd, new.icd).changes)
@@ -346,5 +353,6 @@ SAYS: dict[str, Callable[[Subject], object]] = {
     "log": lambda subject: _log(subject)[0],
     "numpy": _columns,
     "arrow": lambda subject: _log(subject)[1],
+    "xtce": _xtce,
 }
 LINKED = ("simulator", "log", "arrow")  # of the ICD with a line and a log

@@ -37,6 +37,7 @@ OUTPUTS = {
     "log": ("log", "a log of the same bytes, converted to CSV, says something else"),
     "numpy": ("numpy", "`decode_many` and `decode_table` of the generated Python give other columns"),
     "arrow": ("Arrow", "the same log, converted to Parquet, says something else"),
+    "xtce": ("XTCE", "the file for ground systems says something else, which comes back if it is imported"),
 }
 
 _BEGIN = """\

@@ -14,7 +14,7 @@ from icdgen.icd.model import Field, Icd, Message, Node
 # What XTCE has no word for, so that it cannot come back. What is no layout and no meaning is not compared: protocol (but for the
 # header of space packets), what can be logged, sources, errata, identifiers, acknowledges, and what is said of enumerations.
 NOT_SAID = {
-    "open": "open ends: the rest of the message is there",
+    "open": "open ends of structs or constants, those that nothing counts or that stand beside conditions",
     "early": "that zeros may be cut off",
     "constant": "of a constant of a telecommand all but its bits: name, type, unit",
     "order": "fields whose bits lie in no order that XTCE has, and the views of such a message",
@@ -41,12 +41,14 @@ def _message(one: Message, node: Node, direction: str, id: int) -> dict:
     is_sent = direction == "telecommand"
     has_views = not is_sent and all(is_ordered(field, node) for field in one.owners)
     fields = [field for field in one.fields if not (field.implied or field.derived) and (has_views or not field.view)]
-    fields = [field for field in fields if not (one.tail and field.at >= one.fixed * 8) and is_ordered(field, node)]
+    open_ = one.tail is not None and not has_open_end(one)
+    fields = [field for field in fields if not (open_ and field.at >= one.fixed * 8) and is_ordered(field, node)]
     runs = [(field, _bits(field, node)) for field in fields]
     told = [(field.const, bits) for field, bits in runs if field.const is not None and is_sent]
     constants = {bit: value >> at & 1 for value, bits in told for at, bit in enumerate(bits)}
     return {
-        "id": id, "is both": one.kind == "configuration" and not _lacks(one, node), "bytes": one.fixed, 
+        "id": id, "is both": one.kind == "configuration" and not _lacks(one, node), "bytes": one.fixed,
+        "open": None if one.tail is None or open_ else (line(one.tail.name), line(one.tail.counter), one.tail.most, one.tail.plus),
         "summary": line(one.summary), "group": line(one.group),
         "hazard": line(one.hazard) if is_sent else "", "constants": constants,
         "fields": {line(field.name): _field(field, bits) for field, bits in runs if not (told and field.const is not None)},
@@ -55,7 +57,14 @@ def _message(one: Message, node: Node, direction: str, id: int) -> dict:
 
 def _lacks(one: Message, node: Node) -> bool:
     """Whether a telecommand is left out, as XTCE has no word for a part of it."""
-    return one.tail is not None or not all(is_ordered(field, node) for field in one.owners)
+    return (one.tail is not None and not has_open_end(one)) or not all(is_ordered(field, node) for field in one.owners)
+
+
+def has_open_end(one: Message) -> bool:
+    """Whether a message has an open end for which XTCE has a word."""
+    part = next((field for field in one.members if one.tail and field.name == one.tail.name), None)
+    is_plain = part is not None and part.struct is None and part.const is None and not one.has_conditions
+    return is_plain and one.counter is not None and not one.counter.implied and not one.inner
 
 
 def is_ordered(field: Field, node: Node) -> bool:

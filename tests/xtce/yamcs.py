@@ -20,11 +20,12 @@ from icdgen import codec
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.loading import load
 from tests.xtce.decoding import alias
-from tests.xtce.meaning import is_ordered, line
+from tests.xtce.meaning import has_open_end, is_ordered, line
 from tests.xtce.readback import SPACE, write
 from tests.xtce.sets import sets
 
 PROGRAM = Path(__file__).parent / "Decode.java"
+MOST = 6  # elements of an open end
 Values = dict[str, tuple[str, str]]  # raw and engineering, as Yamcs prints them
 
 
@@ -56,11 +57,19 @@ def _compared(icd: Icd, node: Node, file: Path, classes: list[str], frames: int)
     head, width = _head(file)
     for message in messages:
         for _ in range(frames):
-            frame = chance.randbytes(message.fixed) + bytes(message.length - message.fixed)
+            frame, length = chance.randbytes(message.length), message.begin
             fixed = {one: one.const for one in message.fields if one.const is not None}
-            low = {part.counter: part.low for part in message.open_parts}
-            fixed |= {one: low[one.name] for one in message.fields if one.name in low and not one.implied}
-            frame = codec.frame_of(icd.node(message.node), frame, fixed)[: _least(message)]
+            if message.tail is not None and message.counter is not None and not message.counter.implied:
+                more = (
+                    chance.randint(0, min(MOST, message.tail.high - message.tail.low)) if has_open_end(message) else 0
+                )
+                fixed[message.counter] = message.tail.low + more
+                length += (message.tail.low + more + message.tail.plus) * message.tail.step
+            elif message.tail is not None:
+                length += message.tail.fewest * message.tail.step
+            frame = codec.frame_of(icd.node(message.node), frame, fixed)[:length]
+            if message.inner:
+                frame = codec.encode(icd.node(message.node), message, message.fresh)
             asked.append((message, frame, (message.telemetry_id << head).to_bytes(width, "big") + frame))
     root = ElementTree.parse(file).getroot()
     names = {one.get("name", ""): line(alias(one)) for one in root.iterfind(f".//{SPACE}Parameter")}
@@ -72,11 +81,6 @@ def _compared(icd: Icd, node: Node, file: Path, classes: list[str], frames: int)
         _unlike(icd.node(message.node), message, frame, _read(printed, names, containers[line(message.name)]))
         for (message, frame, _), printed in zip(asked, said, strict=True)
     ]
-
-
-def _least(message: Message) -> int:
-    """Bytes of the shortest frame, but for zeros that may be cut off."""
-    return message.length if message.may_end_early else message.least
 
 
 def _head(file: Path) -> tuple[int, int]:
@@ -105,8 +109,9 @@ def _pair(text: str) -> tuple[str, str]:
 
 def _unlike(node: Node, message: Message, frame: bytes, theirs: Values) -> tuple[int, str]:
     raw, count = codec.decode(node, message, frame), 0
+    end = 8 * (len(frame) if has_open_end(message) else message.fixed)
     for field in message.fields:
-        is_left_out = field.implied or field.derived or field.at >= message.fixed * 8 or not is_ordered(field, node)
+        is_left_out = field.implied or field.derived or field.at >= end or not is_ordered(field, node)
         if is_left_out or field.is_bytes or (field.view and not all(is_ordered(one, node) for one in message.owners)):
             continue
         name, index = line(field.name), None

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
-from icdgen.definitions.frames import LITTLE, Place, laid_out
+from icdgen.definitions.frames import LITTLE, ORDERS, Place, laid_out
 from icdgen.definitions.model import Definitions, Item, NotHeld, again
 from icdgen.definitions.wording import line
 from icdgen.definitions.xtce_calibration import fixed, number
@@ -271,6 +271,8 @@ class Layout:
         if late is not None:
             raise NotHeld(f"frames end before `{late}` where it is not there")
         end = always - start
+        if max((one.end for one in self.parts), default=0) - start > 8 * MOST_BYTES or end > 8 * MOST_BYTES:
+            raise NotHeld(f"its frames have more than {MOST_BYTES:,} bytes")
         parts = [one for one in self.parts if one.at >= start and not one.is_reserved]
         names: dict[str, int] = {}
         for one in parts:
@@ -298,12 +300,39 @@ class Layout:
             if not one.piece.bits:
                 if end % 8:
                     raise NotHeld(f"`{one.item['name']}`, whose size is not fixed, begins within a byte")
-                if any(other.item["name"] == one.piece.size.rsplit("/", 1)[-1] for other in parts):
-                    text = f"message `{message['name']}`: `{one.item['name']}` is as long as `{one.piece.size}` says"
-                    to.warn(OPEN, text, "it is held up to the end of the frame")
-                room = MOST_BYTES - message["length"]
-                fields.append({"at": end, **one.item, "up_to": min(room, one.item["up_to"])})
+                message.pop("reserved", 0)  # what is in front of it, and has no name
+                fields.append(_open(message, one, parts, order, to))
         return {**message, "fields": fields} if fields else message
+
+
+def _open(message: Item, part: Part, parts: list[Part], order: str, to: Definitions) -> Item:
+    """The field of a part whose size is not fixed: counted where another counts it, else up to the end of the frame."""
+    item, piece = part.item, part.piece
+    most = min(item["up_to"], (MOST_BYTES - message["length"]) * 8 // item.get("bits", 8))
+    if part.of is not None and (said := beside(part.of).get("up_to")) is not None:
+        most = min(most, max(1, number(said, "a size")))
+    name = piece.size.rsplit("/", 1)[-1]
+    counter = next((one for one in parts if one.of is not None and one.of.get("name") == name), None)
+    counted = _counted(counter, piece, most) if counter is not None else 0
+    if counter is not None and counted:
+        by, most = counter.item["name"], counted
+        item["size" if "size" in item else "count"] = {"field": by, "plus": piece.plus} if piece.plus else by
+    elif counter is not None:
+        text = f"message `{message['name']}`: `{item['name']}` is as long as `{piece.size}` says"
+        to.warn(OPEN, text, "it is held up to the end of the frame")
+    is_other = item.get("bits", 8) > 8 and piece.order != message.get("byte_order", order)
+    return again(
+        item, {"at": 8 * message["length"], **item, **(ORDERS[piece.order] if is_other else {}), "up_to": most}
+    )
+
+
+def _counted(counter: Part, piece: Piece, most: int) -> int:
+    """The most elements, or bytes, that a field may count; 0 if it may not."""
+    odd = counter.item.keys() & {"formula", "points", "const", "count", "when", "view"}
+    if piece.plus is None or odd or counter.item["type"] != "uint" or not counter.piece.bits:
+        return 0
+    counted = min(most, (1 << counter.piece.bits) - 1 + piece.plus)
+    return counted if counted >= max(1, piece.plus) else 0
 
 
 def _named(entry: Element) -> str:

@@ -25,6 +25,7 @@ _MOST_NAMED = 1024  # values of a range of labels
 _SPECIAL = 16  # names that a field may have as special values
 _DEEPEST = 20  # types that say what another says
 _ENCODINGS = ("IntegerDataEncoding", "FloatDataEncoding", "StringDataEncoding", "BinaryDataEncoding")
+_LINE = (("slope", "1"), ("intercept", "0"))
 _LIMITS = {"minInclusive": "min", "maxInclusive": "max", "minExclusive": "above", "maxExclusive": "below"}
 
 
@@ -35,7 +36,8 @@ class Piece:
     item: Item
     bits: int
     order: str = BIG
-    size: str = ""  # the parameter that says how many bits, if one does
+    size: str = ""  # the parameter that says how much there is, if one does
+    plus: int | None = None  # so much more than it says; None where it does not count bytes or elements
     values: dict[str, int] = field(default_factory=dict)  # by label
     members: list[tuple[str, Element]] = field(default_factory=list)  # of an aggregate instead: names and types
 
@@ -86,6 +88,8 @@ class Types:
         if len(listed) != 1:
             raise NotHeld(f"{where} is an array of {len(listed) or 'no'} dimensions")
         first, last = fixed(listed[0].find("StartingIndex"), 0), fixed(listed[0].find("EndingIndex"))
+        if first == 0 and last is None and (dynamic := listed[0].find("EndingIndex/DynamicValue")) is not None:
+            return _counted(self._element(of, where), dynamic, where)
         if first is None or last is None:
             raise NotHeld(f"{where} is an array of as many elements as another parameter says")
         return _array(self._element(of, where), last - first + 1, where)
@@ -226,6 +230,18 @@ def _array(piece: Piece, count: int, where: str) -> Piece:
     return Piece(piece.item, piece.bits * count, piece.order, values=piece.values)
 
 
+def _counted(piece: Piece, dynamic: Element, where: str) -> Piece:
+    """An array whose last index a parameter or argument says."""
+    name, slope, intercept = _adjusted(dynamic)
+    if piece.members or "count" in piece.item or not piece.bits or piece.bits % 8:
+        raise NotHeld(f"{where} is an array of what has no fixed size in bytes")
+    if not name or slope != 1 or intercept is None:
+        raise NotHeld(f"{where} is an array of a number of elements that no parameter counts")
+    most = min(MOST_ELEMENTS, MOST_BYTES * 8 // piece.bits)
+    piece.item |= {"bits": piece.bits, "count": "rest", "up_to": most}
+    return Piece(piece.item, 0, piece.order, size=name, plus=intercept + 1)
+
+
 def meant(element: Element) -> Item:
     """The key of the values of a parameter or argument that stand for something else, as icdgen writes them."""
     found = []
@@ -311,10 +327,27 @@ def _bytes(encoding: Element, type_: str) -> Piece:
 
 def _open(type_: str, of: Element) -> Piece:
     """What has as many bytes as another parameter says."""
-    reference = of.find("DynamicValue/ParameterInstanceRef")
-    if reference is None:
+    dynamic = of.find("DynamicValue")
+    name, slope, intercept = ("", 0, None) if dynamic is None else _adjusted(dynamic)
+    if not name:
         raise NotHeld("its size is neither a number nor that of a parameter")
-    return Piece({"type": type_, "size": "rest", "up_to": MOST_BYTES}, 0, size=reference.get("parameterRef", ""))
+    plus = intercept // 8 if slope == 8 and intercept is not None and intercept % 8 == 0 else None
+    return Piece({"type": type_, "size": "rest", "up_to": MOST_BYTES}, 0, size=name, plus=plus)
+
+
+def _adjusted(dynamic: Element) -> tuple[str, int, int | None]:
+    """The parameter or argument that says a number, a factor and what is added; None for that where it is no whole number."""
+    reference = next((one for one in dynamic if one.tag.endswith("InstanceRef")), None)
+    if reference is None:
+        return "", 0, None
+    name = reference.get("parameterRef") or reference.get("argumentRef") or ""
+    adjusted, said = dynamic.find("LinearAdjustment"), []
+    for key, default in _LINE:
+        match = NUMBER.match(default if adjusted is None else adjusted.get(key, default))
+        if match is None or (value := Fraction(match[1])).denominator != 1:
+            return name, 0, None
+        said.append(value.numerator)
+    return name, said[0], said[1]
 
 
 def _unit(chain: list[Element]) -> dict[str, str]:

@@ -43,8 +43,8 @@ ICDGEN_API icd_status_t icd_stream_client_init(
     }
     if (status == ICD_OK) {
         status = icd_stream_decoder_init(
-            &client->decoder, link, ICD_TELEMETRY, buffer, ICDGEN_SIZE(link->longest), sequences + half,
-            sequence_count - half);
+            &client->decoder, link, ICD_TELEMETRY, buffer, ICDGEN_SIZE(link->longest),
+            (sequence_count > 0u) ? (sequences + half) : NULL, sequence_count - half);
     }
     if (status == ICD_OK) {
         const size_t bytes = icdgen_request_bytes(link->stream);
@@ -268,6 +268,20 @@ ICDGEN_API icd_status_t icd_stream_client_send(
     request.length = length;
     request.repeat = repeat;
     return icd_stream_client_start(client, now, &request, on_event, context);
+}
+
+ICDGEN_API icd_status_t icd_stream_client_ask(
+    icd_stream_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, uint32_t reply)
+{
+    icd_stream_request_t request;
+    (void)memset(&request, 0, sizeof request);
+    request.direction = ICD_TELECOMMAND;
+    request.id = id;
+    request.data = data;
+    request.length = length;
+    request.has_reply = true;
+    request.reply = reply;
+    return icd_stream_client_start(client, now, &request, NULL, NULL);
 }
 
 ICDGEN_API bool icd_stream_client_output(icd_stream_client_t *client, uint8_t *buffer, size_t capacity, size_t *written)

@@ -103,6 +103,10 @@ ICDGEN_API icd_status_t icd_stream_client_send(
     icd_stream_event_fn *on_event,
     void *context);
 
+/** Sends a telecommand that telemetry `reply` answers, whatever the ICD says. */
+ICDGEN_API icd_status_t icd_stream_client_ask(
+    icd_stream_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, uint32_t reply);
+
 /** Writes the next message to be sent; false if there is none, or it does not fit: NODE_LINE_BYTES always do. */
 ICDGEN_API bool icd_stream_client_output(
     icd_stream_client_t *client, uint8_t *buffer, size_t capacity, size_t *written);

@@ -27,6 +27,8 @@ Curve = tuple[tuple[float, tuple[float, ...]], ...]
 """From a raw value on, the terms of a polynomial in what is above that."""
 
 M = TypeVar("M", bound="_lazy.Message")
+M2 = TypeVar("M2", bound="_lazy.Message")
+M3 = TypeVar("M3", bound="_lazy.Message")
 S = TypeVar("S", bound="_lazy.Struct")
 T = TypeVar("T")
 M_co = TypeVar("M_co", covariant=True)

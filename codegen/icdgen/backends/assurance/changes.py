@@ -68,7 +68,7 @@ def of_field(field: Field, message: Message | Struct, node: Node) -> Iterator[tu
         return
     if isinstance(message, Message) and any(one.field == field.name for other in message.fields for one in other.when):
         return  # others depend on it: as another field it may decide nothing
-    yield from _of_conditions(field)
+    yield from _of_conditions(field, message)
     for step in (-8, 8) if field.is_bytes or field.struct is not None else (-8, -1, 1, 8):
         if 0 <= field.at + step <= size - field.width:
             yield _step("offset", source, "at", field.at, step), replace(field, at=field.at + step)
@@ -91,11 +91,14 @@ def _derived(field: Field, old: Derivation) -> Iterator[tuple[Change, Field]]:
                 yield change, replace(field, formula=text, derived=new)
 
 
-def _of_conditions(field: Field) -> Iterator[tuple[Change, Field]]:
-    """The changes of a value that another field must have, where one is said, by its number."""
+def _of_conditions(field: Field, message: Message | Struct) -> Iterator[tuple[Change, Field]]:
+    """The changes of a value that another field must have, where one is said, by its number, to others that it can have."""
+    known = {one.name: one for one in message.fields}
     for place, one in enumerate(field.when):
-        said = field.source["when"].get(one.field)
+        said, other = field.source["when"].get(one.field), known[one.field]
         for step in (-1, 1) if type(said) is int else ():
+            if not other.raw_min <= said + step <= other.raw_max:
+                continue
             now = replace(one, values=(said + step,))
             changed = (*field.when[:place], now, *field.when[place + 1 :])
             yield _step("condition", field.source["when"], one.field, said, step), replace(field, when=changed)

@@ -107,11 +107,10 @@ class Trace:
             watch = self._watches[node.name, message.name]
             place = 0
             for row, field in enumerate(message.members, 1):
-                if field.implied:
-                    continue
-                found = changes.of_field(field, message, node)
-                own = tuple(self._of_member(message, node, watch, place, field, *one) for one in found)
-                yield Element("field", node, message, field, row, own)
+                if not field.implied:
+                    found = changes.of_field(field, message, node)
+                    own = tuple(self._of_member(message, node, watch, place, field, *one) for one in found)
+                    yield Element("field", node, message, field, row, own)
                 place += len(field.elements)
 
     def _of_member(

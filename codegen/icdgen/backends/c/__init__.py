@@ -68,8 +68,9 @@ class CBackend:
                 link = {**_link(node, links[node.name]), **shared}
                 yield folder / "link.h", render("link.h.j2", **link)
                 yield folder / "link.c", render("link.c.j2", **link)
-                if node.has_client:
-                    yield folder / "client.h", render("client.h.j2", **_client(node, links[node.name]), **shared)
+                client = _client(node, links[node.name]) if node.has_client else _stream_client(node, links[node.name])
+                template = "client.h.j2" if node.has_client else "stream_client.h.j2"
+                yield folder / "client.h", render(template, **client, **shared)
             of_node = {**_node(node), "id_type": f"uint{description.id_bits}_t"}
             yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", node=node, **of_node, **shared)
 
@@ -174,14 +175,36 @@ def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
         ("i2c", link.facts.i2c_address is not None),
         ("can", link.can is not None),
     )
+    return {
+        **_any_client(node),
+        "buses": [bus for bus, is_known in buses if is_known],
+        "telecommands": [(one, one.telecommand_id_name) for one in node.telecommands],
+        "telemetry": [(one, one.telemetry_id_name) for one in node.telemetry],
+    }
+
+
+def _stream_client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
+    form = link.facts.stream
+    sent = form.telecommands if form else ()
+    asked = {row.reply for row in sent if row.least == 0}
+    return {
+        **_any_client(node),
+        "sequences": form.sequences if form else 0,
+        "telecommands": [(one, one.telecommand_id_name) for one in node.telecommands],
+        "telemetry": [
+            (under.id in asked, one, under.tried[: place + 1])
+            for under in node.ids("telemetry")
+            for place, one in enumerate(under.candidates)
+        ],
+    }
+
+
+def _any_client(node: NodeDescription) -> dict[str, object]:
     headers = sorted({*(f"../{name}.h" for name in node.model.includes), *(f"{one.name}.h" for one in node.messages)})
     return {
         "node": node.name,
         "about": comment([FILE, f"{words(node.model.title)}: a client that takes its messages only."]),
         "includes": ["link.h", *headers],
-        "buses": [bus for bus, is_known in buses if is_known],
-        "telecommands": [(one, one.telecommand_id_name) for one in node.telecommands],
-        "telemetry": [(one, one.telemetry_id_name) for one in node.telemetry],
     }
 
 
@@ -189,8 +212,7 @@ def _node(node: NodeDescription) -> dict[str, object]:
     headers = [f"{name}.h" for name in node.model.includes]
     headers += [f"{node.name}/enums.h"] if node.enums else []
     headers += [f"{node.name}/{one.name}.h" for one in node.composites]
-    headers += [f"{node.name}/link.h"] if node.is_linked else []
-    headers += [f"{node.name}/client.h"] if node.has_client else []
+    headers += [f"{node.name}/link.h", f"{node.name}/client.h"] if node.is_linked else []
     return {
         "about": comment([FILE, f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),
         "includes": ["icdgen.h", *headers],

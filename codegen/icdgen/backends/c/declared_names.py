@@ -80,11 +80,13 @@ def _link(node: NodeDescription) -> Iterator[Identifier]:
     owner, source = f"the link of node `{node.name}`", node.model.source
     for file in ("link.h", "link.c", "client.h"):
         yield Identifier(FILES, f"{node.name}/{file}", owner, source)
-    for end in ("link", "client_t", *(f"client_{bus}" for bus in _BUSES)):
+    begun = [f"client_{bus}" for bus in _BUSES] if node.has_client else ["client_init", "sender_t", "sender_init"]
+    for end in ("link", "client_t", *begun):
         yield Identifier(FILE, f"{node.name}_{end}", owner, source)
-    for verb, messages in (("send", node.telecommands), ("request", node.telemetry), ("receive", node.telemetry)):
+    sent = ("send",) if node.has_client else ("send", "ask", "put")
+    for verbs, messages in ((sent, node.telecommands), (("request", "receive"), node.telemetry)):
         for one in messages:
-            yield one.identifier(FILE, f"{node.name}_{verb}_{one.name}")
+            yield from (one.identifier(FILE, f"{node.name}_{verb}_{one.name}") for verb in verbs)
     for end in (*_SIZES, "NODE", "LINK_H", "LINK_C", "CLIENT_H"):
         yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source)
 

@@ -40,8 +40,11 @@ def assigned_byte(target: str, terms: Sequence[str]) -> str:
     return f"{target} = ICDGEN_U8(\n{STEP * 2}{rows});"
 
 
-def like(candidate: Candidate) -> str:
-    """Whether a frame is that of a message: its length, and the bytes of its constants; 0 where zeros are cut off."""
+def like(candidate: Candidate, depth: int = 3) -> str:
+    """Whether a frame is that of a message: its length, and the bytes of its constants; 0 where zeros are cut off.
+
+    ``depth`` is that of the lines after the first.
+    """
     message = candidate.message
     terms = _lengths(message.model.lengths, constant(message, "length"))
     for sign in candidate.signs:
@@ -52,7 +55,7 @@ def like(candidate: Candidate) -> str:
         terms.append(f"{masked} == 0x{sign.value:02X}u")
     if len(terms) == 1:
         return terms[0]
-    return f" &&\n{STEP * 3}".join(f"({term})" for term in terms)
+    return f" &&\n{STEP * depth}".join(f"({term})" for term in terms)
 
 
 def _lengths(lengths: range, longest: str) -> list[str]:

@@ -11,6 +11,7 @@ from icdgen import naming
 from icdgen.backends.xtce.places import Run, gaps, run_of, run_of_all
 from icdgen.backends.xtce.types import Type, Types, is_said, type_of
 from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe.description import TailDescription
 from icdgen.icd.model import TELECOMMAND, Special
 
 
@@ -25,6 +26,7 @@ class Row(NamedTuple):
     constant: int | None = None
     is_reserved: bool = False
     is_view: bool = False
+    most: int = 0  # of an open end the elements, or bytes, that there are at most
 
 
 class Entry(NamedTuple):
@@ -125,14 +127,43 @@ class Frames:
                 found += self._constant(made, one)
             else:
                 found.append(self._entry(made, one, run))
-        made.lacks += (f"`{part.name}`, which has no fixed size, is left out" for part in message.model.open_parts)
+        tail = message.tail
+        can_stand = not message.inner and not any(one.needs for one in found)
+        behind = self._open(made, tail) if tail is not None and can_stand else None
+        if behind is None:
+            made.lacks += (f"`{part.name}`, which has no fixed size, is left out" for part in message.model.open_parts)
         if message.model.may_end_early:
             made.notes.append("it is sent with the zeros that it may be sent without")
         made.notes += (
             f"`{one.model.name}` is left out: it is derived by `{one.model.formula}`" for one in message.derived
         )
         self._lay_out(made, found, self.head + message.model.fixed * 8)
+        if behind is not None:
+            made.entries.append(
+                behind._replace(at=behind.run.at if any(one.at is not None for one in made.entries) else None)
+            )
         return made
+
+    def _open(self, made: Frame, tail: TailDescription) -> Entry | None:
+        """An open end that a field counts; None where XTCE has no word for it, as of structs and of what nothing counts."""
+        part, node = tail.part, made.message.node
+        is_odd = tail.counter.model.implied or part.struct is not None or part.model.const is not None
+        if is_odd or tail.counter.name not in made.names:
+            return None
+        run = run_of(part.model, node) if part.model.is_bytes else run_of_all(part.model.elements, node)
+        if run is None:
+            return None
+        before, taken = (
+            ("", set(made.names.values())) if self.direction == TELECOMMAND else (f"{made.name}_", self.taken)
+        )
+        name = made.names[part.name] = unique(before + (_camel(part.name) or "Field"), taken)
+        wanted = name if name.startswith(made.name) else f"{made.name}_{name}"
+        type_ = self.types.of_open(tail, made.names[tail.counter.name], wanted, run.is_little)
+        model = part.model
+        made.rows.append(Row(name, type_, model.name, model.summary, model.special, most=tail.most))
+        if not is_said(model):
+            made.notes.append(f"`{model.name}`: beyond its table it has the value of the last point")
+        return Entry(name, run._replace(at=self.head + run.at), is_array=not model.is_bytes or bool(part.count))
 
     def _give_names(self, made: Frame, parts: Iterable[FieldDescription]) -> None:
         """Parameters are known to all containers, arguments to their command alone."""

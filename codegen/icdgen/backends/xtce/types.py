@@ -10,6 +10,7 @@ from typing import Any
 from icdgen import naming
 from icdgen.describe import FieldDescription
 from icdgen.describe.bounds import bounds
+from icdgen.describe.description import TailDescription
 from icdgen.describe.numbers import exact_text, point_text
 from icdgen.icd.curve import CLAMP, EXTRAPOLATE
 from icdgen.icd.model import Field, Member
@@ -38,7 +39,9 @@ class Type:
     labels: tuple[Member, ...] = ()
     enum: str = ""  # what an enumeration is called
     of: str = ""  # of an array the type of its elements
-    count: int = 0  # of an array its elements
+    count: int = 0  # of an array its elements; of what something counts the most that there are
+    counter: str = ""  # the parameter or argument that counts elements, or bytes
+    plus: int = 0  # there are so many more than it says
 
     @property
     def size(self) -> int:
@@ -71,9 +74,20 @@ class Types:
 
     def of(self, field: FieldDescription, wanted: str, is_little: bool) -> str:
         """The name of the type of a field, of an array of all its elements."""
-        element = type_of(field.model, is_little)
-        name = self.name(element, _usual_name(field, element) or wanted)
+        name = self._element(field, wanted, is_little)
         return name if not field.count else self.name(Type("Array", of=name, count=field.count), f"{wanted}_Array")
+
+    def of_open(self, tail: TailDescription, counter: str, wanted: str, is_little: bool) -> str:
+        """The name of the type of an open end, of which ``counter`` says how much there is."""
+        if tail.part.model.is_bytes and not tail.part.count:
+            made = replace(type_of(tail.part.model), bits=0)
+        else:
+            made, wanted = Type("Array", of=self._element(tail.part, wanted, is_little)), f"{wanted}_Array"
+        return self.name(replace(made, count=tail.most, counter=counter, plus=tail.model.plus), wanted)
+
+    def _element(self, field: FieldDescription, wanted: str, is_little: bool) -> str:
+        element = type_of(field.model, is_little)
+        return self.name(element, _usual_name(field, element) or wanted)
 
 
 def type_of(field: Field, is_little: bool = False) -> Type:

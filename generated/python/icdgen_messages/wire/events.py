@@ -59,10 +59,11 @@ class Refused:
 
 @dataclass(frozen=True)
 class Timeout:
-    """A request had no reply."""
+    """A request had no reply; in envelopes, ``reply`` is the id of what was waited for."""
 
     id: int
     attempts: int
+    reply: Optional[int] = None
 
 
 @dataclass(frozen=True)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Callable, Mapping
-from typing import Optional, overload
+from collections.abc import AsyncIterator, Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import NamedTuple, Optional, overload
 
 from .._base import Message
 from .._hints import KindOf, M, N, SpokenBy, class_of, message_of
 from .client import Request
+from .envelope_client import EnvelopeClient
 from .events import Event, Outcome, OutcomeOf
 from .exchanges import (
     Exchange,
@@ -26,14 +28,21 @@ from .link import Link, Settings
 _PIECE = 4096  # bytes that are read at a time
 
 
+class _Locks(NamedTuple):
+    turn: asyncio.Lock  # of requests that wait for each other
+    read: asyncio.Lock
+    write: asyncio.Lock
+
+
 class AsyncSession(Exchanges[N]):
     """Asks, and awaits the outcome, over the bytes of a UART: `Session` for asyncio.
 
     The streams are yours: those of `asyncio.open_connection`, or of a serial port
     (pyserial-asyncio). What they raise ends the request, as does its cancellation, and
-    `ConnectionResetError` tells that the other side closed. Requests of several tasks
-    wait for each other. ``clock`` gives seconds; ``on_event`` is told of what comes
-    unasked. ``values``: see `Session`.
+    `ConnectionResetError` tells that the other side closed. Several tasks may ask, and
+    listen: over envelopes requests that different telemetry answers are under way
+    together, others wait for each other. ``clock`` gives seconds; ``on_event`` is told
+    of what comes unasked. ``values``: see `Session`.
     """
 
     def __init__(
@@ -49,7 +58,8 @@ class AsyncSession(Exchanges[N]):
     ) -> None:
         super().__init__(client_of(link, crc, settings, values), on_event, clock)
         self._reader, self._writer = reader, writer
-        self._turn: Optional[asyncio.Lock] = None
+        self._locks: Optional[_Locks] = None
+        self._boxes: dict[object, list[Event]] = {}  # of each task that waits
         self._read_before: Optional[asyncio.Future[bytes]] = None
 
     async def get(self, message: KindOf[N, M]) -> M:
@@ -108,9 +118,10 @@ class AsyncSession(Exchanges[N]):
         Without ``kinds`` all of them. What else happens is told to ``on_event``.
         """
         end = None if seconds is None else self._now() + 1000 * seconds
-        while end is None or self._now() < end:
-            for message in self._messages_in(await self.wait(end), kinds):
-                yield message
+        with self._box() as box:
+            while end is None or self._now() < end:
+                for message in self._messages_in(await self._next(box, end), kinds):
+                    yield message
 
     async def start(self, request: Request) -> Outcome:
         """Any request; its outcome. Raises what `Client.start` does."""
@@ -125,21 +136,57 @@ class AsyncSession(Exchanges[N]):
 
         Without ``until`` it waits as long as the client wants to, and a second at most.
         """
+        with self._box() as box:
+            return await self._next(box, until)
+
+    @contextmanager
+    def _box(self) -> Iterator[list[Event]]:
+        """Where a task finds what happened, whoever read it."""
+        key = object()
+        box: list[Event] = []
+        self._boxes[key] = box
+        try:
+            yield box
+        finally:
+            del self._boxes[key]
+
+    async def _next(self, box: list[Event], until: Optional[float]) -> list[Event]:
+        """What has happened, or happens next. One task reads, for all."""
         await self._flush()
-        data = await self._read(self._seconds(until))
+        async with self._lock.read:
+            if not box:
+                await self._receive(until)
+        events, box[:] = box[:], []
+        return events
+
+    async def _receive(self, until: Optional[float]) -> None:
+        longest = self.client.settings.reply_timeout  # another task may ask meanwhile
+        data = await self._read(min(self._seconds(until), longest / 1000))
         if data is None:
             events = self.client.tick(self._now())
         elif data:
             events = self.client.received(self._now(), data)
         else:
             raise ConnectionResetError("the other side closed the connection")
+        for box in self._boxes.values():
+            box += events
+        self._tell_unasked(events)
         await self._flush()
-        return self._tell_unasked(events)
+
+    @property
+    def _lock(self) -> _Locks:
+        if self._locks is None:  # older Pythons bind them where they are made
+            self._locks = _Locks(asyncio.Lock(), asyncio.Lock(), asyncio.Lock())
+        return self._locks
 
     async def _run(self, exchange: Exchange[T]) -> T:
-        if self._turn is None:
-            self._turn = asyncio.Lock()
-        async with self._turn:
+        if isinstance(self.client, EnvelopeClient):
+            return await self._ended(exchange)
+        async with self._lock.turn:
+            return await self._ended(exchange)
+
+    async def _ended(self, exchange: Exchange[T]) -> T:
+        with self._box() as box:
             try:
                 step = next(exchange)
                 while True:
@@ -147,7 +194,7 @@ class AsyncSession(Exchanges[N]):
                         await self._flush()
                         step = exchange.send([])
                     else:
-                        step = exchange.send(await self.wait(step))
+                        step = exchange.send(await self._next(box, step))
             except StopIteration as end:
                 result: T = end.value
                 return result
@@ -174,6 +221,7 @@ class AsyncSession(Exchanges[N]):
         return reading.result()
 
     async def _flush(self) -> None:
-        while data := self.client.output():
-            self._writer.write(data)
-            await self._writer.drain()
+        async with self._lock.write:
+            while data := self.client.output():
+                self._writer.write(data)
+                await self._writer.drain()

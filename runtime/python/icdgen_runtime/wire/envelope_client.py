@@ -63,6 +63,8 @@ class EnvelopeClient(Generic[N]):
         self._sender = Sender(link, "telecommand", values)
         self._decoder = StreamDecoder(link)
         self._most = requests
+        self.begun: Optional[int] = None
+        """Id of the telemetry that answers the request begun last; None: nothing does."""
         self._slots: list[_Slot] = []
         self._untaken: list[_Slot] = []
 
@@ -124,11 +126,18 @@ class EnvelopeClient(Generic[N]):
         return self._sender.encode(slot.sent, slot.asked.data)
 
     def cancel(
-        self, kind: Optional[Direction] = None, id: Optional[int] = None
+        self,
+        kind: Optional[Direction] = None,
+        id: Optional[int] = None,
+        reply: Optional[int] = None,
     ) -> None:
-        """Gives up a request, or all, without an event, and what of it was not taken."""
+        """Gives up a request, or all, without an event, and what of it was not taken.
+
+        ``reply``: only what waits for telemetry of that id.
+        """
         for slot in self._slots:
-            if kind in (None, slot.asked.kind) and id in (None, slot.asked.id):
+            is_meant = kind in (None, slot.asked.kind) and id in (None, slot.asked.id)
+            if is_meant and reply in (None, slot.reply):
                 self._drop(slot)
                 if slot.state != "idle":
                     self._remember(slot, slot.until)
@@ -145,7 +154,7 @@ class EnvelopeClient(Generic[N]):
                 events += self._transmit(now, slot)
             else:
                 self._end(now, slot, True)
-                events.append(Timeout(slot.asked.id, slot.attempts))
+                events.append(Timeout(slot.asked.id, slot.attempts, slot.reply))
         return events
 
     def received(self, now: float, data: Buffer) -> list[Event]:
@@ -189,6 +198,7 @@ class EnvelopeClient(Generic[N]):
             raise LengthError(f"telecommand {row.id}", nearest, len(request.data))
         slot.asked, slot.sent, slot.reply, slot.kind = request, row.id, reply, kind
         slot.attempts, slot.was_taken = 0, False
+        self.begun = reply
         late = [one.late[1] for one in self._slots if one.late and one.late[0] == reply]
         if now < max(late, default=now):
             slot.state, slot.until = "hold", max(late)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from typing import Any, Generic, Literal, Optional, TypeVar, Union, cast
 
 from .._base import Message
@@ -11,7 +11,7 @@ from .._errors import IcdError
 from .._hints import KindOf, N, SpokenBy
 from .client import Client, Request
 from .envelope_client import EnvelopeClient
-from .errors import UnsupportedError
+from .errors import BusyError, UnsupportedError
 from .events import (
     AnyDone,
     Arrived,
@@ -116,17 +116,59 @@ class Exchanges(Generic[N]):
     def _exchange(
         self, start: Callable[..., list[Event]], *arguments: Any
     ) -> Exchange[Outcome]:
-        """A request, which a method of the client begins, to its outcome."""
+        """A request, which a method of the client begins, to its outcome.
+
+        It begins when no other is in its way.
+        """
+        while True:
+            try:
+                events = start(self._now(), *arguments)
+                break
+            except BusyError:
+                yield None
+        client = self.client
+        reply = client.begun if isinstance(client, EnvelopeClient) else None
+        is_going_on = True
         try:
-            events = start(self._now(), *arguments)
             while True:
                 for event in events:
-                    if isinstance(event, (Done, Refused, Timeout)):
+                    if isinstance(event, Refused) or (
+                        isinstance(event, (Done, Timeout)) and event.reply == reply
+                    ):
+                        is_going_on = False
                         yield "send"
                         return event
                 events = yield None
         finally:
-            self.client.cancel()  # else a port that fails leaves it busy
+            if isinstance(client, Client):
+                client.cancel()  # else a port that fails leaves it busy
+            elif is_going_on:
+                client.cancel(reply=reply)
+
+    def _together(self, exchanges: Sequence[Exchange[T]]) -> Exchange[list[T]]:
+        """Exchanges that go on together, each to its end; one that fails ends all."""
+        ends: dict[int, T] = {}
+        events: Optional[list[Event]] = None
+        try:
+            while True:
+                for place, exchange in enumerate(exchanges):
+                    if place in ends:
+                        continue
+                    try:
+                        if events is None:
+                            step = next(exchange)
+                        else:
+                            step = exchange.send(events)
+                        while step == "send":
+                            step = exchange.send((yield "send"))
+                    except StopIteration as end:
+                        ends[place] = end.value
+                if len(ends) == len(exchanges):
+                    return [ends[place] for place in range(len(exchanges))]
+                events = yield None
+        finally:
+            for exchange in exchanges:
+                exchange.close()
 
     def _procedure(
         self, procedure: P, progress: Optional[Progress] = None

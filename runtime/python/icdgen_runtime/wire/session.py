@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Mapping
-from typing import Optional, Union, overload
+from typing import Any, Optional, Union, overload
 
 from .._base import Message
-from .._hints import KindOf, M, N, SpokenBy, class_of, message_of
+from .._hints import M2, M3, KindOf, M, N, SpokenBy, class_of, message_of
 from .carriers import carrier_of
 from .client import Client, Request
 from .events import Event, Outcome, OutcomeOf
@@ -46,6 +46,31 @@ class BusSession(Exchanges[N]):
         """
         outcome = self._run(self._exchange(self.client.request, message))
         return outcome_of(outcome, class_of(message))
+
+    @overload
+    def get_several(
+        self, one: KindOf[N, M], other: KindOf[N, M2], /
+    ) -> tuple[M, M2]: ...
+
+    @overload
+    def get_several(
+        self, one: KindOf[N, M], other: KindOf[N, M2], third: KindOf[N, M3], /
+    ) -> tuple[M, M2, M3]: ...
+
+    @overload
+    def get_several(self, *messages: KindOf[N, M]) -> tuple[M, ...]: ...
+
+    def get_several(self, *messages: KindOf[N, Any]) -> tuple[Any, ...]:
+        """Requests telemetry, all at once where the link tells replies apart; else in turn.
+
+        Raises like `get`, with the others given up.
+        """
+        asked = [self._exchange(self.client.request, message) for message in messages]
+        outcomes = self._run(self._together(asked))
+        return tuple(
+            class_of(message).from_bytes(executed(outcome, class_of(message).NAME).data)
+            for message, outcome in zip(messages, outcomes)
+        )
 
     def send(self, message: SpokenBy[N], repeat: bool = False) -> None:
         """Sends a telecommand or a setting; raises like `get` and `Client.send`."""

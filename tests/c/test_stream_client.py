@@ -1,0 +1,225 @@
+"""A typed client over envelopes: what docs/wire.md shows is compiled and run, and each event is read as what it is."""
+
+from __future__ import annotations
+
+import subprocess
+
+import pytest
+
+from icdgen.loading import load
+from tests.c import harness
+from tests.conformance.icds import LINKS, read
+from tests.conftest import ROOT
+
+_, SHOWN = (ROOT / "docs" / "wire.md").read_text("utf-8").split("\n## Envelopes\n")
+EXAMPLES = ROOT / "examples" / "links"
+
+
+def shown(begin: str) -> list[str]:
+    """The lines of the example in C that begins so."""
+    _, rest = SHOWN.split(f"```c\n{begin}")
+    return (begin + rest.split("```")[0]).splitlines()
+
+
+def run(folder, text, *icds):
+    loaded = load(list(icds))
+    assert loaded.findings == []
+    headers = harness.generate(loaded.icd, folder / "made")
+    source = folder / "program.c"
+    source.write_text(text)
+    for compiler in ("gcc", "clang"):
+        flags = ("-std=c99", *harness.WARNINGS, *harness.SANITIZERS, f"-I{headers}")
+        program = harness.compile(source, *flags, compiler=compiler, output=folder / "program")
+        done = subprocess.run([program], capture_output=True, text=True)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+DOCUMENTED = r"""
+#include "receiver.h"
+#include <assert.h>
+
+static uint32_t clocks = 0;
+static uint8_t wire[200];
+static size_t on_wire = 0;
+
+static void uart_write(const uint8_t *bytes, size_t count)
+{
+    memcpy(wire + on_wire, bytes, count);
+    on_wire += count;
+}
+
+static void on_event(void *context, const icd_stream_event_t *event)
+{
+    receiver_navigation_clock_t clock;
+    (void)context;
+    %s
+}
+
+int main(void)
+{
+    const uint32_t now = 0;
+    static const uint8_t asked[] = {0xB5, 0x62, 0x01, 0x22, 0, 0, 0x23, 0x6A};
+    void *const context = NULL;
+    uint8_t input[RECEIVER_LINE_BYTES], data[RECEIVER_NAVIGATION_CLOCK_LENGTH] = {0};
+    receiver_set_message_rate_t rate;
+    size_t count = 0, n = 0;
+    receiver_set_message_rate_init(&rate);
+    rate.rate = 1;
+    assert(icd_stream_encode(
+        receiver_link(), ICD_TELEMETRY, RECEIVER_NAVIGATION_CLOCK_ID, data, sizeof data, NULL, input, sizeof input, &n) == ICD_OK);
+    %s
+    assert(on_wire == sizeof asked + RECEIVER_SET_MESSAGE_RATE_LENGTH + 8u && memcmp(wire, asked, sizeof asked) == 0);
+    assert(clocks == 1u && !icd_stream_client_deadline(&receiver.client, &clocks));
+    return 0;
+}
+"""
+
+
+def test_the_documented_client_asks_sends_and_reads_what_comes(tmp_path):
+    lines = shown("receiver_client_t receiver;")
+    told = [line.replace("...", "++clocks;") for line in lines if "in on_event" in line]
+    done = [line for line in lines if "in on_event" not in line]
+    assert len(told) == 1 and len(done) > 7
+    run(tmp_path, DOCUMENTED % (told[0], "\n    ".join(done)), EXAMPLES / "ubx.yaml")
+
+
+SENDING = r"""
+#include "autopilot.h"
+#include <assert.h>
+
+int main(void)
+{
+    uint8_t line[AUTOPILOT_LINE_BYTES];
+    autopilot_set_mode_t mode;
+    size_t written = 0;
+    autopilot_set_mode_init(&mode);
+    %s
+    assert(line[4] == 0u && line[5] == 9u);
+    mode.custom_mode = 7;
+    assert(autopilot_put_set_mode(&sender, &mode, line, 3u, &written) == ICD_ERROR_LENGTH);
+    assert(autopilot_put_set_mode(&sender, &mode, line, sizeof line, &written) == ICD_OK && line[4] == 1u);
+    assert(line[1] == 1u && line[10] == 7u && written == 13u); /* zeros at the end are not sent */
+    return 0;
+}
+"""
+
+
+def test_the_documented_sender_counts_what_it_sends(tmp_path):
+    run(tmp_path, SENDING % "\n    ".join(shown("autopilot_sender_t sender;")), EXAMPLES / "mavlink2.yaml")
+
+
+SHARED = r"""
+#include "datagram.h"
+#include <assert.h>
+
+typedef struct {
+    icd_status_t shorter, first, another;
+    uint32_t level;
+    icd_stream_kind_t kind;
+} seen_t;
+
+static void on_event(void *context, const icd_stream_event_t *event)
+{
+    seen_t *const seen = (seen_t *)context;
+    datagram_short_level_t shorter = {0};
+    datagram_level_of_the_first_t first = {0};
+    datagram_level_of_another_t another = {0};
+    icd_stream_event_t elsewhere = *event;
+    elsewhere.link = NULL;
+    seen->kind = event->kind;
+    seen->shorter = datagram_receive_short_level(&shorter, event);
+    seen->first = datagram_receive_level_of_the_first(&first, event);
+    seen->another = datagram_receive_level_of_another(&another, event);
+    seen->level = first.level;
+    assert(datagram_receive_level_of_the_first(&first, &elsewhere) == ICD_ERROR_UNKNOWN_ID);
+}
+
+static seen_t comes(datagram_client_t *client, const uint8_t *data, size_t length)
+{
+    uint8_t line[DATAGRAM_LINE_BYTES];
+    size_t count = 0;
+    seen_t seen = {ICD_OK, ICD_OK, ICD_OK, 0u, ICD_STREAM_GAP};
+    assert(icd_stream_encode(
+        datagram_link(), ICD_TELEMETRY, DATAGRAM_SHORT_LEVEL_ID, data, length, NULL, line, sizeof line, &count) == ICD_OK);
+    icd_stream_client_received(&client->client, 1, line, count, on_event, &seen);
+    return seen;
+}
+
+int main(void)
+{
+    static datagram_client_t client;
+    static uint8_t buffer[DATAGRAM_LONGEST + 2u * DATAGRAM_REQUEST_BYTES], line[DATAGRAM_LINE_BYTES];
+    static const uint8_t first[] = {1, 2, 3}, another[] = {2, 2, 3};
+    icd_stream_slot_t slots[2];
+    datagram_order_t order;
+    datagram_points_t points;
+    size_t count = 0;
+    datagram_order_init(&order);
+    datagram_points_init(&points);
+    points.points_count = 2;
+    assert(datagram_client_init(&client, slots, 2, buffer, sizeof buffer - 1u) == ICD_ERROR_LENGTH);
+    assert(datagram_send_order(&client, 0, &order, NULL, NULL) == ICD_ERROR_UNSUPPORTED);
+    assert(datagram_client_init(&client, slots, 2, buffer, sizeof buffer) == ICD_OK);
+
+    assert(datagram_ask_order(&client, 0, &order, DATAGRAM_SHORT_LEVEL_ID) == ICD_OK);
+    assert(datagram_ask_points(&client, 0, &points, DATAGRAM_LEVEL_OF_ANOTHER_ID) == ICD_ERROR_BUSY);
+    assert(datagram_ask_points(&client, 0, &points, DATAGRAM_ORDER_ID) == ICD_ERROR_UNKNOWN_ID);
+    assert(datagram_ask_points(&client, 0, &points, DATAGRAM_LEAST_ID) == ICD_OK);
+    assert(icd_stream_client_output(&client.client, line, sizeof line, &count));
+    assert(icd_stream_client_output(&client.client, line, sizeof line, &count));
+    assert(count == 10u + 5u + 6u); /* two points are five bytes, around them header and trailer */
+
+    seen_t seen = comes(&client, first, sizeof first);
+    assert(seen.kind == ICD_STREAM_DONE && seen.first == ICD_OK && seen.level == 0x203u);
+    assert(seen.shorter == ICD_ERROR_UNKNOWN_ID && seen.another == ICD_ERROR_UNKNOWN_ID);
+    seen = comes(&client, another, sizeof another);
+    assert(seen.kind == ICD_STREAM_MESSAGE && seen.another == ICD_OK);
+    assert(seen.shorter == ICD_ERROR_UNKNOWN_ID && seen.first == ICD_ERROR_UNKNOWN_ID);
+    seen = comes(&client, first, 1);
+    assert(seen.shorter == ICD_OK && seen.another == ICD_ERROR_UNKNOWN_ID && seen.first == ICD_ERROR_UNKNOWN_ID);
+    return 0;
+}
+"""
+
+
+def test_an_event_is_read_as_the_message_that_it_brings_and_as_no_other(tmp_path):
+    run(tmp_path, SHARED, LINKS / "packets.yaml")
+
+
+@pytest.mark.parametrize("compiler, standard", [("gcc", "c99"), ("g++", "c++17")])
+def test_clients_of_all_links_compile_under_all_warnings(tmp_path, compiler, standard):
+    icd = read(*sorted(LINKS.glob("*.yaml")), *sorted(EXAMPLES.glob("*.yaml")))
+    harness.compile_all(icd, harness.generate(icd, tmp_path), compiler, standard)
+
+
+CALL = """\
+#include "datagram.h"
+#include "receiver.h"
+icd_status_t call(receiver_client_t *client, const receiver_set_message_rate_t *rate);
+icd_status_t call(receiver_client_t *client, const receiver_set_message_rate_t *rate)
+{
+    (void)client;
+    (void)rate;
+    return %s;
+}
+"""
+CALLS = {
+    "receiver_send_set_message_rate(client, 0, rate, NULL, NULL)": 0,
+    "datagram_send_order(client, 0, rate, NULL, NULL)": 1,
+    "receiver_send_poll_clock(&client->client, 0, NULL, NULL)": 1,
+    "receiver_request_end_of_epoch(client, 0)": 1,  # no telecommand asks for it
+}
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory):
+    icd = read(LINKS / "packets.yaml", EXAMPLES / "ubx.yaml")
+    return harness.generate(icd, tmp_path_factory.mktemp("both"))
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_only_what_the_node_takes_and_can_be_asked_compiles(both, tmp_path, call):
+    source = tmp_path / "call.c"
+    source.write_text(CALL % call)
+    done = subprocess.run(["gcc", "-std=c99", "-Werror", "-fsyntax-only", f"-I{both}", source], capture_output=True)
+    assert done.returncode == CALLS[call], done.stderr

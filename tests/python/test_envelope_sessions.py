@@ -1,0 +1,243 @@
+"""Several requests under way in sessions over envelopes, over a port that answers as the test says."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import subprocess
+import sys
+import textwrap
+
+import pytest
+import yaml
+
+from tests.conftest import ROOT
+from tests.python import packages
+
+STATUS = {"name": "Navigation Status", "id": 0x0103, "kind": "telemetry", "length": 1}
+FIELD = {"at": 0, "bits": 8, "name": "Fix", "type": "uint"}
+POLL = {"name": "Poll Status", "id": 0x0103, "kind": "telecommand", "length": 0}
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    icd = yaml.safe_load((ROOT / "examples" / "links" / "ubx.yaml").read_text("utf-8"))
+    icd["messages"] += [{**STATUS, "fields": [FIELD]}, POLL]
+    icd["protocol"]["stream"]["replies"]["Poll Status"] = "Navigation Status"
+    folder = tmp_path_factory.mktemp("several")
+    (folder / "receiver.yaml").write_text(yaml.safe_dump(icd))
+    return packages.write(packages.read(folder / "receiver.yaml"), folder, "several_messages")
+
+
+@pytest.fixture(scope="module")
+def node(package):
+    return package.module("receiver")
+
+
+@pytest.fixture(scope="module")
+def wire(package):
+    return package.module("wire")
+
+
+class Device:
+    """Notes which telecommands came, and sends what it is told to when so many have come."""
+
+    def __init__(self, wire, node, *answers):
+        self.wire, self.node, self.answers, self.now = wire, node, list(answers), 0.0
+        self.asked, self.decoder = [], wire.StreamDecoder(node.LINK, "telecommand")
+
+    def line(self, message):
+        return self.wire.stream_encode(self.node.LINK, message, direction="telemetry")
+
+    def write(self, data):
+        self.asked += [event.kind for event in self.decoder.feed(data)]
+
+    def due(self):
+        """What is to be sent by now."""
+        due = [self.line(message) for count, message in self.answers if count <= len(self.asked)]
+        self.answers = [one for one in self.answers if one[0] > len(self.asked)]
+        return b"".join(due)
+
+    def read(self, seconds):
+        self.now += min(seconds, 0.1)
+        return self.due()
+
+    def session(self, **options):
+        return self.wire.Session(self.node.LINK, self.write, self.read, clock=lambda: self.now, **options)
+
+
+def test_several_are_asked_for_before_the_first_is_answered(wire, node):
+    answers = (2, node.NavigationStatus(fix=3)), (2, node.EndOfEpoch()), (2, node.NavigationClock(clock_bias=7))
+    device, heard = Device(wire, node, *answers), []
+    session = device.session(on_event=heard.append)
+    clock, status = session.get_several(node.NavigationClock, node.NavigationStatus)
+    assert (clock.clock_bias, status.fix) == (7, 3)
+    assert device.asked == [node.PollClock, node.PollStatus] and not session.client.busy
+    assert [event.of(node.EndOfEpoch) for event in heard] == [node.EndOfEpoch()]
+    assert session.get_several() == ()
+
+
+def test_the_same_is_asked_for_again_when_it_has_come(wire, node):
+    device = Device(wire, node, (1, node.NavigationClock(clock_bias=1)), (2, node.NavigationClock(clock_bias=2)))
+    found = device.session().get_several(node.NavigationClock, node.NavigationClock)
+    assert [one.clock_bias for one in found] == [1, 2] and device.asked == [node.PollClock, node.PollClock]
+
+
+def test_a_reply_that_does_not_come_is_told_of_and_nothing_goes_on(wire, node):
+    device = Device(wire, node, (2, node.NavigationClock()))
+    session = device.session(settings=node.LINK.settings._replace(retries=0))
+    with pytest.raises(wire.ReplyTimeoutError, match="Navigation Status"):
+        session.get_several(node.NavigationClock, node.NavigationStatus)
+    assert not session.client.busy and session.client.deadline is None
+
+
+def test_a_port_that_fails_ends_all(wire, node):
+    def read(seconds):
+        raise OSError("unplugged")
+
+    session = wire.Session(node.LINK, Device(wire, node).write, read)
+    with pytest.raises(OSError, match="unplugged"):
+        session.get_several(node.NavigationClock, node.NavigationStatus)
+    assert not session.client.busy
+
+
+class Writer:
+    """The part of a stream's writer that a session uses; the device answers at once."""
+
+    def __init__(self, device, reader):
+        self.device, self.reader = device, reader
+
+    def write(self, data):
+        self.device.write(data)
+        if due := self.device.due():
+            self.reader.feed_data(due)
+
+    async def drain(self):
+        await asyncio.sleep(0)
+
+
+def talk(wire, node, talking, *answers, **settings):
+    """Runs ``talking(session, device, reader)``, which may take five seconds."""
+
+    async def run():
+        reader = asyncio.StreamReader()
+        device = Device(wire, node, *answers)
+        chosen = node.LINK.settings._replace(**settings)
+        session = wire.AsyncSession(node.LINK, reader, Writer(device, reader), settings=chosen)
+        await asyncio.wait_for(talking(session, device, reader), 5)
+        assert not session.client.busy and not session._boxes
+
+    asyncio.run(run())
+
+
+def test_tasks_ask_together_and_one_listens(wire, node):
+    async def talking(session, device, reader):
+        heard = []
+
+        async def listen():
+            async for message in session.messages(node.EndOfEpoch):
+                heard.append(message.time_of_week)
+                if len(heard) == 2:
+                    break
+
+        listening = asyncio.create_task(listen())
+        await asyncio.sleep(0)
+        reader.feed_data(device.line(node.EndOfEpoch(time_of_week=1)))
+        get = session.get
+        clock, status, again = await asyncio.gather(
+            get(node.NavigationClock), get(node.NavigationStatus), get(node.NavigationClock)
+        )
+        assert (clock.clock_bias, status.fix, again.clock_bias) == (1, 3, 2)
+        assert device.asked == [node.PollClock, node.PollStatus, node.PollClock]
+        reader.feed_data(device.line(node.EndOfEpoch(time_of_week=2)))
+        await listening
+        assert heard == [1, 2]
+        await asyncio.sleep(0)
+
+    answers = (2, node.NavigationStatus(fix=3)), (2, node.NavigationClock(clock_bias=1))
+    talk(wire, node, talking, *answers, (3, node.NavigationClock(clock_bias=2)))
+
+
+@pytest.mark.parametrize("given_up", [0, 1])
+def test_a_task_that_is_given_up_leaves_the_others_going_on(wire, node, given_up):
+    """Whichever of them reads for both."""
+
+    async def talking(session, device, reader):
+        kinds = node.NavigationClock, node.NavigationStatus
+        tasks = [asyncio.create_task(session.get(kind)) for kind in kinds]
+        while len(device.asked) < 2:
+            await asyncio.sleep(0)
+        tasks[given_up].cancel()
+        await asyncio.wait(tasks, timeout=0.01)
+        reader.feed_data(device.line(node.NavigationStatus(fix=1)) + device.line(node.NavigationClock()))
+        other = await tasks[1 - given_up]
+        assert isinstance(other, kinds[1 - given_up]) and tasks[given_up].cancelled()
+
+    talk(wire, node, talking)
+
+
+def test_each_task_is_told_of_its_own_time_out(wire, node):
+    async def talking(session, device, reader):
+        found = await asyncio.gather(
+            session.get(node.NavigationClock), session.get(node.NavigationStatus), return_exceptions=True
+        )
+        assert found[0] == node.NavigationClock() and isinstance(found[1], wire.ReplyTimeoutError)
+
+    talk(wire, node, talking, (2, node.NavigationClock()), reply_timeout=30, retries=1)
+
+
+def test_all_are_told_that_the_connection_is_closed(wire, node):
+    async def talking(session, device, reader):
+        asyncio.get_running_loop().call_later(0.01, reader.feed_eof)
+        kinds = node.NavigationClock, node.NavigationStatus
+        found = await asyncio.gather(*map(session.get, kinds), return_exceptions=True)
+        assert [type(one) for one in found] == [ConnectionResetError] * 2
+
+    talk(wire, node, talking)
+
+
+def test_what_is_documented_runs_and_its_types_are_known(package, tmp_path):
+    text = (ROOT / "docs" / "wire.md").read_text("utf-8")
+    (shown,) = re.findall(r"```python\n(clock, status = session.get_several.*?)```", text, re.S)
+    first, rest = shown.split("\n", 1)
+    program = f"""\
+    import asyncio
+    from several_messages.receiver import LINK, NavigationClock, NavigationStatus
+    from several_messages.wire import AsyncSession, Session, stream_encode
+
+
+    def line(message: NavigationClock | NavigationStatus) -> bytes:
+        return stream_encode(LINK, message, direction="telemetry")
+
+
+    def read(seconds: float) -> bytes:
+        return line(NavigationStatus(fix=3)) + line(NavigationClock(clock_bias=5))
+
+
+    sent: list[bytes] = []
+    session = Session(LINK, sent.append, read)
+    {first}
+    assert (clock.clock_bias, status.fix, len(sent)) == (5, 3, 2)
+    """
+    (tmp_path / "several.py").write_text("from __future__ import annotations\n\n" + textwrap.dedent(program) + rest)
+    environment = {"PYTHONPATH": str(package.folder), "MYPYPATH": str(package.folder)}
+    for command in ("several.py",), ("-m", "mypy", "--strict", "several.py"):
+        done = subprocess.run([sys.executable, *command], cwd=tmp_path, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_over_other_links_several_are_asked_for_in_turn(shipped):
+    acp, wire = shipped.module("cubeacp"), shipped.module("wire")
+    kinds = acp.EstimatedAttitudeAngles, acp.CurrentAdcsState
+    decoder, asked, replies = wire.UartDecoder(acp.LINK), [], []
+
+    def write(data):
+        for event in decoder.feed(data):
+            assert not replies  # to the request before
+            asked.append(event.message[0])
+            (kind,) = (one for one in kinds if event.message[0] == one.ID)
+            replies.append(wire.uart_encode(acp.LINK, bytes([kind.ID]) + kind().to_bytes()))
+
+    session = wire.Session(acp.LINK, write, lambda seconds: replies.pop() if replies else b"")
+    assert session.get_several(*kinds) == tuple(kind() for kind in kinds)
+    assert asked == [kind.ID for kind in kinds]
