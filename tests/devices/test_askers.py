@@ -31,8 +31,7 @@ static void on_event(void *context, const icd_stream_event_t *event)
     if (event->kind == ICD_STREAM_DONE && !event->has_reply) {
         (void)printf("done %%lu\\n", id);
     }
-    if (icd_is_telemetry(event, RECEIVER_NODE, RECEIVER_NAVIGATION_CLOCK_ID) &&
-        receiver_navigation_clock_decode(&clock, event->data, event->length) == ICD_OK) {
+    if (receiver_receive_navigation_clock(&clock, event) == ICD_OK) {
         (void)printf(
             "%%s %%lu %%ld\\n", event->kind == ICD_STREAM_DONE ? "done" : "unasked", id, (long)clock.clock_bias);
     }
@@ -63,25 +62,25 @@ static void send(icd_stream_client_t *client)
 int main(void)
 {
 %s
-    send(&client);
-    icd_stream_client_tick(&client, 10 + client.settings.reply_timeout, on_event, NULL);
-    send(&client);
+    send(&receiver.client);
+    icd_stream_client_tick(&receiver.client, 10 + receiver.client.settings.reply_timeout, on_event, NULL);
+    send(&receiver.client);
     count = answer(line, sizeof line, 5);
-    icd_stream_client_received(&client, 2000, line, count, on_event, NULL);
+    icd_stream_client_received(&receiver.client, 2000, line, count, on_event, NULL);
     count = answer(line, sizeof line, 6);
-    icd_stream_client_received(&client, 2001, line, count, on_event, NULL);
+    icd_stream_client_received(&receiver.client, 2001, line, count, on_event, NULL);
     uint32_t deadline = 0;
-    if (icd_stream_client_deadline(&client, &deadline)) {
+    if (icd_stream_client_deadline(&receiver.client, &deadline)) {
         return 1;
     }
-    if (icd_stream_client_request(&client, 9000, RECEIVER_NAVIGATION_CLOCK_ID) != ICD_OK ||
-        icd_stream_client_request(&client, 9000, RECEIVER_NAVIGATION_CLOCK_ID) != ICD_ERROR_BUSY ||
-        icd_stream_client_request(&client, 9000, RECEIVER_END_OF_EPOCH_ID) != ICD_ERROR_UNSUPPORTED) {
+    if (receiver_request_navigation_clock(&receiver, 9000) != ICD_OK ||
+        receiver_request_navigation_clock(&receiver, 9000) != ICD_ERROR_BUSY ||
+        icd_stream_client_request(&receiver.client, 9000, RECEIVER_END_OF_EPOCH_ID) != ICD_ERROR_UNSUPPORTED) {
         return 2;
     }
-    send(&client);
-    while (icd_stream_client_deadline(&client, &deadline)) {
-        icd_stream_client_tick(&client, deadline, on_event, NULL);
+    send(&receiver.client);
+    while (icd_stream_client_deadline(&receiver.client, &deadline)) {
+        icd_stream_client_tick(&receiver.client, deadline, on_event, NULL);
     }
     return 0;
 }
@@ -89,11 +88,9 @@ int main(void)
 C_BEGIN = """
     const uint32_t now = 10;
     receiver_set_message_rate_t rate;
-    uint8_t data[RECEIVER_SET_MESSAGE_RATE_LENGTH];
     size_t count = 0;
     void *const context = NULL;
     receiver_set_message_rate_init(&rate);
-    (void)receiver_set_message_rate_encode(&rate, data, sizeof data);
 """
 EXPECTED = [
     "done 1537", "sent 0122 8", "sent 0601 11", "sent 0122 8", "done 290 5", "unasked 290 6", "sent 0122 8", "timeout 290",
@@ -164,7 +161,7 @@ def shown(language: str, first: str, last: str) -> str:
 
 def test_c_asks_and_is_answered(tmp_path):
     folder = c.generate(ICD, tmp_path)
-    body = C_BEGIN + shown("c", "icd_stream_client_t client", "RECEIVER_SET_MESSAGE_RATE_ID")
+    body = C_BEGIN + shown("c", "receiver_client_t receiver", "receiver_send_set_message_rate")
     (tmp_path / "ask.c").write_text(C % body)
     options = ("-std=c99", *c.WARNINGS, *c.SANITIZERS, f"-I{folder}")
     program = c.compile(tmp_path / "ask.c", *options, output=tmp_path / "ask")

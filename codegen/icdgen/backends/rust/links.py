@@ -8,7 +8,7 @@ from typing import NamedTuple
 from icdgen.backends.literals import Brackets, Item, written
 from icdgen.backends.rust.facts import member_name, type_name, value_of
 from icdgen.backends.rust.literals import Expression, flat, flat_rows, part, rows, some, spelled, struct
-from icdgen.backends.rust.streams import stream_of
+from icdgen.backends.rust.streams import stream_of, tabulated
 from icdgen.backends.rust.text import doc, integer, prose, string
 from icdgen.describe import FieldDescription
 from icdgen.describe.comments import sentence
@@ -44,6 +44,7 @@ class LinkValues(NamedTuple):
     literal: str
     longest: str
     sequences: str  # empty where there is no envelope
+    tabulated: str  # the CRC of the envelope
 
 
 class Sizes(NamedTuple):
@@ -72,7 +73,9 @@ def values(link: LinkDescription) -> LinkValues:
     about = [f"The protocol of node `{known.node.name}`. What the manual leaves open is marked as assumed."]
     for section, key, why in link_literal.assumed.others():
         about.append(f"Assumed (`{section}`, `{key}`): {prose(sentence(why))}")
-    return LinkValues(known.node.name, doc(about), text, integer(longest(link)), sequences)
+    crc = tabulated(known.stream)
+    table = written(crc, _note) if crc else ""
+    return LinkValues(known.node.name, doc(about), text, integer(longest(link)), sequences, table)
 
 
 def longest(link: LinkDescription) -> int:

@@ -10,7 +10,7 @@ from icdgen.backends.rust.literals import flat, part, rows, some, spelled, struc
 from icdgen.backends.rust.text import integer, mask
 from icdgen.naming import camel
 from icdgen.protocol.declared import facts_of
-from icdgen.protocol.envelope import WORD, EnvelopeField, Stream, StreamRow
+from icdgen.protocol.envelope import CRC, WORD, Check, EnvelopeField, Stream, StreamRow
 
 _DELIMITERS = {"none": "Packet"}
 
@@ -20,11 +20,11 @@ def stream_of(form: Stream) -> Brackets:
     check = None
     if form.check:
         given = form.check
-        crc = flat("CrcForm", **{member_name(fact): value_of(fact, given.crc) for fact in facts_of(given.crc)})
         check = struct(
             "CheckForm",
             part("kind", f"link::CheckKind::{_camel(given.kind)}"),
-            part("crc", crc),
+            part("crc", _crc(given)),
+            part("table", some("&TABLE" if given.kind == CRC else None)),
             part("covered_from", integer(given.covered_from)),
             part("covered_trailer", integer(given.covered_trailer)),
             part("is_seeded", spelled(given.is_seeded)),
@@ -41,6 +41,16 @@ def stream_of(form: Stream) -> Brackets:
         part("telecommands", _rows(form.telecommands)),
         part("telemetry", _rows(form.telemetry)),
     )
+
+
+def tabulated(form: Stream | None) -> Brackets | None:
+    """The CRC whose table makes the checksum fast."""
+    check = form and form.check
+    return _crc(check) if check and check.kind == CRC else None
+
+
+def _crc(check: Check) -> Brackets:
+    return flat("CrcForm", **{member_name(fact): value_of(fact, check.crc) for fact in facts_of(check.crc)})
 
 
 def _camel(word: str) -> str:

@@ -86,20 +86,20 @@ impl<'a> Crc<'a> {
     /// A CRC that is computed bit by bit.
     #[must_use]
     pub const fn new(form: &'a CrcForm) -> Self {
-        Self {
-            form,
-            table: None,
-            register: form.init.wrapping_shl(form.unused_bits()),
-            fed: false,
-        }
+        Self::with(form, None)
     }
 
     /// A CRC that is computed with the [`Table`] of the same form.
     #[must_use]
     pub const fn with_table(form: &'a CrcForm, table: &'a Table) -> Self {
+        Self::with(form, Some(table))
+    }
+
+    /// A CRC with a table if there is one.
+    pub(super) const fn with(form: &'a CrcForm, table: Option<&'a Table>) -> Self {
         Self {
             form,
-            table: Some(table),
+            table,
             register: form.init.wrapping_shl(form.unused_bits()),
             fed: false,
         }
@@ -107,22 +107,27 @@ impl<'a> Crc<'a> {
 
     /// Takes the next bytes.
     pub fn feed(&mut self, bytes: &[u8]) {
-        let polynomial = self.form.aligned_polynomial();
-        for &byte in bytes {
-            self.fed = true;
-            let byte = if self.form.reflect_in {
-                byte.reverse_bits()
-            } else {
-                byte
-            };
-            self.register = match self.table {
-                Some(Table(rows)) => {
-                    let [first, ..] = self.register.to_be_bytes();
-                    (self.register << 8) ^ rows[usize::from(first ^ byte)]
-                }
-                None => shifted(self.register ^ (u32::from(byte) << 24), polynomial),
-            };
+        self.fed = self.fed || !bytes.is_empty();
+        if self.form.reflect_in {
+            self.take(bytes.iter().map(|byte| byte.reverse_bits()));
+        } else {
+            self.take(bytes.iter().copied());
         }
+    }
+
+    fn take(&mut self, bytes: impl Iterator<Item = u8>) {
+        let register = self.register;
+        self.register = if let Some(Table(rows)) = self.table {
+            bytes.fold(register, |register, byte| {
+                let [first, ..] = register.to_be_bytes();
+                (register << 8) ^ rows[usize::from(first ^ byte)]
+            })
+        } else {
+            let polynomial = self.form.aligned_polynomial();
+            bytes.fold(register, |register, byte| {
+                shifted(register ^ (u32::from(byte) << 24), polynomial)
+            })
+        };
     }
 
     /// The CRC of everything fed so far.

@@ -19,7 +19,7 @@ impl<'a> Check<'a> {
         let is_pair = matches!(form.kind, CheckKind::Fletcher | CheckKind::Fletcher255);
         Self {
             form,
-            crc: Crc::new(&form.crc),
+            crc: Crc::with(&form.crc, form.table),
             first: if is_pair { init & 0xff } else { init },
             second: init >> 8,
         }

@@ -145,17 +145,16 @@ impl<const N: usize, const S: usize> Decoder<N, S> {
     fn append(&mut self, bytes: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
         let mut rest = bytes;
         while !rest.is_empty() {
-            let wanted = self
-                .needed
-                .saturating_sub(self.length)
-                .max(1)
-                .min(rest.len());
-            let free = self.buffer.iter_mut().skip(self.length);
-            for (place, byte) in free.zip(rest.iter().take(wanted)) {
+            let needed = self.needed.max(self.form.header_bytes);
+            let wanted = needed.saturating_sub(self.length).max(1);
+            let (piece, others) = rest.split_at(wanted.min(rest.len()));
+            let end = self.length + piece.len();
+            let free = self.buffer.get_mut(self.length..end).unwrap_or(&mut []);
+            for (place, byte) in free.iter_mut().zip(piece) {
                 *place = *byte;
             }
-            self.length += wanted;
-            rest = rest.get(wanted..).unwrap_or(&[]);
+            self.length = end;
+            rest = others;
             if self.length >= self.needed {
                 self.decide(on_event);
             }

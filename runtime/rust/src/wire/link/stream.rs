@@ -1,6 +1,7 @@
 //! The envelope of a link that the ICD describes as fields with roles around the data.
 
 use super::CrcForm;
+use crate::wire::Table;
 
 /// What tells where a message ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,6 +86,8 @@ pub struct CheckForm {
     pub kind: CheckKind,
     /// Its parameters.
     pub crc: CrcForm,
+    /// What makes a CRC fast.
+    pub table: Option<&'static Table>,
     /// The byte of the header from which on it is computed.
     pub covered_from: usize,
     /// Bytes of the trailer that it covers.
