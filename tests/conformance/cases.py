@@ -59,8 +59,8 @@ class MessageCases:
         self.id = message.get("id", message.get("set_id"))
         self.fresh = {field["name"]: shown(field, field["default"]) for field in self.fields}
         self.tail: dict | None = message.get("tail")
-        parts = [*message.get("inner", ()), *([self.tail] if self.tail else ())]
-        self.full = self.fresh | {one["counter"]: one["most"] - one.get("plus", 0) for one in parts}
+        self.parts: list[dict] = [*message.get("inner", ()), *([self.tail] if self.tail else ())]
+        self.full = self.fresh | {one["counter"]: one["most"] - one.get("plus", 0) for one in self.parts}
         self.conditional = {field["name"]: field["when"] for field in self.fields if "when" in field}
         self.given = self.owned(self.full)  # what makes such a message, with all elements
 
@@ -96,11 +96,20 @@ class MessageCases:
         if names:
             yield Case(why, self.request("decode", bytes=vector["bytes"], names=True), {**answer, "names": names})
         physical = {name: value for name, value in physical.items() if name not in self.one_way and value is not None}
+        physical = {name: value for name, value in physical.items() if self.is_sent(name, raw)}
         if physical:
             rest = {name: value for name, value in self.owned(raw).items() if name not in physical}
             yield Case(
                 why, self.request("encode", raw=rest, physical=physical), self.from_physical(raw, physical, answer)
             )
+
+    def is_sent(self, name: str, raw: dict) -> bool:
+        """Whether a frame of these raw values has a field: elements of open parts beyond the count are 0, set or not."""
+        for one in self.parts:
+            element = name.removeprefix(one["part"] + "[")
+            if element != name:
+                return int(element.partition("]")[0]) < raw[one["counter"]] + one.get("plus", 0)
+        return True
 
     def owned(self, values: dict) -> dict:
         """Without those of views, which are not set."""

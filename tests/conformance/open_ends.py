@@ -26,13 +26,19 @@ def open_end(draw, place: dict, fields: list[dict], elements: st.SearchStrategy,
 @st.composite
 def open_parts(draw, place: dict, fields: list[dict], elements: st.SearchStrategy, structs: list[dict]) -> list[dict]:
     """One, or several behind each other, all but the last counted by fields. ``place``: of the first; its name is that of all."""
-    if not any(map(_counts, fields)) or draw(st.integers(0, 2)):
-        return [draw(open_end(place, fields, elements, structs))]
+    free = [one for one in fields if _counts(one)]
     found: list[dict] = []
-    for number in range(draw(st.integers(1, 2))):
-        one = open_end(_named(place, number, found), [one for one in fields if _counts(one)], elements, structs)
-        found.append(draw(one.filter(lambda part: "rest" not in (part.get("count"), part.get("size")))))
-    return [*found, draw(open_end(_named(place, 9, found), fields, elements, structs))]
+    for number in range(0 if draw(st.integers(0, 2)) else min(len(free), draw(st.integers(1, 2)))):
+        one = open_end(_named(place, number, found), free, elements, structs)
+        found.append(draw(one.filter(lambda part: _counter(part) != "rest")))
+        free = [one for one in free if one["name"] != _counter(found[-1])]  # a field counts one part
+    return [*found, draw(open_end(_named(place, 9, found) if found else place, free, elements, structs))]
+
+
+def _counter(part: dict) -> str:
+    """What says how many elements it has: the name of a field, or `rest`."""
+    said = part.get("size", part.get("count"))
+    return said["field"] if isinstance(said, dict) else said
 
 
 def _named(place: dict, number: int, before: list[dict]) -> dict:
