@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from icdgen.icd.curve import Curve
-from icdgen.icd.model import Field, Icd, Message, Node, Special
+from icdgen.icd.model import Field, Icd, Message, Node, Special, Tail
 
 
 class CodecError(ValueError):
@@ -28,20 +28,21 @@ class LengthError(CodecError):
 
 def decode(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]:
     """Raw value of every field that is there, by name; elements that are not in the frame are 0. Raises `LengthError`."""
-    bits, actual = int.from_bytes(frame, "little"), len(frame)  # what a frame leaves out reads as 0
-    if actual not in message.lengths:
-        raise LengthError(message, _next_length(message, actual), actual)
+    actual, frame = len(frame), spread(node, message, frame) if message.inner else frame
+    lacking, bits = len(frame) - actual, int.from_bytes(frame, "little")  # what a frame leaves out reads as 0
+    if len(frame) not in _whole_lengths(message):
+        raise LengthError(message, _next_length(message, len(frame)) - lacking, actual)
     raw = {one.name: _read(node, one, bits) for one in message.fields if not one.when and one.derived is None}
     if message.has_conditions:
         raw |= {one.name: _read(node, one, bits) for one in message.fields if one.when and is_present(one, raw)}
     tail, counter = message.tail, message.counter
     if tail is not None and counter is not None:
-        count = (actual - message.begin) // tail.step
+        count = (len(frame) - message.begin) // tail.step
         if counter.implied:
             raw[counter.name] = count
         elif _number(raw[counter.name]) + tail.plus != count:
             told = message.begin + (_number(raw[counter.name]) + tail.plus) * tail.step
-            raise LengthError(message, max(0, told), actual)
+            raise LengthError(message, max(0, told - lacking), actual)
     return raw | derived(message, raw) if message.views else raw
 
 
@@ -59,7 +60,57 @@ def derived(message: Message, raw: Mapping[str, int | bytes]) -> dict[str, int |
 
 def _next_length(message: Message, actual: int) -> int:
     """The length that a frame of no possible length should have had: the longest possible one below, or the least."""
-    return max((one for one in message.lengths if one < actual), default=message.least)
+    lengths = _whole_lengths(message)
+    return max((one for one in lengths if one < actual), default=lengths[0])
+
+
+def _whole_lengths(message: Message) -> range:
+    """The lengths that frames have with all elements of `Message.inner`."""
+    tail = message.tail
+    if tail is None or not message.inner:
+        return message.lengths
+    return range(message.begin + tail.fewest * tail.step, message.length + 1, tail.step)
+
+
+def spread(node: Node, message: Message, frame: bytes) -> bytes:
+    """The frame with zeros for the elements of `Message.inner` that it does not have: the beginning of the longest one.
+
+    Raises `LengthError` if it is shorter than any, or says that it has more elements than there can be.
+    """
+    if len(frame) < message.least:
+        raise LengthError(message, message.least, len(frame))
+    try:
+        for place, lacking in _gaps(message, _counts(node, message, frame)):
+            frame = frame[:place] + bytes(lacking) + frame[place:]
+    except CodecError:
+        raise LengthError(message, message.length, len(frame)) from None
+    return frame
+
+
+def squeezed(node: Node, message: Message, frame: bytes) -> bytes:
+    """Of the beginning of the longest frame the bytes that it has: see `spread`. Raises `CodecError` for a count that cannot be."""
+    return _without(frame, _gaps(message, _counts(node, message, frame)))
+
+
+def _without(frame: bytes, gaps: list[tuple[int, int]]) -> bytes:
+    for place, lacking in reversed(gaps):
+        frame = frame[:place] + frame[place + lacking :]
+    return frame
+
+
+def _counts(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]:
+    """What the fields say that count the elements of `Message.inner`."""
+    names, bits = {one.counter for one in message.inner}, int.from_bytes(frame, "little")
+    return {one.name: _read(node, one, bits) for one in message.fields if one.name in names}
+
+
+def _gaps(message: Message, raw: Mapping[str, int | bytes]) -> list[tuple[int, int]]:
+    """Where the longest frame has bytes that one with these counts has not, and how many. Raises `CodecError`."""
+    found = []
+    for one in message.inner:
+        count = elements_of(one, raw)
+        found.append((one.begin + count * one.step, (one.most - count) * one.step))
+    return found
 
 
 def _number(raw: int | bytes) -> int:
@@ -69,13 +120,15 @@ def _number(raw: int | bytes) -> int:
 
 def count_of(message: Message, raw: Mapping[str, int | bytes]) -> int:
     """How many elements the open end has. Raises `CodecError` if it cannot have so many."""
-    tail = message.tail
-    if tail is None:
-        return 0
-    told = _number(raw.get(tail.counter, tail.low))
-    if not tail.low <= told <= tail.high:
-        raise CodecError(f"{tail.counter!r} takes {tail.low} to {tail.high}, not {told}")
-    return told + tail.plus
+    return 0 if message.tail is None else elements_of(message.tail, raw)
+
+
+def elements_of(part: Tail, raw: Mapping[str, int | bytes]) -> int:
+    """How many elements an open part has. Raises `CodecError` if it cannot have so many."""
+    told = _number(raw.get(part.counter, part.low))
+    if not part.low <= told <= part.high:
+        raise CodecError(f"{part.counter!r} takes {part.low} to {part.high}, not {told}")
+    return told + part.plus
 
 
 def counted(node: Node, message: Message, frame: bytes, count: int) -> bytes:
@@ -105,6 +158,14 @@ def is_there(message: Message, field: Field, count: int) -> bool:
     return not field.path or message.tail is None or field.at < 8 * (message.begin + count * message.tail.step)
 
 
+def is_sent(message: Message, field: Field, raw: Mapping[str, int | bytes]) -> bool:
+    """Whether the frame of these raw values holds a field: no element beyond those that are counted."""
+    part = next((one for one in message.inner if field.path and one.name == field.path[0].name), None)
+    if part is not None:
+        return field.at < 8 * (part.begin + elements_of(part, raw) * part.step)
+    return is_there(message, field, count_of(message, raw))
+
+
 def which(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | None:
     """Of messages that share an id the one that a frame is of; None if it is of none of them.
 
@@ -129,7 +190,8 @@ def which(icd: Icd, known: Sequence[Message], frame: bytes) -> Message | None:
 
 def _in_every_frame(message: Message) -> list[Field]:
     """The constants of a message, without those of elements and fields that not every frame has."""
-    return [one for one in message.owners if one.const is not None and not one.when and is_there(message, one, 0)]
+    fixed = [one for one in message.owners if one.const is not None and not one.when and one.at < 8 * message.fixed]
+    return [one for one in fixed if is_there(message, one, 0)]
 
 
 def _has_alike(icd: Icd, message: Message, constant: Field, node: Node) -> bool:
@@ -155,14 +217,21 @@ def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> byte
     return frame_with(node, message, raw)
 
 
+def new(node: Node, message: Message) -> dict[str, int | bytes]:
+    """The raw values of a new message; constants are in all elements of inner open parts, which a frame of it does not have."""
+    inner = {part.name for part in message.inner}
+    elements = {one.name: one.fresh for one in message.owners if one.path and one.path[0].name in inner}
+    return decode(node, message, encode(node, message, message.fresh)) | elements
+
+
 def frame_with(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
     """The frame in which these fields have these values and all other bits are 0. Raises `CodecError` for an unfit value."""
-    bits, count = 0, count_of(message, raw)
+    bits, gaps, count = 0, _gaps(message, raw), count_of(message, raw)
     for field in message.owners:
         if field.name in raw and is_there(message, field, count) and is_present(field, raw):
             bits |= _written(node, field, raw[field.name])
     frame = bits.to_bytes(message.length, "little")
-    return frame if message.tail is None else frame[: message.begin + count * message.tail.step]
+    return frame if message.tail is None else _without(frame[: message.begin + count * message.tail.step], gaps)
 
 
 def check_raw(field: Field, value: int | bytes) -> None:

@@ -18,7 +18,9 @@ const icdgenCodec = (() => {
   /** Raw value of each field, in their order, null of what is not there; elements that are not in the frame are 0. Throws a CodecError unless the frame has a length of the message. */
   function decode(message, frame) {
     const { tail } = message;
-    const count = tail ? elementsIn(message, frame.length) : 0;
+    const actual = frame.length;
+    if (message.inner) frame = spread(message, frame);
+    const count = tail ? elementsIn(message, frame.length, frame.length - actual) : 0;
     const endsEarly = message.endsEarly && frame.length > 0 && frame.length < message.length;
     if (!tail && !endsEarly && frame.length !== message.length) throw misfit(message, message.endsEarly && !frame.length ? 1 : message.length, frame.length);
     const longest = tail || endsEarly ? new Uint8Array(message.length) : frame;
@@ -31,17 +33,54 @@ const icdgenCodec = (() => {
     if (!tail) return raw;
     const counter = counterOf(message);
     if (message.fields[counter].implied) raw[counter] = BigInt(count);
-    else if (raw[counter] !== BigInt(count - plusOf(message))) throw misfit(message, Math.max(0, tail.least + (Number(raw[counter]) + plusOf(message)) * tail.step), frame.length);
+    else if (raw[counter] !== BigInt(count - plusOf(message))) throw misfit(message, Math.max(0, tail.least + (Number(raw[counter]) + plusOf(message)) * tail.step - (frame.length - actual)), actual);
     return raw;
   }
 
-  /** How many elements the end of a frame of so many bytes has. Throws a CodecError if no frame has so many. */
-  function elementsIn(message, actual) {
+  /** Where the longest frame has bytes of inner open parts that one with these counts has not, and how many; null of a count that cannot be. */
+  function gaps(message, counts) {
+    return (message.inner ?? []).map(({ begin, step, most, plus }, index) => {
+      const count = Number(counts[index]) + plus;
+      return count < Math.max(0, plus) || count > most ? null : [begin + count * step, (most - count) * step];
+    });
+  }
+
+  /** The beginning of the longest frame: with zeros for what inner open parts do not have. Throws a CodecError for a frame that cannot be. */
+  function spread(message, frame) {
+    if (frame.length < message.fewest) throw misfit(message, message.fewest, frame.length);
+    const counts = message.inner.map(({ counter }) => read(message.fields[counter], frame));
+    let whole = frame;
+    for (const gap of gaps(message, counts)) {
+      if (!gap) throw misfit(message, message.length, frame.length);
+      const [place, lacking] = gap;
+      const wider = new Uint8Array(whole.length + lacking);
+      wider.set(whole.subarray(0, place));
+      wider.set(whole.subarray(place), Math.min(place, whole.length) + lacking);
+      whole = wider;
+    }
+    return whole;
+  }
+
+  /** The frame of the beginning of the longest one. Throws a CodecError for a count that cannot be. */
+  function squeezed(message, raw, frame) {
+    const counts = message.inner.map(({ counter }) => raw[counter]);
+    for (const [place, lacking] of gaps(message, counts).reverse()) {
+      const left = new Uint8Array(frame.length - lacking);
+      left.set(frame.subarray(0, place));
+      left.set(frame.subarray(place + lacking), place);
+      frame = left;
+    }
+    return frame;
+  }
+
+  /** How many elements the end of a frame of so many bytes has, of which it lacks some. Throws a CodecError if no frame has so many. */
+  function elementsIn(message, actual, lacking) {
     const { least, step } = message.tail;
+    const refuse = (expected) => misfit(message, expected - lacking, actual - lacking);
     const shortest = least + Math.max(0, plusOf(message)) * step;
-    if (actual < shortest) throw misfit(message, shortest, actual);
-    if (actual > message.length) throw misfit(message, message.length, actual);
-    if ((actual - least) % step) throw misfit(message, actual - ((actual - least) % step), actual);
+    if (actual < shortest) throw refuse(shortest);
+    if (actual > message.length) throw refuse(message.length);
+    if ((actual - least) % step) throw refuse(actual - ((actual - least) % step));
     return (actual - least) / step;
   }
 
@@ -84,11 +123,17 @@ const icdgenCodec = (() => {
   function encode(message, raw) {
     const frame = new Uint8Array(message.length);
     const size = sizeOf(message, raw);
+    (message.inner ?? []).forEach(({ counter, most, plus }) => {
+      const [low, high] = [Math.max(0, -plus), most - plus];
+      check(message.fields[counter], raw[counter]);
+      if (raw[counter] < low || raw[counter] > high) throw unfit(message.fields[counter], `takes ${low} to ${high}, not ${raw[counter]}`);
+    });
     message.fields.forEach((field, index) => {
       if (field.view || !isIn(field, size) || !isThere(message, field, raw)) return;
       check(field, raw[index]);
       write(field, frame, raw[index]);
     });
+    if (message.inner) return squeezed(message, raw, frame.slice(0, size));
     return message.tail ? frame.slice(0, size) : frame;
   }
 
@@ -135,9 +180,13 @@ const icdgenCodec = (() => {
 
   /** The raw values of a fresh message: 0, or what is demanded. */
   function fresh(message) {
-    const first = (field) => BigInt(field.const ?? (field.name === message.tail?.counter ? Math.max(0, -plusOf(message)) : 0));
+    const counted = new Map((message.inner ?? []).map(({ counter, plus }) => [message.fields[counter].name, Math.max(0, -plus)]));
+    if (message.tail) counted.set(message.tail.counter, Math.max(0, -plusOf(message)));
+    const first = (field) => BigInt(field.const ?? counted.get(field.name) ?? 0);
     const raw = message.fields.map((field) => (field.type === "bytes" ? new Uint8Array(field.bits / 8) : first(field)));
-    return decode(message, encode(message, raw));
+    const read = decode(message, encode(message, raw));
+    if (message.inner) message.fields.forEach((field, index) => (read[index] = field.inner ? raw[index] : read[index]));
+    return read;
   }
 
   /** Exact physical value of a scaled field as [numerator, denominator]; null without a scale. */

@@ -59,9 +59,8 @@ class MessageCases:
         self.id = message.get("id", message.get("set_id"))
         self.fresh = {field["name"]: shown(field, field["default"]) for field in self.fields}
         self.tail: dict | None = message.get("tail")
-        self.full = self.fresh | (
-            {self.tail["counter"]: self.tail["most"] - self.tail.get("plus", 0)} if self.tail else {}
-        )
+        parts = [*message.get("inner", ()), *([self.tail] if self.tail else ())]
+        self.full = self.fresh | {one["counter"]: one["most"] - one.get("plus", 0) for one in parts}
         self.conditional = {field["name"]: field["when"] for field in self.fields if "when" in field}
         self.given = self.owned(self.full)  # what makes such a message, with all elements
 
@@ -185,6 +184,8 @@ class MessageCases:
             return self.message["length"] if actual else Maybe(...)
         if self.tail is None:
             return self.message["length"]
+        if "inner" in self.message:
+            return Maybe(...)
         step = self.tail["step"]
         least = self.tail["least"] + step * max(0, self.tail.get("plus", 0))
         if least <= actual < self.message["length"]:

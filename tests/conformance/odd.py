@@ -781,6 +781,29 @@ messages:
     fields:
       - {at: 0, bits: 8, name: Number, type: uint}
       - {at: 8, name: Labels, struct: Label, count: Number, up_to: 2}
+  - name: Two open parts
+    id: 154
+    kind: telemetry
+    length: 4
+    fields:
+      - {at: 3, bits: 9, name: Number, type: uint, byte_order: little, bit_order: lsb0}
+      - {at: 12, bits: 4, name: Last, type: uint, byte_order: little, bit_order: lsb0}
+      - {at: 16, bits: 16, name: Match, type: int, unit: V, formula: raw*0.01}
+      - {at: 32, bits: 24, name: Values, type: int, count: Number, up_to: 5, formula: raw*0.25}
+      - {at: 32, name: Elements, struct: Element, after: Values, count: {field: Last, plus: 1}, up_to: 3}
+      - {at: 20, bits: 6, name: Both, type: uint, view: true}
+  - name: Three and what comes
+    id: 155
+    kind: telecommand
+    length: 3
+    fields:
+      - {at: 0, bits: 8, name: Inner, type: uint}
+      - {at: 8, bits: 8, name: Between, type: uint}
+      - {at: 16, bits: 8, name: To, type: uint}
+      - {at: 24, bits: 8, name: There, type: uint, count: Inner, up_to: 4, const: 3}
+      - {at: 24, name: Actual, type: bytes, after: There, size: {field: Between, plus: -2}, up_to: 9}
+      - {at: 24, name: Output, type: text, after: Actual, size: To, up_to: 200}
+      - {at: 24, name: Buffer, struct: Inner, after: Output, count: rest, up_to: 2}
   - name: Cut Off
     id: 140
     kind: telemetry

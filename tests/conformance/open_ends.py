@@ -23,6 +23,24 @@ def open_end(draw, place: dict, fields: list[dict], elements: st.SearchStrategy,
     return place | element | _counted(draw, "count", counter, most)
 
 
+@st.composite
+def open_parts(draw, place: dict, fields: list[dict], elements: st.SearchStrategy, structs: list[dict]) -> list[dict]:
+    """One, or several behind each other, all but the last counted by fields. ``place``: of the first; its name is that of all."""
+    if not any(map(_counts, fields)) or draw(st.integers(0, 2)):
+        return [draw(open_end(place, fields, elements, structs))]
+    found: list[dict] = []
+    for number in range(draw(st.integers(1, 2))):
+        one = open_end(_named(place, number, found), [one for one in fields if _counts(one)], elements, structs)
+        found.append(draw(one.filter(lambda part: "rest" not in (part.get("count"), part.get("size")))))
+    return [*found, draw(open_end(_named(place, 9, found), fields, elements, structs))]
+
+
+def _named(place: dict, number: int, before: list[dict]) -> dict:
+    """The place of another part; a number makes its name another."""
+    named = {key: f"{value} {number}" if key in ("name", "identifier") else value for key, value in place.items()}
+    return named | ({"after": before[-1]["name"]} if before else {})
+
+
 def _counted(draw, key: str, counter: dict | None, most: int) -> dict:
     """What says how many there are, and the most of them, which the counter can say."""
     if counter is None:

@@ -132,17 +132,16 @@ class Reference:
                 raw[field.name] = raw_value(field, given[field.name])
             else:
                 raise Refusal("missing-field", field=field.name)
-        try:
-            codec.count_of(message, raw)
-        except codec.CodecError as error:
-            assert message.tail is not None
-            raise Refusal("range", field=message.tail.counter, detail=str(error)) from None
+        for part in message.open_parts:
+            try:
+                codec.elements_of(part, raw)
+            except codec.CodecError as error:
+                raise Refusal("range", field=part.counter, detail=str(error)) from None
         return described(node, message, codec.decode(node, message, codec.encode(node, message, raw)))
 
     def constants(self, request: dict) -> dict:
         node, message = self.message(request)
-        fresh = {f.name: f.fresh for f in message.owners}
-        default = codec.decode(node, message, codec.encode(node, message, fresh))
+        default = codec.new(node, message)
         return {
             "name": message.name,
             "ids": list(message.ids),

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from icdgen.icd import exact, formula
 from icdgen.icd.curve import OUTSIDE
 from tests.conformance.derived import derived
-from tests.conformance.open_ends import open_end
+from tests.conformance.open_ends import open_end, open_parts
 from tests.conformance.sharing import sharing
 
 # Words that mean something to a language, to generated code, or to a template; alone each would be a bad identifier.
@@ -115,7 +115,8 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
             ends = (one["at"] + one["bits"] + 7 for one in alternatives)
             fields, message["length"] = [*fields, *alternatives], max([length, *(end // 8 for end in ends)])
         if not any("when" in field for field in fields) and draw(st.integers(0, 3)) == 0:
-            fields = [*fields, draw(_open_end(fields, message["length"], enums, structs))]
+            place = {"at": 8 * message["length"], **Names(draw, {field["name"] for field in fields}).one("end")}
+            fields = [*fields, *draw(open_parts(place, fields, _field(enums), structs))]
         elif draw(st.integers(0, 4)) == 0:
             message["reserved"] = draw(st.integers(1, 9))
             message["length"] += message["reserved"]

@@ -111,6 +111,16 @@ def test_a_fault_takes_with_it_only_what_it_spoils(faulty):
     assert faulty.failed and (faulty.held, faulty.definitions.total) == (3, 4)
 
 
+def test_a_signal_that_begins_before_its_message_is_left_out(tmp_path):
+    text = (FILES / "faulty.dbc").read_text()
+    assert "Outside : 12|8@1+" in text
+    (tmp_path / "before.dbc").write_text(text.replace("Outside : 12|8@1+", "Outside : -1|8@1+"))
+    read = run.read(tmp_path / "before.dbc", kinds.of(tmp_path / "before.dbc"))
+    assert [one["name"] for one in message(read, "Short")["fields"]] == ["Inside"]
+    told = [one.message for one in read.definitions.troubles if one.code == "IMP072"]
+    assert told == ["message `Short`: `Outside` begins before its 2 bytes"]
+
+
 @pytest.mark.parametrize("form", ["kcd", "sym"])
 def test_the_same_database_in_another_form_gives_the_same_fields(form, train, tmp_path):
     import cantools

@@ -105,9 +105,10 @@ def compare(node: str, messages: list[Definition], testee: Answering, frames: in
                 into.differences.append(f"{about}: is encoded as {said['bytes']}, by the library as {expected}")
             request = {"op": "encode", "node": node, "kind": one.kind, "id": one.id}
             again.append(({**request, **_to_encode(one, said["raw"], physical)}, expected))
-        elements = _there(one.end, said["raw"]) if one.end else 0
-        extra = [name for name in raw if one.end and name.startswith(f"{one.end['name']}[{elements}]")]
-        into.differences += [f"{about}: {elements} elements, the library says more" for _ in extra[:1]]
+        for end in one.ends:
+            elements = _there(end, said["raw"])
+            extra = [name for name in raw if name.startswith(f"{end['name']}[{elements}]")]
+            into.differences += [f"{about}: {elements} elements, the library says more" for _ in extra[:1]]
     made = testee.ask([json.dumps(request).encode() for request, _ in again])
     for (request, expected), answer in zip(again, made, strict=True):
         into.encoded += 1
@@ -182,21 +183,21 @@ def _physical(about: str, name: str, ours: float, theirs: object, exact: float, 
 
 def random_frames(one: Definition, chance: random.Random, count: int) -> list[bytes]:
     """Frames of a message: zeros, ones, random bytes; with its constants, and as many elements as they say."""
-    end = one.end
-    if end is None and not one.length:
+    if not one.ends and not one.length:
         return [b""]
     found = []
     for number in range(count):
-        elements = _elements(end, number, chance)
-        length = one.length + elements * (one.element(end) if end else 0)
+        there = [(end, _elements(end, number, chance)) for end in one.ends]
+        length = one.length + sum(elements * one.element(end) for end, elements in there)
         data = bytes(length) if number == 0 else b"\xff" * length if number == 1 else chance.randbytes(length)
-        if end is not None and end.get("type") == "text":
+        if len(there) == 1 and there[0][0].get("type") == "text":
             data = data[: one.length] + bytes(chance.choices(range(32, 127), k=length - one.length))
         for part in one.fields:
             if "const" in part:
                 data = _put(data, part, part["const"])
-            if end is not None and part["name"] == _counter(end)[0]:
-                data = _put(data, part, elements - _counter(end)[1])
+            for end, elements in there:
+                if part["name"] == _counter(end)[0]:
+                    data = _put(data, part, elements - _counter(end)[1])
         data = _chosen(one, data, chance) if number % 4 else data
         if one.may_end_early and number % 2:  # with zeros at the end, which are not sent
             data = data[: chance.randint(1, len(data))].rstrip(b"\0") or data[:1]
@@ -216,9 +217,9 @@ def _chosen(one: Definition, data: bytes, chance: random.Random) -> bytes:
     return data
 
 
-def _elements(end: dict | None, number: int, chance: random.Random) -> int:
+def _elements(end: dict, number: int, chance: random.Random) -> int:
     """How many elements the frame of a number has: as few as can be, all, one more, or any number."""
-    least, most = (max(0, _counter(end)[1]), end["up_to"]) if end else (0, 0)
+    least, most = max(0, _counter(end)[1]), end["up_to"]
     return (least, most, min(least + 1, most))[number] if number < 3 else chance.randint(least, most)
 
 

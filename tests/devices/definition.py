@@ -48,9 +48,9 @@ class Definition:
         }  # fmt: skip
 
     @property
-    def end(self) -> dict | None:
-        """The field of which not every frame has all."""
-        return next((one for one in self.fields if "up_to" in one), None)
+    def ends(self) -> list[dict]:
+        """The fields of which not every frame has all."""
+        return [one for one in self.fields if "up_to" in one]
 
     def parts(self, part: dict) -> list[dict]:
         """The fields of the struct that a part is made of; none where it is a field."""

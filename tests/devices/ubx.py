@@ -101,10 +101,13 @@ def _definition(direction: str, name: str, kind: str, mode: int, payload: dict) 
     for one in fields:
         if one["name"] in constants:
             one["const"] = constants[one["name"]]
-    parts = structs[0]["fields"] if structs else []
+    of_struct = {one["name"]: one["fields"] for one in structs}
     _tell_apart(fields)
-    _tell_apart(parts)
-    scaled = {one["name"] for one in (*fields, *parts) if "formula" in one}
+    for parts in of_struct.values():
+        _tell_apart(parts)
+    scaled = {
+        one["name"] for one in (*fields, *(part for one in structs for part in one["fields"])) if "formula" in one
+    }
 
     def read(data: bytes) -> dict[str, object]:
         import pyubx2
@@ -118,9 +121,12 @@ def _definition(direction: str, name: str, kind: str, mode: int, payload: dict) 
         if other:
             raise NotHeld("another layout under the same id")
         values = {k: v for k, v in found.__dict__.items() if not k.startswith("_") and k not in high}
-        if parts:
-            return _of_structs(values, fields[-1]["name"], parts)
-        return _gathered(values, fields[-1]) if fields and "up_to" in fields[-1] else values
+        for end in fields:
+            if "struct" in end:
+                values = _of_structs(values, end["name"], of_struct[end["struct"]])
+            elif "up_to" in end:
+                values = _gathered(values, end)
+        return values
 
     return Definition(
         name, int.from_bytes(key, "big"), kind, end // 8, fields, structs=structs,
@@ -175,7 +181,8 @@ def _fields(
     """
     for name, what in payload.items():
         factor = "1"
-        if fields and "up_to" in fields[-1]:
+        is_group = isinstance(what, tuple) and isinstance(what[1], dict) and not isinstance(what[0], int)
+        if fields and "up_to" in fields[-1] and not (is_group and "rest" not in fields[-1].values()):
             raise NotHeld("more behind a counted group")
         if isinstance(what, tuple) and isinstance(what[1], dict):
             count, inner = what
@@ -184,9 +191,8 @@ def _fields(
                     at = _fields(inner, fields, at, f"{before}_{number + 1:02d}", structs, owner)
                 continue
             if not (isinstance(count, str) and count[0] == "X"):
-                if name != list(payload)[-1]:
-                    raise NotHeld("more behind a counted group")
-                fields.append(_group(name, inner, count, fields, at, structs, owner, plus))
+                after = {"after": fields[-1]["name"]} if fields and "up_to" in fields[-1] else {}
+                fields.append(_group(name, inner, count, fields, at, structs, owner, plus) | after)
                 continue
             bit = at
             for member, type_ in inner.items():

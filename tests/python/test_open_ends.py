@@ -192,3 +192,22 @@ def test_columns_of_an_open_end_of_structs_are_lists(messages):
         [],
         ["", "", ""],
     ]
+
+
+def test_several_parts_may_be_open(package, messages):
+    errors, two = package.module("_errors"), messages.TwoOpenParts
+    message = two(number=2, values=(1, -2, 0, 0, 0), last=0, elements=(messages.Element(),))
+    frame = message.to_bytes()
+    assert len(frame) == 4 + 2 * 3 + 24 and frame[4:10] == b"\0\0\1\xff\xff\xfe"
+    again = two.from_bytes(frame)
+    assert (again.number, again.values, again.elements) == (2, (1, -2, 0, 0, 0), message.elements)
+    assert again.values_physical[:2] == (0.25, -0.5) and again.to_bytes() == frame
+    with pytest.raises(errors.RangeError, match="number takes 0 to 5, not 6"):
+        two(number=6, elements=(messages.Element(),)).to_bytes()
+    for size, expected in ((27, 28), (29, 34), (33, 34), (57, 34), (500, 82)):
+        with pytest.raises(errors.LengthError, match=f"has {expected} bytes, {size} given"):
+            two.from_bytes((frame * 20)[:size])
+    with pytest.raises(errors.LengthError):
+        two.from_bytes(b"\xff" * 400)
+    names = list(two.decode_many([frame, bytes(4 + 24)]))
+    assert "values" in names

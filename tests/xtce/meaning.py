@@ -42,12 +42,12 @@ def _message(one: Message, node: Node, direction: str, id: int) -> dict:
     has_views = not is_sent and all(is_ordered(field, node) for field in one.owners)
     fields = [field for field in one.fields if not (field.implied or field.derived) and (has_views or not field.view)]
     open_ = one.tail is not None and not has_open_end(one)
-    fields = [field for field in fields if not (open_ and field.at >= one.begin * 8) and is_ordered(field, node)]
+    fields = [field for field in fields if not (open_ and field.at >= one.fixed * 8) and is_ordered(field, node)]
     runs = [(field, _bits(field, node)) for field in fields]
     told = [(field.const, bits) for field, bits in runs if field.const is not None and is_sent]
     constants = {bit: value >> at & 1 for value, bits in told for at, bit in enumerate(bits)}
     return {
-        "id": id, "is both": one.kind == "configuration" and not _lacks(one, node), "bytes": one.begin,
+        "id": id, "is both": one.kind == "configuration" and not _lacks(one, node), "bytes": one.fixed,
         "open": None if one.tail is None or open_ else (line(one.tail.name), line(one.tail.counter), one.tail.most, one.tail.plus),
         "summary": line(one.summary), "group": line(one.group),
         "hazard": line(one.hazard) if is_sent else "", "constants": constants,
@@ -64,7 +64,7 @@ def has_open_end(one: Message) -> bool:
     """Whether a message has an open end for which XTCE has a word."""
     part = next((field for field in one.members if one.tail and field.name == one.tail.name), None)
     is_plain = part is not None and part.struct is None and part.const is None and not one.has_conditions
-    return is_plain and one.counter is not None and not one.counter.implied
+    return is_plain and one.counter is not None and not one.counter.implied and not one.inner
 
 
 def is_ordered(field: Field, node: Node) -> bool:

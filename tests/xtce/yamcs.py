@@ -68,6 +68,8 @@ def _compared(icd: Icd, node: Node, file: Path, classes: list[str], frames: int)
             elif message.tail is not None:
                 length += message.tail.fewest * message.tail.step
             frame = codec.frame_of(icd.node(message.node), frame, fixed)[:length]
+            if message.inner:
+                frame = codec.encode(icd.node(message.node), message, message.fresh)
             asked.append((message, frame, (message.telemetry_id << head).to_bytes(width, "big") + frame))
     root = ElementTree.parse(file).getroot()
     names = {one.get("name", ""): line(alias(one)) for one in root.iterfind(f".//{SPACE}Parameter")}
@@ -107,7 +109,7 @@ def _pair(text: str) -> tuple[str, str]:
 
 def _unlike(node: Node, message: Message, frame: bytes, theirs: Values) -> tuple[int, str]:
     raw, count = codec.decode(node, message, frame), 0
-    end = 8 * (len(frame) if has_open_end(message) else message.begin)
+    end = 8 * (len(frame) if has_open_end(message) else message.fixed)
     for field in message.fields:
         is_left_out = field.implied or field.derived or field.at >= end or not is_ordered(field, node)
         if is_left_out or field.is_bytes or (field.view and not all(is_ordered(one, node) for one in message.owners)):

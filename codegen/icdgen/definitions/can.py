@@ -147,8 +147,9 @@ def _message(message: Any, order: str, enums: Enumerations, to: Definitions) -> 
     placed: list[tuple[Item, frames.Place]] = []
     for signal in message.signals:
         place = signal_place(signal)
-        if place.mask >> 8 * message.length:
-            what = f"message `{message.name}`: `{signal.name}` ends behind its {message.length} bytes"
+        if not 0 <= place.at <= place.at + place.bits <= 8 * message.length:
+            where = "begins before" if place.at < 0 else "ends behind"
+            what = f"message `{message.name}`: `{signal.name}` {where} its {message.length} bytes"
             to.warn(BEYOND_FRAME, what, "the signal is left out", "error")
             continue
         field = _field(message, signal, enums, to)

@@ -183,10 +183,11 @@ def field_comment(
     if field.limits is not None:
         facts.append(_limits(field))
     facts += (f"{special_text(special)}: {sentence(special.meaning)}" for special in field.special)
-    if tail is not None and tail.counter == field.name:
-        plus = f", of which there are {abs(tail.plus)} {'more' if tail.plus > 0 else 'less'}" if tail.plus else ""
-        facts.append(f"Counts {words(tail.name)}{plus}: at most {tail.most}.")
-    place = _place(field) if tail is None or tail.name != field.name else _open_place(field, tail)
+    parts = message.open_parts if message is not None else ()
+    for part in (one for one in parts if one.counter == field.name):
+        plus = f", of which there are {abs(part.plus)} {'more' if part.plus > 0 else 'less'}" if part.plus else ""
+        facts.append(f"Counts {words(part.name)}{plus}: at most {part.most}.")
+    place = next((_open_place(field, part, parts[:-1]) for part in parts if part.name == field.name), _place(field))
     head = f"{words(field.name)}: {place}{_meaning(field)}."
     return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata, told)
 
@@ -214,7 +215,7 @@ def _place(field: Field) -> str:
     return ", ".join(filter(None, (where, elements, orders_text(field))))
 
 
-def _open_place(field: Field, tail: Tail) -> str:
+def _open_place(field: Field, tail: Tail, inner: tuple[Tail, ...]) -> str:
     """``from byte 4 on, up to 12 elements of 16 bits``"""
     if field.is_bytes and field.count:
         what = f"up to {octets_text(tail.most, field.bits)}{', text filled with NUL' if field.type == 'text' else ''}"
@@ -224,7 +225,10 @@ def _open_place(field: Field, tail: Tail) -> str:
         what = f"text of up to {tail.most} character{'s' * (tail.most != 1)}"
     else:
         what = f"up to {array_text(tail.most, field.bits)}"
-    return ", ".join(filter(None, (f"from byte {field.at // 8} on", what, orders_text(field))))
+    before = [one.name for one in inner if 8 * one.begin < field.at]
+    place = f"behind {words(before[-1])}" if before else f"from byte {field.at // 8} on"
+    counted = f"as many as {words(tail.counter)} says" if tail in inner else ""
+    return ", ".join(filter(None, (place, what, counted, orders_text(field))))
 
 
 def orders_text(field: Field) -> str:

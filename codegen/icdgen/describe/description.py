@@ -102,6 +102,12 @@ class FieldDescription(Named[Field]):
         tail, path = self.message.model.tail, self.model.path
         return tail is not None and tail.name == (path[0].name if path else self.model.name)
 
+    @property
+    def is_inner(self) -> bool:
+        """Whether it is open with something else behind it, or an element of that."""
+        name = self.model.path[0].name if self.model.path else self.model.name
+        return any(part.name == name for part in self.message.model.open_parts[:-1])
+
     @cached_property
     def needs(self) -> tuple[Need, ...]:
         """Of a field that is not always there, all that it needs."""

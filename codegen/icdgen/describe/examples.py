@@ -40,9 +40,8 @@ class Example(NamedTuple):
 
 def worth_showing(message: MessageDescription) -> FieldDescription | None:
     """The first field with a formula that leads back, else the first that is neither constant nor an array."""
-    counter = (
-        message.tail.counter if message.tail else None
-    )  # which is the smallest in an example, whose frame has the fewest elements
+    # these are the smallest in an example, whose frame has the fewest elements
+    counters = {part.counter for part in message.model.open_parts}
     decides = {need.field.model.name for one in message.conditional for need in one.needs}  # what else is there
     usual = [
         one
@@ -52,7 +51,7 @@ def worth_showing(message: MessageDescription) -> FieldDescription | None:
         and one.model.const is None
         and not one.model.is_bytes
         and not one.count
-        and one is not counter
+        and one.model.name not in counters
     ]
     return next((one for one in usual if one.is_scaled and one.is_set), usual[0] if usual else None)
 

@@ -10,7 +10,7 @@ from icdgen.describe.comments import Comment, message_comment
 from icdgen.describe.description import Composite, FieldDescription, Known, StructDescription, TailDescription
 from icdgen.describe.named import Id
 from icdgen.describe.shared_ids import sharing
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.model import Icd, Message, Node, Tail
 from icdgen.icd.variants import Ids
 from icdgen.once import cached_property
 
@@ -59,12 +59,18 @@ class MessageDescription(Composite[Message]):
     def tail(self) -> TailDescription | None:
         """Its open end, where frames differ in length."""
         tail = self.model.tail
-        if tail is None:
-            return None
+        return None if tail is None else self._open_part(tail, self.model.begin)
+
+    @cached_property
+    def inner(self) -> tuple[TailDescription, ...]:
+        """What is open in front of the tail."""
+        return tuple(self._open_part(one, one.begin) for one in self.model.inner)
+
+    def _open_part(self, tail: Tail, begin: int) -> TailDescription:
         part, counter = (
             next(one for one in self.members if one.model.name == name) for name in (tail.name, tail.counter)
         )
-        return TailDescription(part, counter, self.model.begin, tail, self._element(part))
+        return TailDescription(part, counter, begin, tail, self._element(part))
 
     def _element(self, part: FieldDescription) -> StructDescription | None:
         if part.struct is None:
@@ -119,7 +125,7 @@ class MessageDescription(Composite[Message]):
     @property
     def is_narrow(self) -> bool:
         """Whether a field of it may be given a raw value that does not fit, or a count."""
-        return super().is_narrow or (self.tail is not None and self.tail.is_bound)
+        return super().is_narrow or any(one.is_bound for one in (*self.inner, *filter(None, (self.tail,))))
 
     @cached_property
     def comment(self) -> Comment:

@@ -6,7 +6,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from icdgen.icd.curve import CLAMP, EXTRAPOLATE, REFUSE, Curve
-from icdgen.icd.model import Message, Special
+from icdgen.icd.model import Message, Special, Tail
 
 MOST_DIGITS = 24  # of a decimal that is shown in full
 _OUTSIDE = {"": "", CLAMP: "clamped outside", EXTRAPOLATE: "extrapolated outside", REFUSE: "no number outside"}
@@ -89,11 +89,9 @@ def length_text(message: Message) -> str:
     )
 
 
-def count_text(message: Message) -> str:
-    """``Levels Count``, ``Size - 4``: how many elements, bytes or characters the open end has."""
-    tail = message.tail
-    assert tail is not None
-    return tail.counter + (f" {'+' if tail.plus > 0 else '-'} {abs(tail.plus)}" if tail.plus else "")
+def count_text(part: Tail) -> str:
+    """``Levels Count``, ``Size - 4``: how many elements, bytes or characters an open part has."""
+    return part.counter + (f" {'+' if part.plus > 0 else '-'} {abs(part.plus)}" if part.plus else "")
 
 
 def byte_count(count: int) -> str:

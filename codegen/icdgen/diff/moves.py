@@ -89,6 +89,6 @@ def _causes(message: MessagePair, move: Move, old: _Order, new: _Order) -> None:
     move.gained = [pair for pair in gained if start_new <= pair.new.at < first.new.at]
     if before_old is not None and before_old is before_new and before_old.old.width != before_old.new.width:
         move.resized = [before_old]
-    longer = (message.new.begin - message.old.begin) * 8
+    longer = (message.new.fixed - message.old.fixed) * 8
     at_the_end = last is old.rows[-1] or last is new.rows[-1]
     move.reserved = not move.is_shift and at_the_end and longer == move.by

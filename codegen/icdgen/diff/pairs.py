@@ -123,8 +123,8 @@ class FieldPair(SideBySide[Field]):
     def is_open(self) -> bool:
         """Whether it is, or was, what ends a message of variable length."""
         sides = (self.owner.old, self.old), (self.owner.new, self.new)
-        names = ((message.tail, one.path[0].name if one.path else one.name) for message, one in sides)
-        return any(tail is not None and tail.name == name for tail, name in names)
+        names = ((message.open_parts, one.path[0].name if one.path else one.name) for message, one in sides)
+        return any(part.name == name for parts, name in names for part in parts)
 
     @property
     def is_of_struct(self) -> bool:

@@ -153,9 +153,11 @@ class Builder:
     def message(self, item: Map) -> model.Message:
         where = item.get("source") or {}
         fields = tuple(chain.from_iterable(self.each("fields", partial(self.fields, item), item)))
-        tail, ends = self.tail(item)
-        fields = (tail.counted_in(fields) if tail else fields) + ends
-        length = item["length"] + (tail.most * tail.step if tail else 0)
+        parts, ends = self.open_parts(item)
+        for part in parts:
+            fields = part.counted_in(fields)
+        fields += ends
+        length = item["length"] + sum(part.most * part.step for part in parts)
         return model.Message(
             name=item["name"],
             kind=item["kind"],
@@ -175,7 +177,8 @@ class Builder:
             assumptions=tuple((key, str(why)) for key, why in (item.get("assumptions") or {}).items()),
             contains=tuple(self.each("contains", lambda p: model.Part(p["message"], p["at"]), item)),
             reserved=item.get("reserved", 0),
-            tail=tail,
+            tail=parts[-1] if parts else None,
+            inner=parts[:-1],
             may_end_early=item.get("may_end_early", ""),
             node=self.name,
             errata=self.applied.about(item),
@@ -191,27 +194,34 @@ class Builder:
                 fields += (derived_field(how, length, item, unit),)
         return fields
 
-    def tail(self, message: Map) -> tuple[model.Tail | None, tuple[model.Field, ...]]:
-        """The open end of a message, and its fields: the elements, and how many there are where no field says so."""
-        items = [item for item in tails.open_parts(message) if id(item) not in self.broken]
+    def open_parts(self, message: Map) -> tuple[tuple[model.Tail, ...], tuple[model.Field, ...]]:
+        """What is open in a message, and its fields: the elements, and how many there are where no field says so."""
+        items = tails.open_parts(message)
         known = {name: one.length for name, one in self.scope.structs.items()}
-        if len(items) != 1 or any(tails.obstacles(message, items[0], known)):
-            return None, ()
-        (item,) = items
-        most, bits, counter = item["up_to"], tails.unit(item, known), tails.counter_of(message, item)
-        if not bits:
-            return None, ()  # there is no such struct
-        plus = tails.counting(item).plus
-        tail = model.Tail(item["name"], counter["name"] if counter else "", bits // 8, most, plus)
-        struct = self.scope.structs.get(item.get("struct", ""))
+        if any(id(item) in self.broken or any(tails.obstacles(message, item, known)) for item in items):
+            return (), ()
+        parts: tuple[model.Tail, ...] = ()
+        fields: tuple[model.Field, ...] = ()
+        begin = message["length"]
+        for item in items:
+            own = self.elements(message, item, begin)
+            bits, counter = tails.unit(item, known), tails.counter_of(message, item)
+            if not bits or not own:
+                return (), ()  # there is no such struct, or nothing of it can be read
+            name, plus = counter["name"] if counter else own[-1].name, tails.counting(item).plus
+            is_last = item is items[-1]
+            parts += (model.Tail(item["name"], name, bits // 8, item["up_to"], plus, 0 if is_last else begin),)
+            fields, begin = fields + own, begin + item["up_to"] * bits // 8
+        return parts, fields
+
+    def elements(self, message: Map, item: Map, begin: int) -> tuple[model.Field, ...]:
+        """All elements of an open part that begins at a byte; behind them how many there are, where no field says so."""
+        most, struct = item["up_to"], self.scope.structs.get(item.get("struct", ""))
         end = self.field(item, orders(message)) if struct is None else self.standing(item, struct, orders(message))
-        end = replace(end, bits=8 * most) if "size" in item else replace(end, count=most)
-        if not end.elements:
-            return None, ()  # nothing of the struct can be read
-        if counter is not None:
-            return tail, end.elements
-        implied = implied_count(end, message["length"] + most * tail.step)
-        return replace(tail, counter=implied.name), (*end.elements, implied)
+        end = replace(end, at=8 * begin, **({"bits": 8 * most} if "size" in item else {"count": most}))
+        if not end.elements or tails.counter_of(message, item) is not None:
+            return end.elements
+        return (*end.elements, implied_count(end, begin + most * (end.bits // 8 if "size" not in item else 1)))
 
     def fields(self, message: Map, item: Map) -> tuple[model.Field, ...]:
         """The field, the elements of an array, the fields of a struct, or the parts that it is divided into."""

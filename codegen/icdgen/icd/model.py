@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import field, replace
 from fractions import Fraction
+from math import gcd
 from typing import Any
 
 from icdgen.frozen import dataclass
@@ -21,6 +22,7 @@ from icdgen.icd.erratum import Erratum as Erratum
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, unread
 from icdgen.icd.paths import Step, lines_of, members_of, name_of, placed
+from icdgen.icd.tail import Tail as Tail
 from icdgen.icd.units import Unit
 
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"
@@ -209,40 +211,10 @@ class Struct:
     def tail(self) -> None:
         """It has no open end."""
 
-
-@dataclass(frozen=True, slots=True)
-class Tail:
-    """The end of a message whose frames differ in length: an array, bytes or text, of which there is not always all.
-
-    A frame is the beginning of the longest one. Elements that are not in it are 0 in what it is decoded to.
-    """
-
-    name: str  # of the array, or of the field of bytes or text
-    counter: str  # the field that says how many elements there are: one of the frame, or an implied one
-    step: int  # bytes of an element
-    most: int  # elements
-    plus: int = 0  # there are so many more elements than the counter says
-
     @property
-    def fewest(self) -> int:
-        """Elements that every frame has."""
-        return max(0, self.plus)
-
-    @property
-    def low(self) -> int:
-        """The smallest value of the counter."""
-        return max(0, -self.plus)
-
-    @property
-    def high(self) -> int:
-        """The largest value of the counter."""
-        return self.most - self.plus
-
-    def counted_in(self, fields: tuple[Field, ...]) -> tuple[Field, ...]:
-        """The fields of the message, the counter knowing what it counts from."""
-        if not self.low:
-            return fields
-        return tuple(replace(one, counts_from=self.low) if one.name == self.counter else one for one in fields)
+    def open_parts(self) -> tuple[Tail, ...]:
+        """Nothing in it is open."""
+        return ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -276,6 +248,7 @@ class Message:
     contains: tuple[Part, ...] = ()
     reserved: int = 0  # bytes at the end that are said to be reserved
     tail: Tail | None = None  # where frames differ in length
+    inner: tuple[Tail, ...] = ()  # what is open in front of the tail: elements that a frame lacks are not at its end
     may_end_early: str = ""  # "zeros": frames may be sent without the zeros that they end with; else empty
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
@@ -286,17 +259,28 @@ class Message:
         """Bytes of the shortest frame."""
         if self.may_end_early:
             return min(1, self.length)  # of zeros alone, one is sent
-        return self.begin + (self.tail.fewest * self.tail.step if self.tail else 0)
+        lacking = sum((one.most - one.fewest) * one.step for one in self.inner)
+        return self.begin + (self.tail.fewest * self.tail.step if self.tail else 0) - lacking
 
     @property
     def begin(self) -> int:
-        """Bytes before the open end, where there is one; else of a frame."""
+        """Bytes of the longest frame before the open end, where there is one; else of a frame."""
         return self.length - (self.tail.most * self.tail.step if self.tail else 0)
 
     @property
+    def fixed(self) -> int:
+        """Bytes before all that is open; without that, of a frame."""
+        return self.inner[0].begin if self.inner else self.begin
+
+    @property
     def lengths(self) -> range:
-        """The lengths that frames have."""
-        return range(self.least, self.length + 1, self.tail.step if self.tail else 1)
+        """The lengths that frames have, with some more where several parts are open: what these count decides."""
+        return range(self.least, self.length + 1, gcd(*(one.step for one in self.open_parts)) or 1)
+
+    @property
+    def open_parts(self) -> tuple[Tail, ...]:
+        """All that is open, the end last."""
+        return (*self.inner, self.tail) if self.tail else ()
 
     def with_fields(self, fields: tuple[Field, ...]) -> Message:
         """The message with these of its fields; without what is derived of others, or an open end that is made of others."""
@@ -304,7 +288,8 @@ class Message:
         fields = tuple(one for one in fields if one.derived is None or known.issuperset(one.derived.fields))
         found = replace(self, fields=fields)
         names = {field.name for field in found.members}
-        return found if self.tail and {self.tail.name, self.tail.counter} <= names else replace(found, tail=None)
+        is_whole = names.issuperset(name for one in self.open_parts for name in (one.name, one.counter))
+        return found if self.tail and is_whole else replace(found, tail=None, inner=())
 
     @property
     def counter(self) -> Field | None:

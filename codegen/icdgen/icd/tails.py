@@ -1,11 +1,12 @@
-"""The open end of a message: its last part, of which a frame holds as many elements as a field says, or as fit in it.
+"""The open parts of a message, behind all others: a frame holds as many elements of each as a field says.
 
-In the model it has all its elements; `Message.tail` says how many of them a frame may leave out.
+In the model they have all their elements; `Message.tail` and `Message.inner` say how many of them a frame may leave out.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from itertools import pairwise, takewhile
 from typing import NamedTuple
 
 from icdgen.icd.located import Map
@@ -110,6 +111,11 @@ def faults_of_count(message: Map, item: Map) -> Iterator[Obstacle]:
         return
     counter = counter_of(message, item)
     assert counter is not None
+    others = takewhile(lambda one: one is not item, open_parts(message))
+    same = next((one for one in others if counting(one).name == said), None)
+    if same is not None:
+        text = f"`{said}`, which counts {name}, counts `{same['name']}` already"
+        yield Obstacle(item, key, text, "each open part has a field of its own that counts it")
     odd = _odd(counter, message)
     if odd:
         text = f"`{counter['name']}`, which counts {name}, {odd}"
@@ -148,10 +154,20 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Obsta
     name, fixed = f"`{item['name']}`", 8 * message["length"]
     if _is_unknown(message, item):
         return  # perhaps it is not meant to be open
-    others = [one for one in open_parts(message) if one is not item]
-    if others and item is not open_parts(message)[0]:
-        text = f"{name} is the second part of `{message['name']}` that has no fixed size"
-        yield Obstacle(item, "name", text, "only the last part of a message may be open")
+    parts = open_parts(message)
+    before = next((one for one, other in pairwise(parts) if other is item), None)
+    if before is None and "after" in item:
+        text = f"{name} comes after `{item['after']}`, and no part in front of it is open"
+        yield Obstacle(item, "after", text, "remove `after`: what is open begins where `length` ends")
+        return
+    if before is not None and item.get("after") != before["name"]:
+        text = f"{name} is not the first part of `{message['name']}` that has no fixed size"
+        help = f"it stands behind `{before['name']}`: write `after: {before['name']}`"
+        yield Obstacle(item, "after" if "after" in item else "name", text, help)
+        return
+    if before is not None and counting(before).name == REST:
+        text = f"{name} comes after `{before['name']}`, which goes up to the end of the frame"
+        yield Obstacle(item, "after", text, f"name the field that counts `{before['name']}`")
         return
     if item["at"] != fixed:
         text = f"{name} is open and begins at bit {item['at']:,}; the `length` of `{message['name']}` ends at bit {fixed:,}"
@@ -172,8 +188,8 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Obsta
     if "reserved" in message:
         text = f"`{message['name']}` ends with {name}, so there are no reserved bytes behind it"
         yield Obstacle(message, "reserved", text, "remove `reserved`")
-    longest = message["length"] + item.get("up_to", 0) * unit(item, structs) // 8
-    if longest > MOST_BYTES:
+    longest = message["length"] + sum(one.get("up_to", 0) * unit(one, structs) // 8 for one in parts)
+    if longest > MOST_BYTES and item is parts[-1]:
         text = f"with all of {name}, `{message['name']}` has {longest:,} bytes: at most {MOST_BYTES:,} are held"
         yield Obstacle(item, "up_to", text, "correct `up_to`")
 

@@ -78,7 +78,7 @@ def is_narrower(one: Spoken, other: Spoken) -> bool:
 def constants(message: Message) -> tuple[Field, ...]:
     """The fields that have one value only in every frame: none of an open end or that is not always there; zeros that are
     cut off are there, too."""
-    end = 8 * message.begin
+    end = 8 * message.fixed
     steady = (one for one in message.owners if one.const is not None and not one.when)
     return tuple(one for one in steady if message.tail is None or one.at < end)
 

@@ -145,7 +145,7 @@ def miscounted(speaker: Speaker, message: Message, data: bytes) -> BadLength | N
         codec.decode(speaker.icd.node(message.node), message, data)
     except codec.LengthError as error:
         counter = message.counter
-        said = f"`{counter.name}` says" if counter else "they say"
+        said = f"`{counter.name}` says" if counter and not message.inner else "they say"
         text = f"`{message.name}` of {error.actual} bytes: {error.expected} are needed for as many elements as {said}"
         return BadLength(text, error.expected, error.actual, "bytes are missing, or too many, or damaged")
     return None

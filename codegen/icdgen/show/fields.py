@@ -17,7 +17,7 @@ from icdgen.describe.numbers import (
     special_text,
     value_text,
 )
-from icdgen.icd.model import Field, Message, Node
+from icdgen.icd.model import Field, Message, Node, Tail
 from icdgen.tables import Column, render
 
 _COLUMNS = [
@@ -49,9 +49,9 @@ def _row(field: Field, message: Message) -> tuple[str, ...]:
     unit = field.unit.symbol if field.unit else ""
     kind = field.enum.name if field.enum else field.type
     bits = f"{field.count} x {field.bits}" if field.count else str(field.bits)
-    tail = message.tail
-    if tail is not None and tail.name == field.name:
-        bits = f"up to {tail.most} x {8 * tail.step}"
+    part = _open_part(message, field)
+    if part is not None and part.name == field.name:
+        bits = f"up to {part.most} x {8 * part.step}"
     if field.derived is not None:
         return ("", "", "derived", field.name, unit, resolution, low, high, "; ".join(_notes(field, message)))
     return (str(field.at), bits, kind, field.name, unit, resolution, low, high, "; ".join(_notes(field, message)))
@@ -64,9 +64,13 @@ def remarks(
 
     ``message`` is the one that has it, where it may be its open end.
     """
-    counter = message.counter if message else None
-    if message is not None and _is_open(message, field) and counter is not None:
-        yield "up to the end of the frame" if counter.implied else f"as many as {count_text(message)} says"
+    part = _open_part(message, field)
+    if part is not None and message is not None:
+        is_rest = part is message.tail and message.counter is not None and message.counter.implied
+        yield "up to the end of the frame" if is_rest else f"as many as {count_text(part)} says"
+        before = [one.name for one in message.inner if one.begin < field.at // 8 and one is not part]
+        if before:
+            yield f"behind {before[-1]}"
     if field.when:
         yield f"only there if {' and '.join(condition_text(one, message) for one in field.when)}"
     if field.derived is not None:
@@ -77,7 +81,7 @@ def remarks(
         yield told
     for step in field.path:
         if step.struct is not None and step.is_open:
-            most = "up to " if message is not None and _is_open(message, field) else ""
+            most = "up to " if part is not None else ""
             yield (
                 f"{most}{step.count} times, every {byte_count(step.struct.length)}" if step.count > 1 else f"{most}once"
             )
@@ -92,9 +96,10 @@ def remarks(
         yield f"{special_text(special) if special.number else number(Fraction(special.value))}: {special.meaning}"
 
 
-def _is_open(message: Message, field: Field) -> bool:
-    """Whether a line is the open end of its message, or stands in it."""
-    return message.tail is not None and message.tail.name == (field.path[0].name if field.path else field.name)
+def _open_part(message: Message | None, field: Field) -> Tail | None:
+    """The open part of its message that a line is, or stands in."""
+    name = field.path[0].name if field.path else field.name
+    return next((part for part in (message.open_parts if message else ()) if part.name == name), None)
 
 
 def _notes(field: Field, message: Message) -> list[str]:

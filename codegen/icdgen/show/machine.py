@@ -12,7 +12,7 @@ from icdgen.describe.bounds import bounds
 from icdgen.icd.annex import Loggable
 from icdgen.icd.erratum import Erratum
 from icdgen.icd.located import plain
-from icdgen.icd.model import Enum, Field, Icd, Limits, Member, Message, Node, Struct
+from icdgen.icd.model import Enum, Field, Icd, Limits, Member, Message, Node, Struct, Tail
 
 FORMAT = 1
 SCHEMA = Path(__file__).parent.with_name("show.schema.json")
@@ -79,6 +79,7 @@ def _message(message: Message) -> _Object:
         acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
         contains=[{"message": part.message, "offset": part.at} for part in message.contains],
         tail=_tail(message),
+        inner=[_open_part(one, one.counter, one.begin) for one in message.inner],
         **_ids(message.errata),
     ) | {
         "fields": [_field(f) for f in message.members if not f.implied and f.derived is None],
@@ -91,10 +92,14 @@ def _tail(message: Message) -> _Object | None:
     tail, counter = message.tail, message.counter
     if tail is None or counter is None:
         return None
+    return _open_part(tail, None if counter.implied else counter.name, message.begin)
+
+
+def _open_part(tail: Tail, counter: str | None, begin: int) -> _Object:
     return _present(
         part=tail.name,
-        counter=None if counter.implied else counter.name,
-        least=message.begin,
+        counter=counter,
+        least=begin,
         step=tail.step,
         most=tail.most,
         plus=tail.plus or None,

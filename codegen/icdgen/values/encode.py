@@ -48,10 +48,10 @@ def encode(
     ]
     with wrong.collect():
         _are_there(message, given, values)
-    if message.tail is not None:
-        missing = _without_end(message, message.tail, missing, given, is_empty)
+    for part in message.open_parts:
+        missing = _without_open(message, part, missing, given, is_empty)
         with wrong.collect():
-            _count(message, message.tail, given, values)
+            _count(message, part, given, values)
     if missing and not misnamed:
         with wrong.collect():
             raise BadValue(
@@ -94,19 +94,16 @@ class _Wrong:
             raise BadValue("\n".join(self.messages), next(filter(None, self.helps), help))
 
 
-def _without_end(message: Message, tail: Tail, missing: list[str], given: dict[str, str], is_empty: bool) -> list[str]:
-    """What is missing: of the open end its name alone, unless some of it is given; how many there are follows from that."""
-    counter = message.counter
-    own = {one.name for one in message.fields if one.name == tail.name or (one.path and one.path[0].name == tail.name)}
-    left = [name for name in missing if name not in own and (counter is None or name != counter.name)]
-    is_given = is_empty or (counter is not None and counter.name in given) or bool(own & given.keys())
-    return left if is_given else [*left, tail.name]
+def _without_open(message: Message, part: Tail, missing: list[str], given: dict[str, str], is_empty: bool) -> list[str]:
+    """What is missing: of an open part its name alone, unless some of it is given; how many there are follows from that."""
+    own = {one.name for one in message.fields if one.name == part.name or (one.path and one.path[0].name == part.name)}
+    left = [name for name in missing if name not in own and name != part.counter]
+    is_given = is_empty or part.counter in given or bool(own & given.keys())
+    return left if is_given else [*left, part.name]
 
 
 def _count(message: Message, tail: Tail, given: dict[str, str], values: dict[str, int | bytes]) -> None:
     """Counts the elements that are given, unless a number is. Raises `BadValue` where they have a gap or another number."""
-    counter = message.counter
-    assert counter is not None
     is_octets = tail.name in values
     elements = [one for one in message.fields if one.path and one.path[0].name == tail.name]
     indexes = [one.path[0].index or 0 for one in elements]
@@ -121,11 +118,15 @@ def _count(message: Message, tail: Tail, given: dict[str, str], values: dict[str
     left = [f"`{name}`" for name in left if name not in given]
     if left:
         raise BadValue(f"no value for {', '.join(left)}", "give each field as name=value")
-    if counter.name not in given:
-        values[counter.name] = count - tail.plus
-    elif values[counter.name] != count - tail.plus:
+    if tail.counter not in given:
+        values[tail.counter] = count - tail.plus
+    elif values[tail.counter] != count - tail.plus:
         given_text = f"{count} element{'s' * (count != 1)} of `{tail.name}` {'are' if count != 1 else 'is'} given"
-        raise BadValue(f"`{counter.name}` is {given[counter.name]}, and {given_text}", f"leave `{counter.name}` out")
+        raise BadValue(f"`{tail.counter}` is {given[tail.counter]}, and {given_text}", f"leave `{tail.counter}` out")
+
+
+def _is_open(message: Message, name: str) -> bool:
+    return any(part.name == name for part in message.open_parts)
 
 
 def split(message: Message, assignment: str, vocabulary: tuple[str, ...]) -> list[tuple[Field, str]]:
@@ -142,12 +143,12 @@ def split(message: Message, assignment: str, vocabulary: tuple[str, ...]) -> lis
         raise BadValue(f"`{assignment}` is not of the form name=value", "for instance `speed=100`")
     elements = find_array(message, name.strip(), vocabulary)
     if elements:
-        is_open = message.tail is not None and elements[0].path[0].name == message.tail.name
+        is_open = _is_open(message, elements[0].path[0].name)
         texts = listed(name.strip(), text, len(elements), is_open)
         return list(zip(elements[: len(texts)], texts, strict=True))
     structs = by_name([one for one in message.members if one.struct is not None], name, vocabulary)
     if structs:
-        is_open = message.tail is not None and structs[0].name == message.tail.name
+        is_open = _is_open(message, structs[0].name)
         if is_open and text.strip() == "[]":
             return []
         first = f"for instance `{structs[0].elements[0].name}=1`" + (
@@ -184,8 +185,7 @@ def _values(
             continue
         text = given[field.name]
         with wrong.collect(f"{field.name}: "):
-            is_open = message.tail is not None and field.name == message.tail.name
-            values[field.name] = value = _read(field, text, raw, is_open)
+            values[field.name] = value = _read(field, text, raw, _is_open(message, field.name))
             if isinstance(value, bytes):
                 continue
             _fits(field, value, text, raw)

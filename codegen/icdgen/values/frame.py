@@ -127,13 +127,13 @@ def frame(icd: Icd, node: Node, message: Message, data: bytes, notes: dict[str, 
     """Reads ``data``. ``notes`` are further remarks by field name. Raises `codec.LengthError`."""
     owner = icd.node(message.node)  # its byte and bit order hold
     values = codec.decode(owner, message, data)
-    rows, count = [], codec.count_of(message, values)
+    rows, ends = [], {part.name: part for part in message.open_parts}
     for field in message.fields:
-        if field.implied or field.name not in values or not codec.is_there(message, field, count):
+        if field.implied or field.name not in values or not codec.is_sent(message, field, values):
             continue
         raw = values[field.name]
-        if message.tail is not None and field.name == message.tail.name and isinstance(raw, bytes):
-            raw = raw[:count]
+        if field.name in ends and isinstance(raw, bytes):
+            raw = raw[: codec.elements_of(ends[field.name], values)]
         extra = (notes or {}).get(field.name)
         rows.append(Row(field, raw, (*remarks(field, raw), *((extra,) if extra else ()))))
     return Frame(node, message, data, tuple(rows), tuple(_reserved(owner, message, data)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -80,7 +81,7 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
     settable = [field for field in message.owners if (field.has_formula and field.leads_back) or field.type == "text"]
     return MessageVectors(
         message=message,
-        default=codec.decode(node, message, codec.encode(node, message, message.fresh)),
+        default=codec.new(node, message),
         rows=tuple(rows),
         lengths=_refused(message),
         miscounted=tuple(_miscounted(node, message)),
@@ -91,7 +92,8 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
 
 def _refused(message: Message) -> tuple[int, ...]:
     """Lengths that no frame has: none at all, and one byte less or more than one that frames have."""
-    ends = {end + step for end in (message.begin, message.least, message.least + 1, message.length) for step in (-1, 1)}
+    begin = message.least if message.inner else message.begin
+    ends = {end + step for end in (begin, message.least, message.least + 1, message.length) for step in (-1, 1)}
     ends = {message.length - 1, message.length + 1} if message.tail is None else ends
     return tuple(sorted({0, *(max(end, 0) for end in ends)} - set(message.lengths)))
 
@@ -99,7 +101,11 @@ def _refused(message: Message) -> tuple[int, ...]:
 def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
     """Frames that say one element more or less than they have, or more than there can be."""
     tail, counter = message.tail, message.counter
-    if tail is None or counter is None or counter.implied:
+    if tail is None or counter is None:
+        return
+    for count in (tail.fewest, tail.most) if message.inner else ():
+        yield from _miscounted_inside(node, message, count)
+    if counter.implied or message.inner:
         return
     frame = patterns.random_frame(message, "miscounted")
     few, most, low, high = tail.fewest, tail.most, counter.raw_min + tail.plus, counter.raw_max + tail.plus
@@ -107,6 +113,25 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
     for count, told in (*told_of, *([(few, few - 1), (most, low)] if tail.plus else ())):
         if told != count >= few and low <= told <= high:
             yield codec.counted(node, message, frame, told)[: message.begin + count * tail.step]
+
+
+def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[bytes]:
+    """Frames of so many elements at the end that count others wrongly, and such as are cut."""
+    frame = patterns.cut(message, node, patterns.random_frame(message, "miscounted inside"), count)
+    raw, fields = codec.decode(node, message, frame), {field.name: field for field in message.fields}
+    wrong = [frame[:-1], frame[: message.fixed]]
+    for part in message.open_parts:
+        counter = fields[part.counter]
+        for told in (codec.elements_of(part, raw) - part.plus + step for step in (-1, 1, part.most)):
+            if not counter.implied and counter.raw_min <= told <= counter.raw_max:
+                wrong.append(codec.frame_of(node, frame, {counter: told}))
+    yield from (one for one in dict.fromkeys(wrong) if not _is_frame(node, message, one))
+
+
+def _is_frame(node: Node, message: Message, frame: bytes) -> bool:
+    with suppress(codec.LengthError):
+        return bool(codec.decode(node, message, frame))
+    return False
 
 
 def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:

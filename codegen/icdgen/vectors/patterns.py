@@ -86,7 +86,20 @@ def _counts(tail: Tail) -> list[int]:
 def cut(message: Message, node: Node, frame: bytes, count: int) -> bytes:
     """The longest frame as one of so many elements."""
     assert message.tail is not None
-    return codec.counted(node, message, frame, count)[: message.begin + count * message.tail.step]
+    frame = _chosen_counts(message, node, frame, count)
+    frame = codec.counted(node, message, frame, count)[: message.begin + count * message.tail.step]
+    return codec.squeezed(node, message, frame) if message.inner else frame
+
+
+def _chosen_counts(message: Message, node: Node, frame: bytes, count: int) -> bytes:
+    """The longest frame with a number of elements of each inner open part: all where its end has all, else any."""
+    fields, chosen = {field.name: field for field in message.fields}, {}
+    for place, part in enumerate(message.inner):
+        counts = _counts(part)
+        is_whole = message.tail is not None and count == message.tail.most
+        there = part.most if is_whole else counts[(sum(frame) + place) % len(counts)]
+        chosen[fields[part.counter]] = there - part.plus
+    return codec.frame_of(node, frame, chosen) if chosen else frame
 
 
 def _longest(message: Message) -> Iterator[tuple[str, bytes]]:
@@ -170,7 +183,8 @@ def _near(field: Field) -> Iterator[float]:
 
 def raw_columns(message: Message) -> Iterator[dict[str, int | bytes]]:
     """Raw values of all fields but views, so that each takes each of its values; neighbours are out of step."""
-    columns = [_counted(message) if field == message.counter else values(field) for field in message.owners]
+    counted = {part.counter: _counted(part) for part in message.open_parts}
+    columns = [counted.get(field.name) or values(field) for field in message.owners]
     alternatives = dict.fromkeys(tuple((one.field, one.values[0]) for one in field.when) for field in message.owners)
     for row in range(max(map(len, columns), default=0)):
         raw = {
@@ -182,17 +196,16 @@ def raw_columns(message: Message) -> Iterator[dict[str, int | bytes]]:
             yield {**raw, **dict(chosen)}
 
 
-def _counted(message: Message) -> list[int | bytes]:
+def _counted(tail: Tail) -> list[int | bytes]:
     """Values of the field that counts: every second time all elements are there."""
-    assert message.tail is not None
-    tail = message.tail
     return [one - tail.plus for count in _counts(tail) for one in (tail.most, count)]
 
 
 def unfit(message: Message, field: Field) -> list[int]:
     """Raw values that encoding must refuse."""
-    if message.tail is not None and field.name == message.tail.counter:
-        return list(dict.fromkeys((message.tail.high + 1, message.tail.low - 1, field.raw_max + 1, field.raw_min - 1)))
+    for part in message.open_parts:
+        if field.name == part.counter:
+            return list(dict.fromkeys((part.high + 1, part.low - 1, field.raw_max + 1, field.raw_min - 1)))
     if field.type not in ("uint", "int", "enum"):
         return []
     return [field.raw_max + 1, field.raw_min - 1]

@@ -102,6 +102,12 @@ def _message(vectors: MessageVectors) -> str:
             "step": tail.step,
             "most": tail.most,
         } | ({"plus": tail.plus} if tail.plus else {})
+    if message.inner:
+        head["inner"] = [
+            {"part": one.name, "counter": one.counter, "begin": one.begin, "step": one.step, "most": one.most}
+            | ({"plus": one.plus} if one.plus else {})
+            for one in message.inner
+        ]
     parts = [_json(head)[1:-1]]
     parts.append(_array("fields", [_field(vectors, field) for field in message.fields]))
     parts.append(f'"refused_lengths": {_json(list(vectors.lengths))}')

@@ -281,12 +281,16 @@ class Message(Spoken[N_contra], Struct):
         """The messages that it repeats: their nodes, their classes, and from which bit."""
         TAIL: ClassVar[Tail | None]
         """The end of frames that differ in length."""
+        INNER: ClassVar[
+            tuple[tuple[Tail, int, tuple[tuple[int, int, int, int], ...]], ...]
+        ]
+        """What is open in front of it: in the longest frame it begins at a byte; and the bits that count it."""
         ENDS_EARLY: ClassVar[bool]
         """Whether frames may lack the zeros that they end with."""
         BYTE_ORDER: ClassVar[Literal["little", "big"]]
         BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
     else:
-        IDS = PARTS = ()
+        IDS = PARTS = INNER = ()
         TABLE = TAIL = None
         ENDS_EARLY, ACKNOWLEDGED = False, True
         BYTE_ORDER, BIT_ORDER = "little", "lsb0"

@@ -13,12 +13,13 @@ def decoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
     tail = owner.TAIL
 
     def from_bytes(cls: _lazy.Any, data: _lazy.Buffer) -> _lazy.Any:
-        count = count_in(cls, data)
-        self = longest(cls, padded(cls, data))
+        frame, lacking = spread(cls, data)
+        count = count_in(cls, frame, lacking)
+        self = longest(cls, frame.ljust(cls.LENGTH, b"\0"))
         if tail.counter and getattr(self, tail.counter) + tail.plus != count:
             told = getattr(self, tail.counter) + tail.plus
-            expected = max(0, cls.LENGTH - (tail.most - told) * tail.step)
-            raise LengthError(cls.NAME, expected, memoryview(data).nbytes)
+            expected = cls.LENGTH - (tail.most - told) * tail.step - lacking
+            raise LengthError(cls.NAME, max(0, expected), memoryview(data).nbytes)
         setattr(self, tail.part, getattr(self, tail.part)[:count])
         return self
 
@@ -53,6 +54,7 @@ def encoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
         rest = getattr(zeros, tail.part)
 
     def to_bytes(self: _lazy.Any) -> bytes:
+        gaps = [_gap(self, *one) for one in owner.INNER]
         values = getattr(self, tail.part)
         try:
             values = tuple(values) if is_array else memoryview(values).tobytes()
@@ -70,27 +72,62 @@ def encoder(owner: _lazy.Any, longest: _lazy.Any) -> _lazy.Any:
             setattr(whole, one.attribute, getattr(self, one.attribute))
         setattr(whole, tail.part, values + rest[count:])
         frame: bytes = longest(whole)
-        return frame[: least + count * tail.step]
+        frame = frame[: least + count * tail.step]
+        for place, lacking in reversed(gaps):
+            frame = frame[:place] + frame[place + lacking :]
+        return frame
 
     return to_bytes
 
 
-def count_in(message: _lazy.Any, data: _lazy.Buffer) -> int:
-    """How many elements the end of a frame has. Raises `LengthError`."""
-    tail, actual = message.TAIL, memoryview(data).nbytes
+def _gap(self: _lazy.Any, part: _lazy.Any, begin: int, _: _lazy.Any) -> tuple[int, int]:
+    """Where the longest frame has bytes of a part that this one has not, and how many. Raises `RangeError`."""
+    told = getattr(self, part.counter)
+    low, high = max(0, -part.plus), part.most - part.plus
+    if not low <= told <= high:
+        raise RangeError(part.counter, f"{low} to {high}", told)
+    count = told + part.plus
+    return begin + count * part.step, (part.most - count) * part.step
+
+
+def spread(message: _lazy.Any, data: _lazy.Buffer) -> tuple[bytes, int]:
+    """The beginning of the longest frame, and how many of its bytes are not in ``data``: elements in front of the end.
+
+    Raises `LengthError` for a frame that is shorter than any, or says that it has more elements than there can be.
+    """
+    frame, actual = memoryview(data).tobytes(), memoryview(data).nbytes
+    if message.INNER:
+        parts = [*(part for part, *_ in message.INNER), message.TAIL]
+        fewer = sum((one.most - max(0, one.plus)) * one.step for one in parts)
+        if actual < message.LENGTH - fewer:
+            raise LengthError(message.NAME, message.LENGTH - fewer, actual)
+    for part, begin, pieces in message.INNER:
+        count = part.plus
+        for byte, shift, bits, at in pieces:
+            count += (frame[byte] >> shift & (1 << bits) - 1) << at
+        if not max(0, part.plus) <= count <= part.most:
+            raise LengthError(message.NAME, message.LENGTH, actual)
+        place, lacking = (
+            begin + count * part.step,
+            bytes((part.most - count) * part.step),
+        )
+        frame = frame[:place] + lacking + frame[place:]
+    return frame, len(frame) - actual
+
+
+def count_in(message: _lazy.Any, frame: bytes, lacking: int) -> int:
+    """How many elements the end of a frame has, which lacks so many bytes in front of it. Raises `LengthError`."""
+    tail, actual = message.TAIL, len(frame)
     begin: int = message.LENGTH - tail.most * tail.step
     step: int = tail.step
     count, part = divmod(actual - begin, step)
     least = begin + max(0, tail.plus) * step
-    if actual < least:
-        raise LengthError(message.NAME, least, actual)
-    if actual > message.LENGTH:
-        raise LengthError(message.NAME, message.LENGTH, actual)
-    if part:
-        raise LengthError(message.NAME, actual - part, actual)
+    expected = max(least, min(actual - part, message.LENGTH))
+    if expected != actual:
+        raise LengthError(message.NAME, expected - lacking, actual - lacking)
     return count
 
 
 def padded(message: _lazy.Any, data: _lazy.Buffer) -> bytes:
     """The longest frame, of which the rest is 0."""
-    return memoryview(data).tobytes().ljust(message.LENGTH, b"\0")
+    return spread(message, data)[0].ljust(message.LENGTH, b"\0")

@@ -55,12 +55,13 @@ def of_field(field: Field, message: Message | Struct, node: Node) -> Iterator[tu
     """The changes of a member, and what it would be; none that no field of such a type or no frame of such a length can have."""
     size, count = 8 * message.length, field.count or 1
     source = field.source
-    if message.tail is not None and message.tail.name == field.name:
+    parts = message.open_parts if isinstance(message, Message) else ()
+    if any(part.name == field.name for part in parts):
         yield from _of_open(field)
         return
-    if message.tail is not None:
-        size = 8 * message.begin
-        if message.tail.counter == field.name:
+    if parts and isinstance(message, Message):
+        size = 8 * message.fixed
+        if any(part.counter == field.name for part in parts):
             return  # it counts the elements: as another field it may count none
     if field.derived is not None:
         yield from _derived(field, field.derived)

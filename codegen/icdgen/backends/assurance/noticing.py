@@ -39,7 +39,7 @@ class MessageWatch:
             pairs = zip(self.lines.rows, self.vectors.rows, strict=True)
             return [line for line, row in pairs if codec.derived(changed, row.raw)[now.name] != row.raw[now.name]]
         others = tuple(one for one in self.message.fields if one.name in needed)
-        alone = replace(self.message, fields=(now, *others), tail=None)
+        alone = replace(self.message, fields=(now, *others), tail=None, inner=())
         rows = zip(self.lines.rows, self.vectors.rows, self._of_others[index], strict=True)
         return found + [number for number, row, others in rows if _notices(row, old, now, node, alone, others)]
 
@@ -80,7 +80,7 @@ class MessageWatch:
         if [one.value for one in old.special] != [one.value for one in now.special] or old.limits != now.limits:
             return True
         unfit = self.vectors.unfit.get(old.name, ())
-        if self.message.tail is not None and self.message.tail.counter == old.name:
+        if any(part.counter == old.name for part in self.message.open_parts):
             unfit = [value for value in unfit if not old.raw_min <= value <= old.raw_max]
         if any(_attempt(codec.check_raw, now, value) is not _REFUSED for value in unfit):
             return True
@@ -107,7 +107,7 @@ class MessageWatch:
         """Of each field, the bits that all other fields set in each row's frame."""
         columns = []
         for field in self.message.fields:
-            alone = replace(self.message, fields=(replace(field, when=()),), tail=None)
+            alone = replace(self.message, fields=(replace(field, when=()),), tail=None, inner=())
             values = ({field.name: row.raw.get(field.name, field.fresh)} for row in self.vectors.rows)
             frames = (
                 codec.encode(self.node, alone, value) if field.name in row.raw else bytes(alone.length)

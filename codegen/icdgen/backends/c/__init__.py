@@ -103,6 +103,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "empty": decoding.EMPTY,
         "decode": decoding.statements(message, groups),
         "element": None,
+        "inner": [],
         "miscount": "",
         "excess": bits.excess,
         "narrow": [(field, bits.excess(field)) for field in message.fields if field.is_narrow and not field.is_open],
@@ -136,6 +137,7 @@ def _tail(message: MessageDescription, tail: TailDescription) -> dict[str, objec
     )
     return {
         "element": of_element,
+        "inner": decoding.of_inner(message),
         "size": encoding.size(message),
         "misfit_length": decoding.misfit_length(tail, names.constant(message, "length")),
         "miscounted": decoding.miscounted(tail),

@@ -50,8 +50,9 @@ def _float(one: Constant, bits: int) -> str:
 
 def initial(message: Composite[Any]) -> list[str]:
     """Statements that give fields with only one valid value that value, and what counts an open end its smallest."""
-    counter = message.tail.counter if message.tail is not None and message.tail.low else None
-    counted = [] if counter is None else [f"message->{counter.member} = {counter.fresh}u;"]
+    counts = {part.counter for part in message.model.open_parts if part.low}
+    counters = [field for field in message.members if field.model.name in counts]
+    counted = [f"message->{field.member} = {field.fresh}u;" for field in counters]
     return counted + [
         f"message->{field.member} = {names.constant(field.declaration.message, one.name)};"
         for field in message.fields

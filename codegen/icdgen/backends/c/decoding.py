@@ -61,6 +61,27 @@ def miscounted(tail: TailDescription) -> tuple[str, str, str] | None:
     return type_of(tail.counter), _number(tail.counter, "value"), f"{value} != {told}"
 
 
+def of_inner(message: MessageDescription) -> list[dict[str, object]]:
+    """How the open parts in front of the tail are found in a frame, whose fixed part is in ``buffer``, and put into one."""
+    return [
+        {
+            "type": type_of(one.counter),
+            "reading": _number(one.counter, "value"),
+            "misfit": miscount(one, "value") if one.is_bound else "",
+            "begin": one.begin,
+            "there": _bytes(elements(one, "value"), one.step),
+            "given": _bytes(elements(one), one.step),
+            "miscount": miscount(one) if one.is_bound else "",
+            "counter": one.counter,
+        }
+        for one in message.inner
+    ]
+
+
+def _bytes(count: str, step: int) -> str:
+    return count if step == 1 else f"{count} * {step}u"
+
+
 def of_elements(message: MessageDescription, tail: TailDescription) -> list[str]:
     """The statements that read the structs of an open end, each where it stands in ``buffer``."""
     name, count = tail.part.member, _count(tail)
@@ -80,17 +101,17 @@ def element_place(tail: TailDescription) -> str:
     return f"{tail.begin}u + {f'({offset})' if tail.step > 1 else offset}" if tail.begin else offset
 
 
-def elements(tail: TailDescription) -> str:
+def elements(tail: TailDescription, counter: str = "") -> str:
     """How many elements a message has."""
-    count = f"ICDGEN_SIZE(message->{tail.counter.name})"
+    count = f"ICDGEN_SIZE({counter or f'message->{tail.counter.name}'})"
     if not tail.model.plus:
         return count
     return f"({count} {'+' if tail.fewest else '-'} {abs(tail.model.plus)}u)"
 
 
-def miscount(tail: TailDescription) -> str:
+def miscount(tail: TailDescription, counter: str = "") -> str:
     """What holds of a message whose count is none that it can have."""
-    count = f"message->{tail.counter.name}"
+    count = counter or f"message->{tail.counter.name}"
     tests = [f"{count} < {tail.low}u"] if tail.low else []
     tests += [f"{count} > {tail.high}u"] if tail.counter.storage.max > tail.high else []
     return " || ".join(f"({test})" for test in tests) if len(tests) > 1 else tests[0]

@@ -18,6 +18,10 @@ def size(message: MessageDescription) -> str:
     """Bytes of the frame that a message makes."""
     tail = message.tail
     assert tail is not None
+    if message.inner:
+        counts = [(elements(one), one.step) for one in (*message.inner, tail)]
+        terms = [count if step == 1 else f"({count} * {step}u)" for count, step in counts]
+        return " + ".join((f"{message.model.fixed}u", *terms))
     count = elements(tail)
     if tail.step == 1:
         return f"{tail.begin}u + {count}" if tail.begin else count

@@ -209,7 +209,7 @@ def _id(id: int, message: Message | None) -> str:
     """An id, the longest and the shortest frame of its message, and what becomes of the latter where all is 0."""
     if message is None:
         return f"{{{id}u, -1, 0u, ICD_ERROR_UNKNOWN_ID}}"
-    is_refused = message.tail is not None and message.tail.low > 0  # zeros count less than there can be
+    is_refused = any(part.low > 0 for part in message.open_parts)  # zeros count less than there can be
     return f"{{{id}u, {message.length}, {message.least}u, {'ICD_ERROR_LENGTH' if is_refused else 'ICD_OK'}}}"
 
 
@@ -223,6 +223,8 @@ def _frame(row: SharedRow) -> str:
 
 def _plain(message: MessageDescription, vectors: MessageVectors) -> MessageVectors:
     """As C sees a message of which a field is not always there: its members are 0 then, and so are bits that are no field's."""
+    if message.model.inner:  # bits that are no field's are not at one place in all frames
+        return replace(vectors, rows=tuple(replace(row, frame=row.encoded) for row in vectors.rows))
     if not message.conditional:
         return vectors
     absent: Raw = {field.model.name: 0 for field in message.conditional}
@@ -242,7 +244,7 @@ def _tail(message: MessageDescription, vectors: MessageVectors) -> TailRow:
     assert tail is not None
     frames = b"".join(frame.ljust(length, b"\0") for frame in vectors.miscounted)
     return TailRow(
-        least=tail.least,
+        least=message.model.least,
         counter=next(place for place, one in enumerate(message.all_fields) if one.model == tail.counter.model),
         high=tail.high,
         frames=_bytes(frames),

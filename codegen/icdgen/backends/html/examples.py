@@ -54,7 +54,10 @@ def _encoded(message: Message, node: Node, raw: dict[str, int | bytes]) -> bytes
             continue
         for piece in () if field.implied else layout.pieces(field, node):
             frame[piece.byte] |= (value >> piece.at & (1 << piece.bits) - 1) << piece.shift
-    return bytes(frame[: message.begin + codec.count_of(message, raw) * message.tail.step] if message.tail else frame)
+    if message.tail is None:
+        return bytes(frame)
+    found = bytes(frame[: message.begin + codec.count_of(message, raw) * message.tail.step])
+    return codec.squeezed(node, message, found) if message.inner else found
 
 
 def examples(message: Message, node: Node) -> list[Example]:

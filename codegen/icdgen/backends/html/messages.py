@@ -57,11 +57,13 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
 def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str, str, str]]:
     """Label, text, and where a link leads."""
     facts = [("Length", length_text(message), ""), ("Fields", str(len(message.fields)), "")]
-    tail, counter = message.tail, message.counter
-    if tail is not None and counter is not None:
-        until = "up to the end" if counter.implied else f"as many as {count_text(message)} says"
-        what = "element" if tail.step > 1 or any(one.path for one in message.fields) else "byte"
-        facts.append(("Open end", f"{tail.name}: up to {texts.count(tail.most, what)}, {until}", ""))
+    arrays = {one.path[0].name for one in message.fields if one.path}
+    for part in message.open_parts:
+        is_told = message.counter is not None and message.counter.implied and part is message.tail
+        until = "up to the end" if is_told else f"as many as {count_text(part)} says"
+        what = "element" if part.step > 1 or part.name in arrays else "byte"
+        label = "Open end" if part is message.tail else "Open part"
+        facts.append((label, f"{part.name}: up to {texts.count(part.most, what)}, {until}", ""))
     if message.may_end_early:
         facts.append(("End", "may be left out as far as it is zeros", ""))
     if message.reserved:

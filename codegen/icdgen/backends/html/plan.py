@@ -30,6 +30,16 @@ def message_plan(message: Message, node: Node) -> dict[str, object]:
             ]
     if message.may_end_early:
         plan["endsEarly"] = True
+    if message.inner:
+        plan["inner"] = [
+            {"counter": places[one.counter], "begin": one.begin, "step": one.step, "most": one.most, "plus": one.plus}
+            for one in message.inner
+        ]
+        plan["fewest"] = message.least
+        names = {one.name for one in message.inner}
+        for field, own in zip(message.fields, fields, strict=True):
+            if field.path and field.path[0].name in names:
+                own["inner"] = True  # a new message has it, though it is not sent
     if message.tail is not None:
         tail = message.tail
         plan["tail"] = {

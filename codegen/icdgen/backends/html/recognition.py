@@ -32,6 +32,8 @@ def _tail(relations: Relations, message: Message) -> list[dict[str, Any]]:
         return [{"least": message.least, "step": 1, "pieces": []}]
     if tail is None or counter is None:
         return []
+    if message.inner:  # what its frames say themselves, their decoder looks at
+        return [{"least": message.least, "step": message.lengths.step, "pieces": []}]
     pieces = () if counter.implied else layout.pieces(counter, relations.icd.node(message.node))
     found = {"least": message.least, "step": tail.step, "pieces": [[p.byte, p.shift, p.bits, p.at] for p in pieces]}
     return [found | ({"low": tail.low} if tail.low else {})]

@@ -83,7 +83,7 @@ def _functions() -> dict[str, object]:
     from icdgen.describe.comments import physical_comment, text_comment
 
     found = (
-        fields.annotation, fields.declaration, fields.exact, fields.physical, fields.scaled, fields.tail, fields.text,
+        fields.annotation, fields.declaration, fields.exact, fields.inner, fields.physical, fields.scaled, fields.tail, fields.text,
         fields.getter,
         fields.view_info,
         fields.whole, fields.whole_comment, names.class_name, physical_comment, nodes.listing, nodes.literals, nodes.mapping,

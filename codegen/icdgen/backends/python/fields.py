@@ -11,6 +11,7 @@ from icdgen.backends.python.text import literal
 from icdgen.describe import FieldDescription, MessageDescription, wholes
 from icdgen.describe.constants import Constant
 from icdgen.describe.derived import derived
+from icdgen.describe.description import TailDescription
 from icdgen.describe.wholes import Whole
 from icdgen.icd import floats
 from icdgen.icd.curve import Curve
@@ -107,8 +108,21 @@ def declaration(field: FieldDescription) -> str:
 
 def tail(message: MessageDescription) -> str:
     """``_base.Tail(...)``: attributes, bytes and elements of the open end."""
-    one = message.tail
-    assert one is not None
+    assert message.tail is not None
+    return _open_part(message.tail)
+
+
+def inner(message: MessageDescription) -> list[str]:
+    """The items of ``INNER``: what is open in front of the end, its place, and the bits of what counts it."""
+    found = []
+    for one in message.inner:
+        pieces = [f"({p.byte}, {p.shift}, {p.bits}, {p.at})" for p in one.counter.pieces]
+        found.append(f"({_open_part(one)}, {one.begin}, ({', '.join(pieces)}{',' * (len(pieces) == 1)}))")
+    return found
+
+
+def _open_part(one: TailDescription) -> str:
+    """``_base.Tail(...)``"""
     counter = "" if one.counter.model.implied else one.counter.name
     plus = f", {one.model.plus}" if one.model.plus else ""
     return f'_base.Tail("{one.part.name}", "{counter}", {one.step}, {one.most}{plus})'

@@ -72,7 +72,10 @@ def _members(
 ) -> Iterator[Identifier]:
     where = f"{message.node.name}::{message.model.name}"
     fields, methods, associated = f"fields of {where}", f"methods of {where}", f"constants of {where}"
-    yield from _ours(methods, (*used_methods, *(_OPEN_METHODS if message.tail is not None else ())))
+    of_open = (
+        (*_OPEN_METHODS, *(("inner",) if message.model.open_parts[:-1] else ())) if message.tail is not None else ()
+    )
+    yield from _ours(methods, (*used_methods, *of_open))
     yield from _ours(associated, used_constants)
     for field in message.all_members:
         is_view = field.model.view

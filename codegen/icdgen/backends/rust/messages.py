@@ -45,8 +45,9 @@ def values(message: MessageDescription) -> dict[str, object]:
         "counted": tail is not None and not tail.counter.model.implied,
         "elements": tail is not None,
         "first": any(map(_has_first, fields)),
-        "number": tail is not None and bool(tail.model.plus),
-        "longest": tail is not None or bool(message.model.may_end_early),
+        "number": (tail is not None and bool(tail.model.plus)) or bool(message.inner),
+        "longest": (tail is not None and not message.inner) or bool(message.model.may_end_early),
+        **dict.fromkeys(("beginning", "spread", "told"), bool(message.inner)),
         "present": tail is not None,
         "structs": any("structs(" in reading for reading in read),
         "words": any("words(" in reading for reading in read),
@@ -60,6 +61,9 @@ def values(message: MessageDescription) -> dict[str, object]:
         "refused": message.is_narrow or bool(conditions),
         "conditional": conditions,
         "tail": tail,
+        "inner": [_Inner.of(one) for one in message.inner],
+        "bytes_of_end": "" if tail is None else _times(tail.step, f"count + {tail.fewest}" if tail.fewest else "count"),
+        "bytes_of_elements": "" if tail is None else _times(tail.step, "count"),
         "length_of_frame": "" if tail is None else _length(tail.least, tail.step),
         "length_of_elements": "" if tail is None else _length(tail.begin, tail.step),
         "counted_text": "" if tail is None else _counted_text(tail),
@@ -71,6 +75,27 @@ def values(message: MessageDescription) -> dict[str, object]:
         "element": of_element,
         "parts": parts.parts(message),
     }
+
+
+class _Inner(NamedTuple):
+    """What is open in front of the end."""
+
+    part: TailDescription
+    reading: str  # of what counts it, from ``bytes``
+    bytes: str  # of it in a message
+    bytes_at_most: str  # the same, of a count that there may be, or not
+
+    @classmethod
+    def of(cls, part: TailDescription) -> _Inner:
+        count = f"number(self.{field_name(part.counter)}, {part.low}, {part.fewest})"
+        counts = (count, f"{count}.min({part.most})")
+        return cls(part, bits.reading(part.counter, set(), depth=3), *(_times(part.step, one) for one in counts))
+
+
+def _times(step: int, count: str) -> str:
+    if step == 1:
+        return count
+    return f"{step} * ({count})" if " + " in count else f"{step} * {count}"
 
 
 class Element(NamedTuple):

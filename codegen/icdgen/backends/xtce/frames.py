@@ -128,15 +128,16 @@ class Frames:
             else:
                 found.append(self._entry(made, one, run))
         tail = message.tail
-        behind = self._open(made, tail) if tail is not None and not any(one.needs for one in found) else None
-        if tail is not None and behind is None:
-            made.lacks.append(f"`{tail.model.name}`, which has no fixed size, is left out")
+        can_stand = not message.inner and not any(one.needs for one in found)
+        behind = self._open(made, tail) if tail is not None and can_stand else None
+        if behind is None:
+            made.lacks += (f"`{part.name}`, which has no fixed size, is left out" for part in message.model.open_parts)
         if message.model.may_end_early:
             made.notes.append("it is sent with the zeros that it may be sent without")
         made.notes += (
             f"`{one.model.name}` is left out: it is derived by `{one.model.formula}`" for one in message.derived
         )
-        self._lay_out(made, found, self.head + message.model.begin * 8)
+        self._lay_out(made, found, self.head + message.model.fixed * 8)
         if behind is not None:
             made.entries.append(
                 behind._replace(at=behind.run.at if any(one.at is not None for one in made.entries) else None)
@@ -248,7 +249,7 @@ def _first(bits: int) -> str:
 def _parts(message: MessageDescription) -> Iterator[FieldDescription]:
     """What has a fixed place: fields of structs, arrays as one where XTCE can have them so, at last views."""
     for one in message.leaves:
-        if one.is_open or one.model.implied:
+        if one.is_open or one.is_inner or one.model.implied:
             continue
         is_array = one.model.const is None and one.count and run_of_all(one.model.elements, message.node) is not None
         yield from (one,) if is_array or not one.count else one.elements

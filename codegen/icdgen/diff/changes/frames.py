@@ -9,7 +9,7 @@ from icdgen.diff.context import Context
 from icdgen.diff.pairs import MessagePair, NodePair
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.wording import ids, some
-from icdgen.icd.model import Message
+from icdgen.icd.model import Field, Message, Tail
 from icdgen.icd.rules.wording import count, quote
 
 DIRECTIONS = {"telecommand": "telecommand_id", "telemetry": "telemetry_id"}
@@ -107,7 +107,7 @@ def _verb(kind: str) -> str:
 def length_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
     if old.tail is not None or new.tail is not None:
-        if old.tail is not None and new.tail is not None and old.begin != new.begin:
+        if old.tail is not None and new.tail is not None and old.fixed != new.fixed:
             text = f"{quote(new.name)} has {length_text(new)}, had {length_text(old)}"
             yield Found(text, ("length",), length_text(old), length_text(new))
         return
@@ -130,24 +130,27 @@ def length_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
 @rule("DIF119", "message")
 def open_end_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
-    was, now = _open_end(old), _open_end(new)
+    was, now = _open_parts(old), _open_parts(new)
     if was == now or (old.tail is None and new.tail is None):
         return
     details = [f"Frames have {length_text(new)}, had {length_text(old)}."] if old.lengths != new.lengths else []
-    if old.tail is not None and new.tail is not None and old.tail.most < new.tail.most:
+    if old.tail is not None and new.tail is not None and not new.inner and old.tail.most < new.tail.most:
         details.append(f"Decoders of the other release refuse frames of more than {old.tail.most}.")
     text = f"what ends {quote(new.name)} is {now}, was {was}"
     yield Found(text, ("length",), was, now, tuple(details))
 
 
-def _open_end(message: Message) -> str:
+def _open_parts(message: Message) -> str:
     """``up to 12 of `Levels`, counted by `Levels Count` ``"""
-    tail, counter = message.tail, message.counter
-    if tail is None or counter is None:
-        return "of fixed size"
-    plus = f" {'+' if tail.plus > 0 else '-'} {abs(tail.plus):,}" if tail.plus else ""
+    fields = {field.name: field for field in message.fields}
+    found = [_open_part(part, fields[part.counter]) for part in message.open_parts if part.counter in fields]
+    return ", behind it ".join(found) or "of fixed size"
+
+
+def _open_part(part: Tail, counter: Field) -> str:
+    plus = f" {'+' if part.plus > 0 else '-'} {abs(part.plus):,}" if part.plus else ""
     counted = "as many as come" if counter.implied else f"counted by {quote(counter.name)}{plus}"
-    return f"up to {tail.most} of {quote(tail.name)}, {counted}"
+    return f"up to {part.most} of {quote(part.name)}, {counted}"
 
 
 @rule("DIF125", "message")

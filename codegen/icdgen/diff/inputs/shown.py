@@ -179,7 +179,13 @@ class _Reader:
             implied = implied_count(end, item["length"])
             counter, fields = implied.name, (*fields, implied)
         tail = model.Tail(told["part"], counter, told["step"], told["most"], told.get("plus", 0))
-        return {"fields": tail.counted_in(fields), "tail": tail}
+        inner = tuple(
+            model.Tail(one["part"], one["counter"], one["step"], one["most"], one.get("plus", 0), one["least"])
+            for one in item.get("inner", ())
+        )
+        for one in (*inner, tail):
+            fields = one.counted_in(fields)
+        return {"fields": fields, "tail": tail, "inner": inner}
 
     def with_derived(self, parts: dict[str, Any], item: Map) -> dict[str, Any]:
         """The same parts, and what is derived from the fields."""

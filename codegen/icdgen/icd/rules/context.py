@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 # Keys of a field that only few fields have.
 RARE = ("enum", "unit", "formula", "formula_for", "points", "outside", "const", "special", "min", "max", "above", "below",
-    "bitfields", "byte_order", "bit_order", "count", "view", "up_to", "when",
+    "bitfields", "byte_order", "bit_order", "count", "view", "after", "up_to", "when",
 )  # fmt: skip
 
 Owner = Message | Struct

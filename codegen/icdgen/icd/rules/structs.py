@@ -14,7 +14,7 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
 from icdgen.suggest import close_to
 
-_OF_MEMBERS = frozenset({"at", "name", "identifier", "struct", "count", "up_to", "summary"})
+_OF_MEMBERS = frozenset({"at", "name", "identifier", "struct", "count", "after", "up_to", "summary"})
 """Keys of a struct where it stands."""
 
 

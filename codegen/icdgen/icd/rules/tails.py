@@ -31,14 +31,21 @@ def _lengths(ctx: Context, node: Node) -> dict[str, int]:
 
 @rule("ICD121")
 def at_the_end(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.members:
+        if "after" in field.source and not tails.is_open(field.source):
+            text = f"{quote(field.name)} has a fixed size, so it has a fixed place, too"
+            help = "remove `after`; behind what is open only more that is open can stand"
+            yield Fault(field.source, field.source.at("after"), text, help)
     for message, node in ctx.messages:
         for item in tails.open_parts(message.source):
             yield from (_fault(one) for one in tails.faults_of_place(message.source, item, _lengths(ctx, node)))
         if message.tail is None:
             continue
         for field in (one for one in message.views if one.derived is None):
-            if field.at + field.bits > 8 * message.least:
-                text = f"{quote(field.name)} is a view of {quote(message.tail.name)}, which is not always there"
+            end = field.at + field.bits
+            if end > 8 * (message.fixed if message.inner else message.least):
+                part = next(one for one in reversed(message.open_parts) if end > 8 * (one.begin or message.begin))
+                text = f"{quote(field.name)} is a view of {quote(part.name)}, which is not always there"
                 yield Fault(field.source, field.source.at("at"), text, "view what every frame of the message has")
 
 

@@ -33,7 +33,9 @@ pub(crate) use self::message::{enumeration, message, shown, structure};
 pub use self::message::{Message, Telecommand, Telemetry};
 pub(crate) use self::scale::{there, Scale};
 pub use self::tail::Frame;
-pub(crate) use self::tail::{counted, elements, first, longest, number, present, write_frame};
+pub(crate) use self::tail::{
+    beginning, counted, elements, first, longest, number, present, spread, told, write_frame,
+};
 pub(crate) use self::text::{text, text_array};
 pub(crate) use self::wide::{Big, Wide};
 

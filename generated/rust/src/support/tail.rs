@@ -16,6 +16,14 @@ impl<const N: usize> Frame<N> {
     pub(crate) fn new(longest: [u8; N], size: usize) -> Self {
         Self { longest, size }
     }
+
+    /// Puts a part of the longest frame behind what is there: so many bytes from `begin` on.
+    pub(crate) fn add(&mut self, longest: &[u8; N], begin: usize, bytes: usize) {
+        let part = longest.get(begin..begin + bytes).unwrap_or_default();
+        let target = self.longest.get_mut(self.size..).unwrap_or_default();
+        copy(target, part);
+        self.size += bytes;
+    }
 }
 
 impl<const N: usize> AsRef<[u8]> for Frame<N> {
@@ -67,6 +75,79 @@ pub(crate) fn longest<const N: usize>(
         }
         None => Error::length(N, actual),
     }
+}
+
+/// The longest frame with the first `fixed` bytes of one, of which the shortest has `least`.
+pub(crate) fn beginning<const N: usize>(
+    bytes: &[u8],
+    fixed: usize,
+    least: usize,
+) -> Result<[u8; N], Error> {
+    let mut longest = [0; N];
+    match bytes.get(..fixed) {
+        Some(first) if bytes.len() >= least => {
+            copy(&mut longest, first);
+            Ok(longest)
+        }
+        _ => Error::length(least, bytes.len()),
+    }
+}
+
+/// Bytes of an open part in front of the end, if the count is one of `low` to `high`, `fewest` elements where it is `low`.
+pub(crate) fn told(
+    count: impl TryInto<usize>,
+    low: usize,
+    high: usize,
+    fewest: usize,
+    step: usize,
+) -> Option<usize> {
+    let count = count.try_into().ok()?;
+    if (low..=high).contains(&count) {
+        Some((count - low + fewest) * step)
+    } else {
+        None
+    }
+}
+
+/// Puts the open parts of a frame where they begin in the longest one: those in `inner` with the bytes that they have, and the
+/// end, of which every frame has `fewest` bytes. The bytes of a frame that has no more, and how many elements there are then.
+pub(crate) fn spread<const N: usize>(
+    longest: &mut [u8; N],
+    bytes: &[u8],
+    fixed: usize,
+    inner: &[(usize, Option<usize>)],
+    end: usize,
+    fewest: usize,
+    step: usize,
+) -> Result<(usize, usize), Error> {
+    let (actual, mut before) = (bytes.len(), fixed);
+    for (_, size) in inner {
+        match size {
+            Some(size) => before += size,
+            None => return Error::length(N, actual),
+        }
+    }
+    let (least, most) = (before + fewest, before + (N - end));
+    let rest = match actual.checked_sub(least) {
+        Some(rest) => rest,
+        None => return Error::length(least, actual),
+    };
+    if actual > most {
+        return Error::length(most, actual);
+    }
+    if rest % step != 0 {
+        return Error::length(actual - rest % step, actual);
+    }
+    let parts = inner
+        .iter()
+        .map(|(begin, size)| (*begin, size.unwrap_or_default()));
+    let mut from = fixed;
+    for (begin, size) in parts.chain([(end, actual - before)]) {
+        let part = bytes.get(from..from + size).unwrap_or_default();
+        copy(longest.get_mut(begin..).unwrap_or_default(), part);
+        from += size;
+    }
+    Ok((least, rest / step))
 }
 
 /// Whether a frame says of itself how many elements it has: `told`, which is `low` in a frame of `least` bytes, and one more for
