@@ -6,6 +6,7 @@ import json
 import socket
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from icdgen_runtime._errors import RangeError
@@ -145,8 +146,8 @@ def test_a_device_that_gets_a_wrong_checksum_does_nothing():
     assert port.line.computer.program.counts == {"checksum": 1}
 
 
-def icdgen(*words: str) -> subprocess.CompletedProcess:
-    command = [sys.executable, "-m", "icdgen", *words, "--icd", str(FOLDER)]
+def icdgen(*words: str, folder: Path = FOLDER) -> subprocess.CompletedProcess:
+    command = [sys.executable, "-m", "icdgen", *words, "--icd", str(folder)]
     return subprocess.run(command, capture_output=True, text=True, timeout=60)
 
 
@@ -210,3 +211,15 @@ def test_a_value_of_no_field_of_the_envelope_is_refused():
         "source=256",
     )
     assert wrong.returncode == 2 and "from 0 to 255" in wrong.stderr
+
+
+def test_a_receiver_of_the_examples_is_simulated_watched_and_configured():
+    folder = ROOT / "examples" / "devices" / "ublox"
+    chosen = ("--every", "0.1", "--set", "NAV-EOE", "iTOW=7", "--icd", str(folder))
+    with simulator("--node", "ublox", "--tcp", "0", *chosen) as (place, _):
+        shown = icdgen("monitor", "ublox", "NAV-EOE", "--port", place, "--once", "--every", "1", folder=folder)
+        sent = icdgen(
+            "send", "ublox", "CFG-RATE", "measRate=100", "navRate=1", "timeRef=0", "--port", place, folder=folder
+        )
+    assert shown.returncode == 0 and "iTOW" in shown.stdout and "7" in shown.stdout, shown.stderr
+    assert sent.returncode == 0 and "answered with ACK-ACK" in sent.stdout, sent.stderr
