@@ -120,6 +120,11 @@ class NodeDescription:
         """Whether messages of the direction have an id in common."""
         return any(one.is_shared for one in self._ids[direction])
 
+    def shares_id(self, direction: str, message: MessageDescription) -> bool:
+        """Whether it takes more than the id to know the message."""
+        shared = (one.candidates for one in self._ids[direction] if one.is_shared)
+        return any(one.message is message for among in shared for one in among)
+
     @cached_property
     def known_ids(self) -> Ids:
         """All messages that it speaks, by their ids."""
