@@ -11,8 +11,7 @@ from tests.python import packages
 @pytest.fixture(scope="module")
 def package(tmp_path_factory):
     folder = tmp_path_factory.mktemp("mux")
-    (folder / "mux.yaml").write_text(odd.MUX, encoding="utf-8")
-    return packages.write(packages.read(folder / "mux.yaml"), folder, "mux_messages")
+    return packages.write(packages.read(odd.FOLDER / "mux.yaml"), folder, "mux_messages")
 
 
 @pytest.fixture(scope="module")

@@ -11,8 +11,7 @@ from tests.python import packages
 @pytest.fixture(scope="module")
 def package(tmp_path_factory):
     folder = tmp_path_factory.mktemp("open")
-    (folder / "open.yaml").write_text(odd.OPEN, encoding="utf-8")
-    return packages.write(packages.read(folder / "open.yaml"), folder, "open_messages")
+    return packages.write(packages.read(odd.FOLDER / "open.yaml"), folder, "open_messages")
 
 
 @pytest.fixture(scope="module")

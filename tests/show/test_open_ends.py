@@ -14,15 +14,14 @@ from icdgen.show.people import to_text
 from tests.conformance import odd
 
 
-def read(folder):
-    (folder / "open.yaml").write_text(odd.OPEN, encoding="utf-8")
-    loaded = load([folder])
+def read():
+    loaded = load([odd.FOLDER / "open.yaml"])
     assert loaded.findings == []
     return loaded.icd
 
 
-def test_an_open_end_is_one_line_with_its_bound_and_what_counts_it(tmp_path):
-    icd = read(tmp_path)
+def test_an_open_end_is_one_line_with_its_bound_and_what_counts_it():
+    icd = read()
     node = icd.node("open")
     tables = {message.name: field_table(message, node).splitlines()[-1] for message in node.messages}
     assert "up to 5 x 24" in tables["Narrow"] and "up to the end of the frame" in tables["Narrow"]
@@ -32,8 +31,8 @@ def test_an_open_end_is_one_line_with_its_bound_and_what_counts_it(tmp_path):
     assert "4 to 28 bytes" in to_text(icd, ["open", "Counted"])
 
 
-def test_what_is_shown_for_programs_is_read_back_with_the_open_ends(tmp_path):
-    icd = read(tmp_path)
+def test_what_is_shown_for_programs_is_read_back_with_the_open_ends():
+    icd = read()
     tree = to_json(icd)
     jsonschema_rs.validator_for(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(tree)
     again = shown.from_bytes(json.dumps(tree).encode(), "shown").icd

@@ -17,10 +17,8 @@ from tests.conformance import odd
 
 
 @pytest.fixture(scope="module")
-def icd(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("mux")
-    (folder / "mux.yaml").write_text(odd.MUX, encoding="utf-8")
-    return load([folder]).icd
+def icd():
+    return load([odd.FOLDER / "mux.yaml"]).icd
 
 
 def frame(icd, *values):

@@ -12,10 +12,8 @@ from tests.conformance import odd
 
 
 @pytest.fixture(scope="module")
-def icd(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("open")
-    (folder / "open.yaml").write_text(odd.OPEN, encoding="utf-8")
-    return load([folder]).icd
+def icd():
+    return load([odd.FOLDER / "open.yaml"]).icd
 
 
 def frame(icd, message, *values):
