@@ -135,6 +135,8 @@ def _shown(event: Event) -> str:
         return row(event.error, id=event.id)
     if isinstance(event, Arrived):
         return row("message", id=event.id, bytes=event.data, **event.values)
+    if isinstance(event, Timeout):
+        return row("timeout", id=event.id, attempts=event.attempts)
     known = [one.name for one in fields(event) if one.name not in ("type", "log")]
     facts = {"bytes" if key == "data" else key: getattr(event, key) for key in known}
     return row(type(event).__name__.lower(), **facts)
