@@ -131,9 +131,7 @@ impl<'a, T> NodeEvent<'a, T> {
     #[must_use]
     pub fn message<M: TelemetryOf<T>>(&self) -> Option<M> {
         match self.event {
-            Event::Done { id, data, .. } if id == octet(M::TELEMETRY_ID) => {
-                M::from_bytes(data).ok()
-            }
+            Event::Done { id, data, .. } if id == octet(M::TELEMETRY_ID) => M::read(data).ok(),
             _ => None,
         }
     }

@@ -3,12 +3,21 @@
 //! What messages a client takes: those of its node, which is a type for it.
 
 use super::link::Link;
-use crate::{Telecommand, Telemetry};
+use crate::{Error, Telecommand, Telemetry};
 use core::marker::PhantomData;
 use core::ops::Deref;
 
 /// Telemetry of node `T`, its own or that of a node that it includes. The generated code says what is.
-pub trait TelemetryOf<T>: Telemetry {}
+pub trait TelemetryOf<T>: Telemetry {
+    /// Reads a frame of its id, which may be that of several messages.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Telemetry::from_bytes`]; [`Error::UnknownId`] if it is another message.
+    fn read(bytes: &[u8]) -> Result<Self, Error> {
+        Self::from_bytes(bytes)
+    }
+}
 
 /// A telecommand of node `T`, its own or that of a node that it includes. The generated code says what is.
 pub trait TelecommandOf<T>: Telecommand {}

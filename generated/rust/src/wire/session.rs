@@ -159,7 +159,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     /// [`Failure`]
     pub fn get<M: TelemetryOf<T>>(&mut self) -> Result<M, Failure> {
         self.client.request::<M>(self.now())?;
-        Ok(M::from_bytes(&self.outcome()?)?)
+        Ok(M::read(&self.outcome()?)?)
     }
 
     /// Sends a telecommand or a setting, and waits until it is acknowledged, if it is at all.

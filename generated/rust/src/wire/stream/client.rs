@@ -202,8 +202,8 @@ impl<'a, T> NodeEvent<'a, T> {
     #[must_use]
     pub fn message<M: TelemetryOf<T>>(&self) -> Option<M> {
         match self.event {
-            Event::Done { reply, data, .. } if reply == M::TELEMETRY_ID => M::from_bytes(data).ok(),
-            Event::Message { id, data, .. } if id == M::TELEMETRY_ID => M::from_bytes(data).ok(),
+            Event::Done { reply, data, .. } if reply == M::TELEMETRY_ID => M::read(data).ok(),
+            Event::Message { id, data, .. } if id == M::TELEMETRY_ID => M::read(data).ok(),
             _ => None,
         }
     }
