@@ -83,6 +83,8 @@ def _kaitai_class(title: str, cls: Any, enums: dict[str, Any]) -> str:
             enums[info.enum.__name__] = IntEnum(info.enum.__name__, {member.name: member.value for member in info.enum})
             read = f"KaitaiStream.resolve_enum(Frame.{info.enum.__name__}, {read})"
         lines.append(f"        self.{info.attribute} = {read}\n")
+    if reached % 8:
+        lines.append("        self._io.align_to_byte()\n")
     return (
         f"{structs}class {title}(KaitaiStruct):\n"
         "    def __init__(self, _io, _parent=None, _root=None):\n"
