@@ -55,7 +55,7 @@ def of_field(field: Field, message: Message | Struct, node: Node) -> Iterator[tu
     """The changes of a member, and what it would be; none that no field of such a type or no frame of such a length can have."""
     size, count = 8 * message.length, field.count or 1
     source = field.source
-    parts = message.open_parts if isinstance(message, Message) else ()
+    parts = message.open_parts
     if any(part.name == field.name for part in parts):
         yield from _of_open(field)
         return

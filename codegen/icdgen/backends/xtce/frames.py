@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from itertools import chain, count
 from typing import Any, NamedTuple
@@ -114,7 +114,8 @@ class Frames:
         if id in self.shared and not is_sent:
             made.base = self.bases.setdefault(id, Base(unique(f"Id{id}", self.taken), id))
         parts = tuple(_parts(message))
-        self._give_names(made, parts)
+        for one in parts:
+            self._give_name(made, one)
         needed = {need.field.name for one in parts for need in one.needs}
         found: list[Entry] = []
         for one in parts:
@@ -153,43 +154,23 @@ class Frames:
         run = run_of(part.model, node) if part.model.is_bytes else run_of_all(part.model.elements, node)
         if run is None:
             return None
-        before, taken = (
-            ("", set(made.names.values())) if self.direction == TELECOMMAND else (f"{made.name}_", self.taken)
-        )
-        name = made.names[part.name] = unique(before + (_camel(part.name) or "Field"), taken)
-        wanted = name if name.startswith(made.name) else f"{made.name}_{name}"
-        type_ = self.types.of_open(tail, made.names[tail.counter.name], wanted, run.is_little)
-        model = part.model
-        made.rows.append(Row(name, type_, model.name, model.summary, model.special, most=tail.most))
-        if not is_said(model):
-            made.notes.append(f"`{model.name}`: beyond its table it has the value of the last point")
-        return Entry(name, run._replace(at=self.head + run.at), is_array=not model.is_bytes or bool(part.count))
+        name = self._give_name(made, part)
+        type_ = self.types.of_open(tail, made.names[tail.counter.name], _type_name(made, name), run.is_little)
+        _add_row(made, part, type_, tail.most)
+        return Entry(name, run._replace(at=self.head + run.at), is_array=not part.model.is_bytes or bool(part.count))
 
-    def _give_names(self, made: Frame, parts: Iterable[FieldDescription]) -> None:
+    def _give_name(self, made: Frame, one: FieldDescription) -> str:
         """Parameters are known to all containers, arguments to their command alone."""
         is_sent = self.direction == TELECOMMAND
-        before, taken = ("", set()) if is_sent else (f"{made.name}_", self.taken)
-        for one in parts:
-            made.names[one.name] = unique(before + (_camel(one.name) or "Field"), taken)
+        before, taken = ("", set(made.names.values())) if is_sent else (f"{made.name}_", self.taken)
+        name = made.names[one.name] = unique(before + (_camel(one.name) or "Field"), taken)
+        return name
 
     def _entry(self, made: Frame, one: FieldDescription, run: Run) -> Entry:
         name = made.names[one.name]
-        type_ = self.types.of(one, name if name.startswith(made.name) else f"{made.name}_{name}", run.is_little)
-        made.rows.append(
-            Row(
-                name,
-                type_,
-                one.model.name,
-                one.model.summary,
-                one.model.special,
-                one.model.const,
-                is_view=one.model.view,
-            )
-        )
+        _add_row(made, one, self.types.of(one, _type_name(made, name), run.is_little))
         if one.model.const is not None and made.base is not None and run.at + run.bits <= 8 * self.shared[made.id]:
             self._tell(made, made.base, one.model.const, one, run)
-        if not is_said(one.model):
-            made.notes.append(f"`{one.model.name}`: beyond its table it has the value of the last point")
         return Entry(name, run._replace(at=self.head + run.at), bool(one.count), self._needs(made, one))
 
     def _tell(self, made: Frame, base: Base, value: int, one: FieldDescription, run: Run) -> None:
@@ -240,6 +221,20 @@ class Frames:
         type_ = Type("Binary", run.bits) if is_wide else Type("Integer", run.bits, "unsigned", _first(run.bits))
         self.reserved.setdefault(name, Row(name, self.types.name(type_, _named(type_)), is_reserved=True))
         return Entry(name, run)
+
+
+def _type_name(made: Frame, name: str) -> str:
+    """What the type of a parameter or argument is called, if it is its own."""
+    return name if name.startswith(made.name) else f"{made.name}_{name}"
+
+
+def _add_row(made: Frame, one: FieldDescription, type_: str, most: int = 0) -> None:
+    """Declares the parameter or argument of a field, and notes what is not said of it."""
+    model = one.model
+    name, special = made.names[one.name], model.special
+    made.rows.append(Row(name, type_, model.name, model.summary, special, model.const, is_view=model.view, most=most))
+    if not is_said(model):
+        made.notes.append(f"`{model.name}`: beyond its table it has the value of the last point")
 
 
 def _first(bits: int) -> str:
