@@ -2894,6 +2894,17 @@ ICDGEN_API icd_status_t icd_stream_client_request(icd_stream_client_t *client, u
     return icd_stream_client_start(client, now, &request, NULL, NULL);
 }
 
+static icd_stream_request_t icdgen_stream_telecommand(uint32_t id, const uint8_t *data, size_t length)
+{
+    icd_stream_request_t request;
+    (void)memset(&request, 0, sizeof request);
+    request.direction = ICD_TELECOMMAND;
+    request.id = id;
+    request.data = data;
+    request.length = length;
+    return request;
+}
+
 ICDGEN_API icd_status_t icd_stream_client_send(
     icd_stream_client_t *client,
     uint32_t now,
@@ -2904,12 +2915,7 @@ ICDGEN_API icd_status_t icd_stream_client_send(
     icd_stream_event_fn *on_event,
     void *context)
 {
-    icd_stream_request_t request;
-    (void)memset(&request, 0, sizeof request);
-    request.direction = ICD_TELECOMMAND;
-    request.id = id;
-    request.data = data;
-    request.length = length;
+    icd_stream_request_t request = icdgen_stream_telecommand(id, data, length);
     request.repeat = repeat;
     return icd_stream_client_start(client, now, &request, on_event, context);
 }
@@ -2917,12 +2923,7 @@ ICDGEN_API icd_status_t icd_stream_client_send(
 ICDGEN_API icd_status_t icd_stream_client_ask(
     icd_stream_client_t *client, uint32_t now, uint32_t id, const uint8_t *data, size_t length, uint32_t reply)
 {
-    icd_stream_request_t request;
-    (void)memset(&request, 0, sizeof request);
-    request.direction = ICD_TELECOMMAND;
-    request.id = id;
-    request.data = data;
-    request.length = length;
+    icd_stream_request_t request = icdgen_stream_telecommand(id, data, length);
     request.has_reply = true;
     request.reply = reply;
     return icd_stream_client_start(client, now, &request, NULL, NULL);
