@@ -571,6 +571,7 @@ typedef struct {
     const icd_framing_t *framing;
     const icd_acknowledge_t *acknowledge;
     int16_t i2c_address;      /**< Of 7 bits, -1 if the ICD has none. */
+    bool i2c_repeated_start;  /**< A read may follow its write without a stop; else there must be one. */
     int32_t boot_ms;          /**< How long the boot program waits, -1 if the ICD does not say. */
     const icd_step_t *polled; /**< The frame that tells what became of a telecommand. */
     const icd_can_form_t *can;

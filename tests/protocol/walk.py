@@ -34,9 +34,9 @@ TABLE = KEYS / "table.yaml"
 _HEAD = """\
 # What each key of the protocol section makes a difference to; `python -m tests.protocol.walk` writes wire and finding.
 #
-# wire: another value makes other golden vectors      port: the port is opened with it
+# wire: another value makes other golden vectors      port: the port is opened or used with it
 # finding: another value is refused                   simulator: the simulated device does it
-# only: there is one value                            told: a fact of the manual, which documents and the diff tell
+# only: there is one value                            told: nothing is done by it; the site and the diff tell
 """
 
 

@@ -25,23 +25,27 @@ class i2c_msg:
 
 
 class SMBus:
-    """A bus with one node. ``errors`` are raised first, one a transaction."""
+    """A bus with one node. ``errors`` are raised first, one a transaction; ``parts`` is how many each had."""
 
     def __init__(self, acp: Any, errors: list[int]) -> None:
         self.acp, self.errors, self.last, self.telecommands = acp, errors, 0, []
+        self.asked: int | None = None
+        self.parts: list[int] = []
 
     def i2c_rdwr(self, *parts: i2c_msg) -> None:
         if self.errors:
             raise OSError(self.errors.pop(0), "remote I/O")
-        write, *read = parts
-        if write.address != self.acp.LINK.i2c_address:
+        self.parts.append(len(parts))
+        if any(part.address != self.acp.LINK.i2c_address for part in parts):
             raise OSError(errno.ENXIO, "no such node")
-        if read:
-            assert read[0].address == write.address and read[0].is_read and len(write.data) == 1
-            read[0].data = self.frame(write.data[0])[: len(read[0].data)]
-        else:
-            self.last = write.data[0]
-            self.telecommands.append(write.data)
+        for part in parts:
+            if part.is_read:
+                part.data = self.frame(self.asked)[: len(part.data)]
+            elif len(part.data) == 1 and part.data[0] in self.acp.LINK.TELEMETRY:
+                self.asked = part.data[0]
+            else:
+                self.last = part.data[0]
+                self.telecommands.append(part.data)
 
     def frame(self, id: int) -> bytes:
         """What the node has under an id."""

@@ -171,6 +171,13 @@ def test_a_transaction_that_the_node_does_not_take_is_made_again(acp, wire):
         session.get(acp.Identification)
 
 
+def test_a_read_that_wants_a_stop_before_it_is_a_transaction_of_its_own(acp, wire):
+    for link, parts in (acp.LINK, [2]), (acp.LINK._replace(i2c_repeated_start=False), [1, 1]):
+        bus = smbus_fake.SMBus(acp, [])
+        assert wire.Session(link, bus).get(acp.Identification).node_type == acp.NODE_TYPE
+        assert bus.parts == parts
+
+
 def test_other_errors_of_an_i2c_bus_are_raised(acp, wire):
     session = wire.Session(acp.LINK, smbus_fake.SMBus(acp, [errno.EBADF]))
     with pytest.raises(OSError, match="remote"):

@@ -1,7 +1,7 @@
 //! Clients over ports that have the traits of `embedded-io` and `embedded-hal`, as drivers of microcontrollers have.
 
 use icd::cubeacp::{self, CurrentAdcsState};
-use icd::wire::{uart, Client, Event};
+use icd::wire::{uart, Client, Event, Link, Linked, Request};
 use receiver::receiver::{self as ubx, EndOfEpoch, NavigationClock};
 use receiver::wire::{stream, Direction, PortError};
 use std::collections::VecDeque;
@@ -83,6 +83,23 @@ fn over_uart() {
     assert!(ended && client.deadline().is_none());
 }
 
+fn over_i2c_with_a_stop() {
+    let mut link = *cubeacp::LINK.link();
+    link.i2c_repeated_start = false;
+    let (mut bus, mut found) = (Bus::default(), Vec::new());
+    let link: &'static Link = Box::leak(Box::new(link));
+    let mut client = Client::<(), { cubeacp::LONGEST }>::i2c(link).unwrap();
+    client.start(0, &Request::telemetry(132)).unwrap();
+    client
+        .poll_i2c(0, &mut bus, |event| {
+            if let Event::Done { data, .. } = *event {
+                found.extend_from_slice(data);
+            }
+        })
+        .unwrap();
+    assert_eq!((found, bus.transactions), (STATE[1..].to_vec(), 2));
+}
+
 fn over_envelopes() {
     type Receiver = stream::Client<ubx::Node, { ubx::LONGEST }, { ubx::SEQUENCES }, 2>;
     let (mut port, mut line) = (Serial::default(), [0; ubx::LONGEST]);
@@ -132,6 +149,7 @@ fn over_envelopes() {
 #[derive(Default)]
 struct Bus {
     asked: Vec<u8>,
+    transactions: u32,
     is_silent: bool,
 }
 
@@ -156,6 +174,7 @@ impl embedded_hal::i2c::I2c for Bus {
     ) -> Result<(), NoAcknowledge> {
         use embedded_hal::i2c::Operation::{Read, Write};
         assert_eq!(address, ADDRESS);
+        self.transactions += 1;
         for part in parts {
             match part {
                 _ if self.is_silent => return Err(NoAcknowledge),
@@ -178,6 +197,7 @@ fn over_i2c() {
         .unwrap();
     assert_eq!(found.unwrap().to_bytes().unwrap()[..], STATE[1..]);
     assert_eq!(bus.asked, [132]);
+    assert_eq!(bus.transactions, 1);
     bus.is_silent = true;
     client.request::<CurrentAdcsState>(10).unwrap();
     assert_eq!(client.poll_i2c(10, &mut bus, |_| ()), Err(NoAcknowledge));
@@ -194,4 +214,5 @@ fn main() {
     over_uart();
     over_envelopes();
     over_i2c();
+    over_i2c_with_a_stop();
 }

@@ -46,6 +46,23 @@ def _schema() -> dict[str, Any]:
     return schema
 
 
+def protocol() -> dict[str, Any]:
+    """The form of the protocol section."""
+    found: dict[str, Any] = _schema()["$defs"]["protocol"]
+    return found
+
+
+def inside(form: dict[str, Any], key: str) -> dict[str, Any]:
+    """The form of a key of a mapping; empty if any name may stand there, or nothing."""
+    found: dict[str, Any] = (_follow(form) if "$ref" in form else form).get("properties", {}).get(key, {})
+    return found
+
+
+def meaning(form: dict[str, Any]) -> str:
+    """What a key means, in the words of the format."""
+    return str(form.get("description", "") or ("$ref" in form and _follow(form).get("description", "")) or "")
+
+
 @cache
 def _validator(document: str) -> Any:
     import jsonschema_rs
@@ -144,10 +161,7 @@ def _follow(node: dict[str, Any]) -> dict[str, Any]:
 
 
 def _about(rule: dict[str, Any], key: str) -> str:
-    shape = rule.get("properties", {}).get(key, {})
-    if "$ref" in shape:
-        shape = _follow(shape)
-    return str(shape.get("description", ""))
+    return meaning(inside(rule, key))
 
 
 def _describe(value: object) -> str:

@@ -54,6 +54,7 @@ class Facts:
     acknowledge: Acknowledge | None
     polled: Polled | None
     i2c_address: int | None
+    i2c_repeated_start: bool  # else a read is a transaction of its own
     can: Can | None
     errors: dict[str, int]  # none, unknown_id, length, parameter, checksum
     checksum: Checksum | None
@@ -146,6 +147,7 @@ def of(icd: Icd, node: Node) -> Facts:
         acknowledge=reader.acknowledge(),
         polled=reader.polled(),
         i2c_address=reader.i2c_address(),
+        i2c_repeated_start=reader.i2c_repeated_start(),
         can=reader.can(),
         errors={key: code for key, code in reader.section("errors").items() if isinstance(code, int)},
         checksum=reader.checksum(),

@@ -107,6 +107,10 @@ class Reader:
         eight = given.get("address_8bit")
         return given.get("address_7bit", None if eight is None else eight >> 1)
 
+    def i2c_repeated_start(self) -> bool:
+        """Whether a read may follow its write without a stop."""
+        return "repeated start" in self.section("i2c").get("telemetry_request", ("repeated start",))
+
     def can(self) -> Can | None:
         given = self.section("can")
         if not {"identifier", "message_types", "telecommand", "telemetry"} <= set(given):

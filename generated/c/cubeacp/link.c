@@ -1088,6 +1088,7 @@ ICDGEN_API const icd_link_t *cubeacp_link(void)
         &framing, /* framing of the UART */
         &acknowledge, /* acknowledges on the UART */
         87, /* I2C address */
+        true, /* I2C: a read may follow its write without a stop */
         5000, /* boot time in ms */
         &polled, /* what is polled for an acknowledge */
         &can, /* CAN */

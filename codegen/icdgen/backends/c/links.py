@@ -108,6 +108,7 @@ class _Tables:
             Row(self.part("framing", known.framing, "uart.framing"), "framing of the UART"),
             Row(self.part("acknowledge", known.acknowledge, "uart.acknowledge"), "acknowledges on the UART"),
             Row(or_none(known.i2c_address), "I2C address"),
+            Row(boolean(known.i2c_repeated_start), "I2C: a read may follow its write without a stop"),
             Row(or_none(known.boot_ms), "boot time in ms"),
             Row(self.named_step("polled", link.polled), "what is polled for an acknowledge"),
             Row(self.can(), "CAN"),

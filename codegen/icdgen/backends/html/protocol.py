@@ -3,36 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any, NamedTuple
 
-from icdgen.backends.html import envelopes, sequences, texts
+from icdgen.backends.html import all_facts, envelopes, sequences, texts
+from icdgen.backends.html.all_facts import Row, as_text, sentence, value_text
 from icdgen.backends.html.relations import Place, Relations
 from icdgen.icd.model import Enum, Node
 from icdgen.protocol import facts
-from icdgen.protocol.declared import Fact, Kind, facts_of
+from icdgen.protocol.declared import facts_of
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import CanPart, Crc, Step
+from icdgen.protocol.sections import CanPart, Crc
 
 _WIDTH = 720
-
-
-class Row(NamedTuple):
-    """A fact: what it is, its value, and why that is assumed, if it is."""
-
-    about: str
-    value: str
-    why: str = ""
-    url: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Part:
-    """A table of facts; ``anchor`` is unique in the page."""
-
-    anchor: str
-    title: str
-    rows: list[Row]
 
 
 class Box(NamedTuple):
@@ -54,6 +37,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
     """Values of the page."""
     known, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
     checks, sums = _checks(known, section), envelopes.sums(section, known)
+    parts = all_facts.of_code(relations, known)
     computed = [(name, crc) for name, crc, _ in checks] + [(one.name, one.crc) for one in sums if one.crc]
     return {
         "node": node,
@@ -68,14 +52,17 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         ],
         "calculator": texts.script_json([{"name": name, **_plain(crc)} for name, crc in computed]) if computed else "",
         "identifier": _identifier(known, section),
-        "types": section.get("can", {}).get("message_types", {}).get("values", []),
+        "types": [
+            Row(f"{one['value']} · {one['name']}", one.get("summary", ""))
+            for one in section.get("can", {}).get("message_types", {}).get("values", ())
+        ],
         "errors": errors(relations, node, known, section),
         "acknowledges": sequences.acknowledges(relations, node, known),
         "procedures": sequences.procedures(relations, node, known),
-        "times": [(part, row) for part in parts(relations, known) for row in part.rows if row.value.endswith(" ms")],
-        "parts": parts(relations, known),
+        "times": [(part, row) for part in parts for row in part.rows if row.value.endswith(" ms")],
+        "parts": all_facts.with_others(relations, known, parts, section),
         "assumptions": [
-            Row(f"{one.section}: {one.key.replace('_', ' ')}", _text(one.value), one.why) for one in known.assumptions
+            Row(f"{one.section}: {one.key.replace('_', ' ')}", as_text(one.value), one.why) for one in known.assumptions
         ],
     }
 
@@ -164,7 +151,7 @@ def _plain(crc: Crc) -> dict[str, object]:
 
 def _crc_rows(crc: Crc) -> list[Row]:
     return [
-        Row(_sentence(fact.about), _value(fact, getattr(crc, fact.name)))
+        Row(sentence(fact.about), value_text(fact, getattr(crc, fact.name)))
         for fact in facts_of(Crc)
         if getattr(crc, fact.name) is not None
     ]
@@ -186,64 +173,6 @@ def errors(relations: Relations, node: Node, known: Facts, section: dict[str, An
 def _enum(relations: Relations, node: Node, name: object) -> Enum | None:
     nodes = [node, *relations.icd.included(node)]
     return next((enum for one in nodes for enum in one.enums if enum.name == name), None)
-
-
-def parts(relations: Relations, known: Facts) -> list[Part]:
-    """Every fact that is declared, by the section of the ICD that it stands in."""
-    why = {(one.section, one.key): one.why for one in known.assumptions}
-    found = []
-    for path, thing in _things(known):
-        rows = []
-        for fact in facts_of(thing):
-            value = getattr(thing, fact.name)
-            if value is None or value == ():
-                continue
-            url = relations.links.message(value.message) if isinstance(value, Step) else ""
-            rows.append(Row(_sentence(fact.about), _value(fact, value), why.get((path, fact.key), ""), url))
-        if rows:
-            found.append(Part(f"facts-{path.replace('.', '-')}", path.replace(".", ": ").replace("_", " "), rows))
-    return found
-
-
-def _things(known: Facts) -> Iterator[tuple[str, object]]:
-    named = {
-        "client": known.client, "uart.framing": known.framing, "uart.acknowledge": known.acknowledge, "can": known.can,
-        "can.extended": known.can and known.can.extended, "crc8": known.checksum, "log_mask": known.mask,
-        "telemetry_log": known.log_file, "unsolicited_log": known.log_message, "index_file": known.index,
-        "file_transfer": known.files, "file_transfer.hole_map": known.hole_map,
-    }  # fmt: skip
-    yield from ((path, thing) for path, thing in named.items() if thing is not None)
-    for name, one in (known.files.procedures if known.files else {}).items():
-        yield f"file_transfer.{name}", one
-    for name, operation in (("program_copy", known.program_copy), ("program_information", known.program_information)):
-        if operation is not None:
-            yield name, operation
-
-
-def _value(fact: Fact, value: object) -> str:
-    if fact.kind is Kind.TIME:
-        return f"{value:,} ms"
-    if fact.kind in (Kind.OCTET, Kind.CODE) and isinstance(value, int):
-        return f"0x{value:02X}"
-    if isinstance(value, Step):
-        return value.message.name
-    if fact.kind is Kind.SPAN and isinstance(value, tuple):
-        return f"bytes {value[0]} to {value[0] + value[1] - 1}"
-    return _text(value)
-
-
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
-
-
-def _text(value: object) -> str:
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, (tuple, list)):
-        return ", ".join(_text(one) for one in value)
-    if isinstance(value, dict):
-        return ", ".join(f"{key} {_text(one)}" for key, one in value.items() if key != "assumptions")
-    return f"{value:,}" if isinstance(value, int) else "" if value is None else str(value)
 
 
 def entries(relations: Relations, node: Node, url: str) -> Iterator[tuple[str, str, Place]]:

@@ -81,6 +81,7 @@ class _Maker:
             "acknowledge": self.part(facts.acknowledge, "uart.acknowledge"),
             "polled": self.noted_rest(self.polled(), "i2c.acknowledge"),
             "i2c_address": facts.i2c_address,
+            "i2c_repeated_start": None if facts.i2c_repeated_start else False,
             "can": self.can(),
             "checksum": self.checksum(),
             "crc16": self.part(facts.crc16, "crc16"),

@@ -118,6 +118,7 @@ class _Literal:
                 self.assumed.why("uart.acknowledge", "data"),
             ),
             part("i2c_address", some(known.i2c_address)),
+            part("i2c_repeated_start", spelled(known.i2c_repeated_start)),
             part("polled", some(_polled(link.polled))),
             part("can", some(self.can())),
             part("checksum", some(self.checksum())),

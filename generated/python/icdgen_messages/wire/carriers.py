@@ -108,12 +108,12 @@ def _is_foreign(found: Any) -> bool:
 
 
 class I2cCarrier:
-    """An I2C bus of smbus2; a read follows its write by a repeated start."""
+    """An I2C bus of smbus2; ``joins``: a read follows its write by a repeated start."""
 
     bus: Bus = "i2c"
 
-    def __init__(self, port: I2cBus, address: int) -> None:
-        self._port, self._address = port, address
+    def __init__(self, port: I2cBus, address: int, joins: bool) -> None:
+        self._port, self._address, self._joins = port, address, joins
         self._message = _beside(port, "i2c_msg")
 
     def send(self, client: Any) -> None:
@@ -143,7 +143,8 @@ class I2cCarrier:
         if count:
             parts.append(self._message.read(self._address, count))
         try:
-            self._port.i2c_rdwr(*parts)
+            for one in [parts] if self._joins else [[part] for part in parts]:
+                self._port.i2c_rdwr(*one)
         except OSError as error:
             if error.errno not in _NOT_ANSWERED:
                 raise
@@ -176,7 +177,9 @@ def carrier_of(
     if isinstance(port, socket.socket):
         return ByteCarrier(*socket_port(port))
     if hasattr(port, "i2c_rdwr"):
-        return I2cCarrier(cast(I2cBus, port), link.i2c_address or 0)
+        return I2cCarrier(
+            cast(I2cBus, port), link.i2c_address or 0, link.i2c_repeated_start
+        )
     if hasattr(port, "recv") and hasattr(port, "send"):
         return CanCarrier(cast(CanBus, port))
     if hasattr(port, "read") and hasattr(port, "write"):

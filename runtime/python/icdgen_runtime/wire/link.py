@@ -408,6 +408,8 @@ class Facts(NamedTuple):
     acknowledge: Optional[Acknowledge] = None
     polled: Optional[Polled] = None
     i2c_address: Optional[int] = None
+    i2c_repeated_start: bool = True
+    """Whether a read may follow its write without a stop."""
     can: Optional[Can] = None
     checksum: Optional[Checksum] = None
     crc16: Optional[CrcForm] = None

@@ -6,8 +6,9 @@ use super::{head, Client, NodeEvent};
 use embedded_hal::i2c::I2c;
 
 impl<T, const N: usize> Client<T, N> {
-    /// I2C: lets time pass, and makes the transactions that are due. One that fails is told to the client,
-    /// which asks again; so does this.
+    /// I2C: lets time pass, and makes the transactions that are due: a read after its write by a repeated
+    /// start, or after a stop if the ICD says so. One that fails is told to the client, which asks again; so
+    /// does this.
     ///
     /// # Errors
     ///
@@ -19,13 +20,19 @@ impl<T, const N: usize> Client<T, N> {
         mut on_event: impl FnMut(NodeEvent<'_, T>),
     ) -> Result<(), B::Error> {
         self.tick(now, &mut on_event);
-        let address = self.machine.link.i2c_address.unwrap_or(0);
+        let link = self.machine.link;
+        let address = link.i2c_address.unwrap_or(0);
         let mut result = Ok(());
         let mut input = [0; N];
         while let Some(transaction) = self.output_transaction() {
             let size = transaction.read;
             let made = match input.get_mut(..size) {
-                Some(read) if size > 0 => bus.write_read(address, transaction.write, read),
+                Some(read) if size > 0 && link.i2c_repeated_start => {
+                    bus.write_read(address, transaction.write, read)
+                }
+                Some(read) if size > 0 => bus
+                    .write(address, transaction.write)
+                    .and_then(|()| bus.read(address, read)),
                 _ => bus.write(address, transaction.write),
             };
             let bytes = made.is_ok().then(|| head(&input, size));

@@ -53,6 +53,8 @@ pub struct Link {
     pub acknowledge: Option<Acknowledge>,
     /// The address on the I2C bus, of 7 bits.
     pub i2c_address: Option<u8>,
+    /// Whether a read may follow its write on the I2C bus without a stop.
+    pub i2c_repeated_start: bool,
     /// The frame that tells what became of a telecommand, for I2C.
     pub polled: Option<Polled>,
     /// CAN.

@@ -127,6 +127,7 @@ pub static LINK: NodeLink<crate::bootloader::Node> = NodeLink::new(link::Link {
         error_at: 1,
     }),
     i2c_address: Some(87),
+    i2c_repeated_start: true,
     polled: Some(link::Polled {
         frame: 240,
         id: &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }],
