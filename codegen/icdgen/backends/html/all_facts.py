@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from icdgen.backends.html.relations import Relations
@@ -52,7 +52,7 @@ def of_code(relations: Relations, known: Facts) -> list[Part]:
 
 
 def with_others(relations: Relations, known: Facts, parts: list[Part], section: Mapping[str, Any]) -> list[Part]:
-    """The facts that code is made from, and behind those of each part what else the ICD says there: names, units and words."""
+    """The facts that code is made from, and behind those of each section what else the ICD says there: names, units and words."""
     urls = {one.name: relations.links.message(one) for one in relations.icd.messages_of(known.node)}
     read = {f"{path}.{fact.key}" for path, thing in _things(known) for fact in facts_of(thing)}
     read |= {f"{path}.{fact.key}" for path in ("crc8", "crc16") for fact in facts_of(Crc)}
@@ -61,11 +61,15 @@ def with_others(relations: Relations, known: Facts, parts: list[Part], section: 
         if ".".join((*path, key)) in read:
             continue
         if isinstance(value, list) and value and isinstance(value[0], Mapping):
-            part = _part(".".join((*path, key)), [_entry(one) for one in value])
+            path, rows = (*path, key), [_entry(one) for one in value]
         else:
             url = urls.get(value, "") if isinstance(value, str) else ""
-            part = _part(".".join(path), [Row(_about(form, key), _said_text(form, key, value), "", url)])
-        found.setdefault(part.anchor, replace(part, rows=[])).rows.extend(part.rows)
+            rows = [Row(_about(form, key), _said_text(form, key, value), "", url)]
+        part = _part(path[0], [])
+        before = "".join(f"{one.replace('_', ' ')}: " for one in path[1:])
+        found.setdefault(part.anchor, part).rows.extend(
+            row._replace(about=sentence(before + row.about)) for row in rows
+        )
     return list(found.values())
 
 
