@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.conftest import ROOT
+from tests.rust import harness
 from tests.rust.tools import STD, Toolchain, run, toolchains
 
 PROGRAM = Path(__file__).with_name("session.rs")
@@ -31,6 +33,13 @@ def test_sessions_outlive_their_port_and_requests_are_given_up(shipped, tmp_path
     tools = Toolchain("default")
     library = Toolchain("default").library(shipped.crate, "0", *STD)
     run(tools.program(PROGRAM, library, tmp_path / "program"))
+
+
+@pytest.mark.parametrize("name", list(toolchains()))
+def test_sessions_over_envelopes_ask_again_listen_and_outlive_their_port(name, tmp_path):
+    tools = Toolchain(name)
+    crate = harness.generate(harness.read(ROOT / "examples" / "links" / "ubx.yaml"), tmp_path)
+    run(tools.program(PROGRAM.with_name("stream_session.rs"), tools.library(crate, "0", *STD), tmp_path / "program"))
 
 
 @pytest.mark.parametrize("name", list(toolchains()))

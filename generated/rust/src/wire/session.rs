@@ -24,7 +24,7 @@ pub enum Failure {
     /// The node refused the request.
     Refused {
         /// The id.
-        id: u8,
+        id: u32,
         /// The error code.
         code: Option<u32>,
         /// What the ICD says of the code.
@@ -33,7 +33,7 @@ pub enum Failure {
     /// The node did not answer.
     Timeout {
         /// The id.
-        id: u8,
+        id: u32,
         /// How often it was asked.
         attempts: u16,
     },
@@ -90,6 +90,43 @@ impl std::error::Error for Failure {
     }
 }
 
+/// A port, and the time since it was handed over.
+pub(super) struct Waiting<P> {
+    port: P,
+    began: Instant,
+}
+
+impl<P: Read + Write> Waiting<P> {
+    pub(super) fn new(port: P) -> Self {
+        let began = Instant::now();
+        Self { port, began }
+    }
+
+    /// Milliseconds, which may wrap.
+    #[allow(clippy::cast_possible_truncation)]
+    pub(super) fn now(&self) -> u32 {
+        self.began.elapsed().as_millis() as u32
+    }
+
+    /// What has come after as long as the port's `read` waits.
+    pub(super) fn read<'a>(&mut self, input: &'a mut [u8; 512]) -> io::Result<&'a [u8]> {
+        match self.port.read(input) {
+            Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
+            Ok(count) => Ok(super::bits::head(input, count)),
+            Err(error) if came_to_nothing(&error) => Ok(&[]),
+            Err(error) => Err(error),
+        }
+    }
+
+    pub(super) fn write(&mut self, line: &[u8]) -> io::Result<()> {
+        if !line.is_empty() {
+            self.port.write_all(line)?;
+            self.port.flush()?;
+        }
+        Ok(())
+    }
+}
+
 type OnEvent<T> = Box<dyn FnMut(&NodeEvent<'_, T>)>;
 
 /// Asks, and waits for the outcome, over a UART or whatever carries its bytes; `N` is the node's
@@ -111,8 +148,7 @@ type OnEvent<T> = Box<dyn FnMut(&NodeEvent<'_, T>)>;
 /// ```
 pub struct Session<T, P, const N: usize> {
     client: Client<T, N>,
-    port: P,
-    began: Instant,
+    port: Waiting<P>,
     on_event: OnEvent<T>,
 }
 
@@ -125,8 +161,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     pub fn new<L: Linked<Node = T>>(link: &'static L, port: P) -> Result<Self, Error> {
         Ok(Self {
             client: Client::uart(link)?,
-            port,
-            began: Instant::now(),
+            port: Waiting::new(port),
             on_event: Box::new(|_| {}),
         })
     }
@@ -158,7 +193,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     ///
     /// [`Failure`]
     pub fn get<M: TelemetryOf<T>>(&mut self) -> Result<M, Failure> {
-        self.client.request::<M>(self.now())?;
+        self.client.request::<M>(self.port.now())?;
         Ok(M::read(&self.outcome()?)?)
     }
 
@@ -168,7 +203,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     ///
     /// [`Failure`]
     pub fn send<M: TelecommandOf<T>>(&mut self, message: &M) -> Result<(), Failure> {
-        match self.client.send(self.now(), message)? {
+        match self.client.send(self.port.now(), message)? {
             Started::Done => self.flushed(),
             Started::Waiting => self.outcome().map(|_| ()),
         }
@@ -180,7 +215,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     ///
     /// [`Failure`]
     pub fn start(&mut self, request: &Request<'_>) -> Result<Vec<u8>, Failure> {
-        match self.client.start(self.now(), request)? {
+        match self.client.start(self.port.now(), request)? {
             Started::Done => self.flushed().map(|()| Vec::new()),
             Started::Waiting => self.outcome(),
         }
@@ -198,7 +233,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
 
     fn driven(&mut self, procedure: &mut (impl Procedure + ?Sized)) -> Result<(), Failure> {
         loop {
-            while self.client.advance(self.now(), procedure)? {
+            while self.client.advance(self.port.now(), procedure)? {
                 self.flush()?;
             }
             match procedure.result() {
@@ -249,13 +284,8 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     fn wait(&mut self, mut on_event: impl FnMut(u32, &Event<'_>)) -> Result<(), Failure> {
         self.flush()?;
         let mut input = [0; 512];
-        let bytes = match self.port.read(&mut input) {
-            Ok(0) => return Err(io::Error::from(ErrorKind::UnexpectedEof).into()),
-            Ok(count) => super::bits::head(&input, count),
-            Err(error) if came_to_nothing(&error) => &[],
-            Err(error) => return Err(error.into()),
-        };
-        let now = self.now();
+        let bytes = self.port.read(&mut input)?;
+        let now = self.port.now();
         let told = &mut self.on_event;
         self.client.received(now, bytes, |event| {
             on_event(now, &event);
@@ -269,17 +299,8 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
         while let Some(bytes) = self.client.output() {
             line.extend_from_slice(bytes);
         }
-        if !line.is_empty() {
-            self.port.write_all(&line)?;
-            self.port.flush()?;
-        }
+        self.port.write(&line)?;
         Ok(())
-    }
-
-    /// Milliseconds, which may wrap.
-    #[allow(clippy::cast_possible_truncation)]
-    fn now(&self) -> u32 {
-        self.began.elapsed().as_millis() as u32
     }
 }
 
@@ -294,8 +315,14 @@ fn outcome_of(event: &Event<'_>) -> Option<Result<Vec<u8>, Failure>> {
         Event::Done { data, .. } => Some(Ok(data.to_vec())),
         Event::Refused {
             id, code, reason, ..
-        } => Some(Err(Failure::Refused { id, code, reason })),
-        Event::Timeout { id, attempts } => Some(Err(Failure::Timeout { id, attempts })),
+        } => {
+            let id = id.into();
+            Some(Err(Failure::Refused { id, code, reason }))
+        }
+        Event::Timeout { id, attempts } => {
+            let id = id.into();
+            Some(Err(Failure::Timeout { id, attempts }))
+        }
         _ => None,
     }
 }

@@ -8,6 +8,8 @@ mod field;
 mod judge;
 mod request;
 mod sender;
+#[cfg(feature = "std")]
+mod session;
 mod slots;
 
 pub use self::client::{Client, NodeEvent};
@@ -16,3 +18,5 @@ pub use self::encoder::{encode, Values};
 pub use self::judge::Event;
 pub use self::request::Request;
 pub use self::sender::Sender;
+#[cfg(feature = "std")]
+pub use self::session::Session;
