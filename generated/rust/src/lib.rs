@@ -38,8 +38,8 @@
 //!
 //! Nothing here panics or allocates, whatever the bytes.
 //!
-//! Features, none of them on by default: `std` (`std::error::Error` for errors, and `wire::Session`),
-//! `core_error` (`core::error::Error` without `std`; Rust 1.81, all else needs 1.63),
+//! Features, none of them on by default: `std` (`std::error::Error` for errors, and the sessions of
+//! [`wire`]), `core_error` (`core::error::Error` without `std`; Rust 1.81, all else needs 1.63),
 //! `serde` (`Serialize` and `Deserialize`; enumerations as their number), `defmt` (`defmt::Format`).
 
 #![no_std]
