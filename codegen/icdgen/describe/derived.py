@@ -36,8 +36,10 @@ def derived(field: FieldDescription, taken: Collection[str] = ()) -> Derived:
     how = field.model.derived
     assert how is not None
     known = {one.model.name: one for one in field.message.all_fields}
-    fields = tuple((_free(known[name].name, taken), known[name]) for name in how.fields)
-    names = [name for name, _ in fields]
+    names: list[str] = []
+    for name in how.fields:
+        names.append(_free(known[name].name, {*taken, *names}))
+    fields = tuple((name, known[of]) for name, of in zip(names, how.fields, strict=True))
     row: list[Operand] = [*names, *how.numbers]
     statements = []
     for number, (operator, left, right) in enumerate(how.steps, 1):

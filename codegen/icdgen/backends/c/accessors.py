@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from icdgen.backends.c import decoding, physical
 from icdgen.backends.c.names import stem
+from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.statement import call
 from icdgen.backends.c.text import WIDTH, described
 from icdgen.backends.c.types import type_of
@@ -43,7 +44,7 @@ def accessors(message: Composite[Any]) -> list[Accessor]:
 
 
 def _derived(field: FieldDescription) -> Accessor:
-    found = derived(field, taken=("message",))
+    found = derived(field, taken=RESERVED | {"message"})
     lines = [_constant(f"const double {name}", _as_double(one)) for name, one in found.fields]
     for name, operator, *both in found.statements:
         left, right = (one if isinstance(one, str) else repr(one) for one in both)
