@@ -33,7 +33,10 @@ const icdgenCodec = (() => {
     if (!tail) return raw;
     const counter = counterOf(message);
     if (message.fields[counter].implied) raw[counter] = BigInt(count);
-    else if (raw[counter] !== BigInt(count - plusOf(message))) throw misfit(message, Math.max(0, tail.least + (Number(raw[counter]) + plusOf(message)) * tail.step - (frame.length - actual)), actual);
+    else if (raw[counter] !== BigInt(count - plusOf(message))) {
+      const told = BigInt(tail.least - (frame.length - actual)) + (raw[counter] + BigInt(plusOf(message))) * BigInt(tail.step);
+      throw misfit(message, told > 0n ? told : 0n, actual);
+    }
     return raw;
   }
 

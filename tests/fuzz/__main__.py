@@ -20,6 +20,7 @@ from tests.conformance import odd
 from tests.conformance.build import BuildError, cache_folder, execute, generated
 from tests.conformance.icds import icd_of
 from tests.conformance.languages import Language
+from tests.conftest import ROOT
 
 HERE = Path(__file__).parent
 LONGEST = 1024
@@ -268,7 +269,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--seconds", type=int, default=60, help="how long (default: %(default)s)")
     parser.add_argument("--jobs", type=int, default=1, help="processes (default: %(default)s)")
     parser.add_argument("--odd", action="store_true", help="the odd ICDs of the conformance tests")
-    parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
+    parser.add_argument(
+        "icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/, of envelopes examples/links/)"
+    )
     options = parser.parse_intermixed_args(arguments)
     folder = cache_folder().resolve() / f"fuzz-{options.lang}"
     corpus = folder / "corpus"
@@ -277,14 +280,17 @@ def main(arguments: list[str] | None = None) -> int:
     if options.odd:
         (folder / "odd").mkdir(exist_ok=True)
         options.icds.append(odd.write(folder / "odd"))
-    icd = icd_of(options.icds)
+    icd = icd_of(options.icds or [ROOT / "examples" / "links"] * options.lang.endswith("-stream"))
+    for number, seed in enumerate(SEEDS.get(options.lang, seeds)(icd)):
+        (corpus / f"seed-{number:05}").write_bytes(seed)
+    if not any(corpus.iterdir()):
+        print("these ICDs have nothing that the harness takes: name others", file=sys.stderr)
+        return 2
     try:
         command, more = HARNESSES[options.lang](icd, folder)
     except BuildError as error:
         print(error, file=sys.stderr)
         return 2
-    for number, seed in enumerate(SEEDS.get(options.lang, seeds)(icd)):
-        (corpus / f"seed-{number:05}").write_bytes(seed)
     command += [f"-max_total_time={options.seconds}", f"-max_len={LONGEST}", "-timeout=20", "-print_final_stats=1"]
     if options.jobs > 1:
         command += [f"-fork={options.jobs}"]
