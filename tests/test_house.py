@@ -14,13 +14,8 @@ import yaml
 from tests.conftest import ROOT
 
 PYTHON = [name for name in ("codegen", "tests", "bench", "examples", "scripts") if (ROOT / name).is_dir()]
-CACHES = {
-    ".ruff_cache",
-    ".mypy_cache",
-    ".pytest_cache",
-    "__pycache__",
-    "target",
-}  # of tools that ran in a folder of ours
+# Of tools that ran in a folder of ours.
+CACHES = {".ruff_cache", ".mypy_cache", ".pytest_cache", "__pycache__", "target"}
 
 
 def test_generated_is_what_the_backends_make_of_the_shipped_icds():

@@ -51,7 +51,7 @@ def test_a_part_has_its_facts_in_the_order_in_which_they_are_declared():
 
 @pytest.mark.parametrize(("path", "fact"), [(path, fact) for path, fact in FACTS if fact.key and fact.most is not None])
 def test_the_format_refuses_what_a_fact_cannot_be(path, fact):
-    section = schema._schema()["$defs"]["protocol"]
+    section = schema.protocol()
     for key in f"{path}.{fact.key}".split("."):
         section = section["additionalProperties"] if key == "*" else section["properties"][key]
     if fact.kind is Kind.OCTET:

@@ -52,7 +52,7 @@ class Key(NamedTuple):
 
 def all_keys() -> list[Key]:
     """All keys of the protocol section that hold a value, by the JSON Schema."""
-    return list(_keys(schema._schema()["$defs"]["protocol"], ()))
+    return list(_keys(schema.protocol(), ()))
 
 
 def _keys(form: dict[str, Any], path: tuple[str, ...]) -> Iterator[Key]:

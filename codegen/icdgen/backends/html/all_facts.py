@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from icdgen.backends.html.relations import Relations
@@ -56,7 +56,7 @@ def with_others(relations: Relations, known: Facts, parts: list[Part], section: 
     urls = {one.name: relations.links.message(one) for one in relations.icd.messages_of(known.node)}
     read = {f"{path}.{fact.key}" for path, thing in _things(known) for fact in facts_of(thing)}
     read |= {f"{path}.{fact.key}" for path in ("crc8", "crc16") for fact in facts_of(Crc)}
-    found = {part.anchor: part for part in parts}
+    found = {part.anchor: replace(part, rows=[*part.rows]) for part in parts}
     for path, key, form, value in _said(schema.protocol(), section, ()):
         if ".".join((*path, key)) in read:
             continue

@@ -229,7 +229,8 @@ def _i2c(message: Message, wire: Wire, data: bytes) -> Bus | None:
         lines.append(Line("Telecommand", sent))
         lines += _with_crc(wire, "telecommand", message.telecommand_id, data, sent)
     if message.telemetry_id is not None:
-        again = Chunk("note", "repeated start", " or ".join(wire.section["i2c"].get("telemetry_request", [])))
+        how = "repeated start" if wire.facts.i2c_repeated_start else "stop and start"
+        again = Chunk("note", how, " or ".join(wire.section["i2c"].get("telemetry_request", [])))
         read = Chunk("frame", f"{address << 1 | 1:02X}", "address, read")
         answer = [write, _id(message.telemetry_id), again, read, *_data(data)]
         lines.append(Line("Request and answer", answer))

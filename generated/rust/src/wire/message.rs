@@ -13,7 +13,8 @@ pub trait TelemetryOf<T>: Telemetry {
     ///
     /// # Errors
     ///
-    /// Those of [`Message::from_bytes`](crate::Message::from_bytes); [`Error::UnknownId`] if it is another message.
+    /// Those of [`Message::from_bytes`](crate::Message::from_bytes); [`Error::UnknownId`] if it is another
+    /// message.
     fn read(bytes: &[u8]) -> Result<Self, Error> {
         Self::from_bytes(bytes)
     }

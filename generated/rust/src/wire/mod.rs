@@ -8,8 +8,8 @@
 //! it takes: those of another node do not compile.
 //!
 //! With the feature `std` there is also a `Session`, for programs that may wait: a client over any port
-//! that reads and writes, and a `stream::Session` over envelopes. With `embedded-io` and `embedded-hal` clients have a `poll` and a `poll_i2c`
-//! over the ports of embedded programs.
+//! that reads and writes, and a `stream::Session` over envelopes. With `embedded-io` and `embedded-hal`
+//! clients have a `poll` and a `poll_i2c` over the ports of embedded programs.
 
 mod bits;
 pub mod can;

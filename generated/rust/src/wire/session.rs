@@ -194,7 +194,7 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     /// [`Failure`]
     pub fn get<M: TelemetryOf<T>>(&mut self) -> Result<M, Failure> {
         self.client.request::<M>(self.port.now())?;
-        Ok(M::read(&self.outcome()?)?)
+        Ok(M::read(&self.outcome(Started::Waiting)?)?)
     }
 
     /// Sends a telecommand or a setting, and waits until it is acknowledged, if it is at all.
@@ -203,10 +203,8 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     ///
     /// [`Failure`]
     pub fn send<M: TelecommandOf<T>>(&mut self, message: &M) -> Result<(), Failure> {
-        match self.client.send(self.port.now(), message)? {
-            Started::Done => self.flushed(),
-            Started::Waiting => self.outcome().map(|_| ()),
-        }
+        let started = self.client.send(self.port.now(), message)?;
+        self.outcome(started).map(|_| ())
     }
 
     /// Makes any request; the frame that came.
@@ -215,10 +213,8 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
     ///
     /// [`Failure`]
     pub fn start(&mut self, request: &Request<'_>) -> Result<Vec<u8>, Failure> {
-        match self.client.start(self.port.now(), request)? {
-            Started::Done => self.flushed().map(|()| Vec::new()),
-            Started::Waiting => self.outcome(),
-        }
+        let started = self.client.start(self.port.now(), request)?;
+        self.outcome(started)
     }
 
     /// Runs a procedure to its end.
@@ -253,8 +249,11 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
         self.wait(|_, _| {})
     }
 
-    fn outcome(&mut self) -> Result<Vec<u8>, Failure> {
-        let outcome = self.awaited();
+    fn outcome(&mut self, started: Started) -> Result<Vec<u8>, Failure> {
+        let outcome = match started {
+            Started::Done => self.flush().map(|()| Vec::new()),
+            Started::Waiting => self.awaited(),
+        };
         self.cancelled(outcome)
     }
 
@@ -266,11 +265,6 @@ impl<T, P: Read + Write, const N: usize> Session<T, P, N> {
                 return outcome;
             }
         }
-    }
-
-    fn flushed(&mut self) -> Result<(), Failure> {
-        let sent = self.flush();
-        self.cancelled(sent)
     }
 
     /// A request that failed with its port must not be in the way of the next one.
