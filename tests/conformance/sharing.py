@@ -47,7 +47,9 @@ def sharing(draw, first: dict, names, made, open_end) -> list[dict]:
         if message is first and way == "general":
             moved = [{key: value for key, value in field.items() if key != "const"} for field in moved]
             del selector["const"]
-        message["fields"] = draw(st.permutations([selector, *moved]))
+        parts = iter([field for field in moved if "up_to" in field])  # open parts are written as they stand
+        order = draw(st.permutations([selector, *moved]))
+        message["fields"] = [next(parts) if "up_to" in field else field for field in order]
         message["length"] += size
     longest = max(message["length"] for message in group)
     for message in group if draw(st.booleans()) else ():

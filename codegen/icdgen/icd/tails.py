@@ -156,6 +156,11 @@ def faults_of_place(message: Map, item: Map, structs: Lengths) -> Iterator[Obsta
         return  # perhaps it is not meant to be open
     parts = open_parts(message)
     before = next((one for one, other in pairwise(parts) if other is item), None)
+    written = [one["name"] for one in parts]
+    if item.get("after") in written[written.index(item["name"]) + 1 :]:
+        text = f"{name} comes after `{item['after']}`, which is written behind it"
+        yield Obstacle(item, "after", text, "write open parts in the order in which they stand in a frame")
+        return
     if before is None and "after" in item:
         text = f"{name} comes after `{item['after']}`, and no part in front of it is open"
         yield Obstacle(item, "after", text, "remove `after`: what is open begins where `length` ends")
