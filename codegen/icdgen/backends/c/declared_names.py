@@ -109,8 +109,8 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     for end in ("t", "init", "decode", "encode", "fields", *rare):
         yield message.identifier(FILE, f"{stem}_{end}")
     if message.tail is not None and message.tail.element is not None:
-        for name in (names.reading(message, message.tail), names.writing(message, message.tail)):
-            yield message.identifier(FILE, name)
+        for name in (names.reading, names.writing, *((names.walking,) if not message.inner else ())):
+            yield message.identifier(FILE, name(message, message.tail))
     for part in parts_of(message):
         yield message.identifier(FILE, f"{stem}_{part_name(part.message)}")
     yield from _fields(message)

@@ -84,15 +84,20 @@ def _bytes(count: str, step: int) -> str:
 
 def of_elements(message: MessageDescription, tail: TailDescription) -> list[str]:
     """The statements that read the structs of an open end, each where it stands in ``buffer``."""
-    name, count = tail.part.member, _count(tail)
-    count = f"({count})" if " " in count else count
-    count += f" + {tail.fewest}u" if tail.fewest else ""
+    name = tail.part.member
     return [
         f"(void)memset(message->{name}, 0, sizeof message->{name});",
-        f"for (size_t element = 0u; element < {count}; element++) {{",
+        f"for (size_t element = 0u; element < {there(tail)}; element++) {{",
         f"{STEP}{reading(message, tail)}(&message->{name}[element], &buffer[{element_place(tail)}]);",
         "}",
     ]
+
+
+def there(tail: TailDescription) -> str:
+    """How many elements a frame of ``length`` bytes has."""
+    count = _count(tail)
+    count = f"({count})" if " " in count else count
+    return count + (f" + {tail.fewest}u" if tail.fewest else "")
 
 
 def element_place(tail: TailDescription) -> str:

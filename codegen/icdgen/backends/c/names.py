@@ -30,6 +30,11 @@ def writing(message: MessageDescription, tail: TailDescription) -> str:
     return f"{stem(message)}_write_{tail.part.name}"
 
 
+def walking(message: MessageDescription, tail: TailDescription) -> str:
+    """The function that reads one of a frame that is not decoded."""
+    return f"{stem(message)}_{tail.part.name}_at"
+
+
 def has(field: FieldDescription) -> str:
     """``demo_wheel_has_rate``: the function that tells whether a field is there."""
     return f"{stem(field.message)}_has_{field.name}"
