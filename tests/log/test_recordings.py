@@ -191,6 +191,18 @@ messages:
       - {at: 0, bits: 8, name: Kind, type: uint, const: 2}
       - {at: 8, bits: 8, name: Value, type: int}
   - {name: Nothing, id: 1006, kind: telemetry, length: 0}
+  - name: Behind
+    id: 1007
+    kind: telemetry
+    length: 4
+    fields:
+      - {at: 0, bits: 8, name: Count, type: uint}
+      - {at: 8, bits: 8, name: Size, type: uint}
+      - {at: 16, bits: 8, name: Length, type: uint}
+      - {at: 24, bits: 8, name: Age, type: uint}
+      - {at: 32, name: Points, struct: Point, count: Count, up_to: 3}
+      - {at: 32, after: Points, name: Key, type: bytes, size: Size, up_to: 4}
+      - {at: 32, after: Key, name: Words, type: text, size: Length, up_to: 5}
 """
 
 
@@ -212,7 +224,7 @@ def test_every_kind_of_message_is_what_the_reference_reads(tmp_path):
     for message, data in frames:
         rows = frame(icd, node, message, data).rows
         wanted.append((message.name, [_same(value_of(row)) for row in rows]))
-    assert len({name for name, _ in wanted}) == 8 and len(wanted) > 100
+    assert len({name for name, _ in wanted}) == 9 and len(wanted) > 100
     icd_option = ("--icd", tmp_path / "odd.yaml")
     said = icdgen(tmp_path / "sent", *icd_option, "--format", "jsonl")
     rows = [json.loads(line) for line in said.stdout.splitlines()]

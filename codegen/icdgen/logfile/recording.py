@@ -26,16 +26,22 @@ _PIECE = 1 << 18  # bytes that are read at once
 _MOST_IDS = 64  # unknown ids that are told apart
 _MOST_SAID = 8  # of them that are named
 
+Opened = tuple[bytes, frozenset[str] | None, Mapping[str, int]]
 Key = tuple[str, str]  # of a message: the node that declares it, and its name
 
 
 class Came(NamedTuple):
-    """A message, its data, and what its sender chose of the envelope; ``there``: names of its fields, None: all of them."""
+    """A message and what its sender chose of the envelope.
+
+    ``data`` is as long as the longest frame: what it leaves out is 0. ``there``: names of its fields, None: all of them;
+    ``ends``: the byte at which each open part ends.
+    """
 
     message: Message
     data: bytes
     values: Mapping[str, int]
     there: frozenset[str] | None
+    ends: Mapping[str, int]
 
 
 @dataclass(slots=True)
@@ -152,10 +158,11 @@ class Recording:
         if event.event != "message" or event.id is None:
             tally.fault(event)
             return None
-        message, there = self._message(event), None
+        message = self._message(event)
+        opened: Opened = (event.data, None, {})
         try:
             if message is not None and key(message) not in self._alike:
-                there = _there(self.icd, message, event.data)
+                opened = _opened(self.icd.node(message.node), message, event.data)
         except codec.LengthError:
             message = None
         if message is None:
@@ -163,7 +170,10 @@ class Recording:
             return None
         tally.messages[key(message)] += 1
         tally.sizes[key(message)] += len(event.data)
-        return Came(message, event.data, event.values, there) if key(message) in self.chosen else None
+        if key(message) not in self.chosen:
+            return None
+        data, there, ends = opened
+        return Came(message, data.ljust(message.length, b"\0"), event.values, there, ends)
 
     def _message(self, event: StreamEvent) -> Message | None:
         known = self._known[event.id] if event.id is not None else []
@@ -188,8 +198,11 @@ def key(message: Message) -> Key:
     return message.node, message.name
 
 
-def _there(icd: Icd, message: Message, data: bytes) -> frozenset[str]:
-    """Names of the fields that are there. Raises `icdgen.codec.LengthError` for data that the message cannot have."""
-    raw = codec.decode(icd.node(message.node), message, data)
-    count = codec.count_of(message, raw)
-    return frozenset(one.name for one in message.fields if one.name in raw and codec.is_there(message, one, count))
+def _opened(node: Node, message: Message, data: bytes) -> Opened:
+    """`Came.data`, ``there`` and ``ends``. Raises `icdgen.codec.LengthError` for data that the message cannot have."""
+    raw = codec.decode(node, message, data)
+    there = frozenset(one.name for one in message.fields if one.name in raw and codec.is_sent(message, one, raw))
+    ends = {
+        one.name: (one.begin or message.begin) + codec.elements_of(one, raw) * one.step for one in message.open_parts
+    }
+    return codec.spread(node, message, data) if message.inner else data, there, ends

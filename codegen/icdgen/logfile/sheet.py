@@ -34,8 +34,8 @@ class Sheet:
         self.entries: dict[Key, list[Entry]] = {key(message): [] for message in messages}
         for place, column in enumerate(columns, 1 + len(self.roles)):
             assert column.message and column.field
-            tail = column.message.tail
-            is_cut = tail is not None and tail.name == column.field.name and column.kind == "bytes"
+            parts = {part.name for part in column.message.open_parts}
+            is_cut = column.field.name in parts and column.kind == "bytes"
             self.entries[key(column.message)].append(Entry(place, column, is_cut))
 
     @cached_property
@@ -55,16 +55,16 @@ class Sheet:
             row: list[Value] = [None] * len(self.names)
             row[0] = came.message.name
             row[1 : 1 + len(self.roles)] = [came.values.get(role) for role in self.roles]
-            whole = padded(came)
             for entry, read in readers[key(came.message)]:
                 if is_there(came, entry.column):
-                    row[entry.place] = read(came.data if entry.is_cut else whole)
+                    row[entry.place] = read(came.data[: end_of(came, entry.column)] if entry.is_cut else came.data)
             yield row
 
 
-def padded(came: Came) -> bytes:
-    """The data, as long as the longest of the message: what a frame leaves out reads as 0."""
-    return came.data.ljust(came.message.length, b"\0")
+def end_of(came: Came, column: Column) -> int:
+    """The byte at which the open part ends that a column is."""
+    assert column.field
+    return came.ends[column.field.name]
 
 
 def is_there(came: Came, column: Column) -> bool:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from icdgen.logfile.parquet import ColumnReader, check_installed
 from icdgen.logfile.recording import Came, Key, Tally, key
 from icdgen.logfile.rows import Done
-from icdgen.logfile.sheet import MESSAGE, Entry, Sheet, is_there, padded
+from icdgen.logfile.sheet import MESSAGE, Entry, Sheet, end_of, is_there
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -65,7 +65,7 @@ class _Maker:
         arrays += [pa.array([came.values[role] for came in batch], pa.uint32()) for role in self.sheet.roles]
         for name, readers in self.readers.items():
             here = places.get(name, [])
-            data = b"".join(padded(batch[place]) for place in here)
+            data = b"".join(batch[place].data for place in here)
             for entry, reader in readers:
                 type_ = self.schema.field(entry.place).type
                 arrays.append(self._spread(batch, here, entry, reader, data) if here else pa.nulls(len(batch), type_))
@@ -80,7 +80,9 @@ class _Maker:
             found: list[bytes | None] = [None] * len(batch)
             for place in here:
                 one = batch[place]
-                found[place] = one.data[entry.column.at :] if is_there(one, entry.column) else None
+                found[place] = (
+                    one.data[entry.column.at : end_of(one, entry.column)] if is_there(one, entry.column) else None
+                )
             return pa.array(found, pa.binary())
         which, is_null = np.zeros(len(batch), np.int64), np.ones(len(batch), bool)
         which[here] = np.arange(len(here))
