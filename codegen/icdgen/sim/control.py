@@ -11,16 +11,17 @@ from typing import Any
 
 import yaml
 
+from icdgen import codec
 from icdgen.errors import UserError
-from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.model import Field, Icd, Message, Node, Tail
 from icdgen.sim import faults
 from icdgen.sim.envelopes import EnvelopeLine
 from icdgen.sim.line import Line
 from icdgen.sim.values import raw_of
 from icdgen.values.encode import listed
-from icdgen.values.entry import from_physical
+from icdgen.values.entry import typed
 from icdgen.values.errors import BadValue, NotFound
-from icdgen.values.find import find_array, find_field, find_message, find_node
+from icdgen.values.find import by_name, find_array, find_field, find_message, find_node
 
 Wave = Mapping[str, Any]  # as a script has it
 WAVES = ("sine", "ramp", "steps", "noise")
@@ -81,11 +82,14 @@ class Control:
         if isinstance(value, Mapping):
             self.moving.append((message, one, value))
             return
-        raw = fitting(message, one, value)
-        self.line.computer.settings.values.setdefault(message.name, {})[one.name] = raw
+        raw = {one.name: fitting(message, one, value)}
         values = self.line.computer.program.values
         if message.name in values.frames:
-            values.update(message, {one.name: raw})
+            try:
+                raw = values.update(message, raw)
+            except codec.CodecError as error:
+                raise BadValue(f"{message.name}: {error}") from None
+        self.line.computer.settings.values.setdefault(message.name, {}).update(raw)
 
     def assign(self, name: str, text: str) -> None:
         """``FIELD=VALUE`` of a frame. Raises `icdgen.errors.UserError`."""
@@ -125,17 +129,31 @@ class Control:
 def of_fields(icd: Icd, node: Node, name: str, key: str, value: object) -> list[tuple[Message, Field, object]]:
     """A field of a frame and its value; of an array, each element and its own, from a list or a text of one.
 
-    Raises `icdgen.errors.UserError`.
+    Of an open part it may be a shorter list, and what counts its elements comes first. Raises `icdgen.errors.UserError`.
     """
     message = locate_message(icd, node, name)
     vocabulary = find_node(icd, message.node).vocabulary
     elements = find_array(message, key, vocabulary)
-    if not elements:
+    parts = by_name([one for one in message.members if open_part(message, one)], key, vocabulary)
+    part = open_part(message, parts[0]) if parts else None
+    is_none = part is not None and str(value).strip() == "[]"
+    if not elements and not is_none:
         return [(message, find_field(message, key, vocabulary), value)]
     if isinstance(value, Mapping):
         return [(message, one, value) for one in elements]
-    texts = listed(key, str(value), len(elements))
-    return [(message, one, text) for one, text in zip(elements, texts, strict=True)]
+    texts = [] if is_none else listed(key, str(value), len(elements), part is not None)
+    found: list[tuple[Message, Field, object]] = [
+        (message, one, text) for one, text in zip(elements, texts, strict=False)
+    ]
+    if part is None:
+        return found
+    counter = next(one for one in message.fields if one.name == part.counter)
+    return [(message, counter, len(texts) - part.plus), *found]
+
+
+def open_part(message: Message, member: Field) -> Tail | None:
+    """The open part that a member is."""
+    return next((part for part in message.open_parts if part.name == member.name), None)
 
 
 def locate_message(icd: Icd, node: Node, name: str) -> Message:
@@ -157,7 +175,8 @@ def fitting(message: Message, one: Field, value: object) -> int | bytes:
     """The raw value of what a user gave. Raises `icdgen.errors.UserError`."""
     if one.view:
         raise UserError(f"{message.name}, {one.name}: a view has no bits of its own", "set the fields that have them")
-    raw = from_physical(one, "true" if value is True else "false" if value is False else str(value))
+    text = "true" if value is True else "false" if value is False else str(value)
+    raw = typed(one, text, is_open=open_part(message, one) is not None)
     if isinstance(raw, int) and one.type != "float" and not one.raw_min <= raw <= one.raw_max:
         raise UserError(f"{message.name}, {one.name}: {value} does not fit", f"{one.bits} bits hold the raw value")
     return raw

@@ -38,9 +38,21 @@ class Values:
     def raw(self, message: Message) -> dict[str, int | bytes]:
         return codec.decode(self.icd.node(message.node), message, self.frame(message))
 
-    def update(self, message: Message, raw: Mapping[str, int | bytes]) -> None:
-        """Sets some fields. Raises `icdgen.codec.CodecError`."""
-        self.put(message, self.encode(message, {**self.raw(message), **raw}))
+    def update(self, message: Message, raw: Mapping[str, int | bytes]) -> dict[str, int | bytes]:
+        """Sets some fields; what was set, with what counts elements of open parts. Raises `icdgen.codec.CodecError`.
+
+        Of bytes and text at an open end there are as many as are set; an element is there once it is set.
+        """
+        before, given = self.raw(message), dict(raw)
+        for part in message.open_parts:
+            octets, count = given.get(part.name), codec.elements_of(part, {**before, **raw})
+            if isinstance(octets, bytes):
+                given[part.name], count = octets.ljust(part.most, b"\0"), len(octets)
+            paths = (one.path[0] for one in message.fields if one.path and one.name in raw)
+            count = max([count, *((one.index or 0) + 1 for one in paths if one.name == part.name)])
+            given.setdefault(part.counter, count - part.plus)
+        self.put(message, self.encode(message, {**before, **given}))
+        return given
 
     def encode(self, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
         return codec.encode(self.icd.node(message.node), message, raw)

@@ -14,7 +14,7 @@ from icdgen.describe.steps import steps
 from icdgen.errors import UserError
 from icdgen.icd.model import Field, Icd, Message, Tail
 from icdgen.values import numbers
-from icdgen.values.entry import from_physical, members, open_bytes, raw_value, without_unit
+from icdgen.values.entry import members, typed, without_unit
 from icdgen.values.errors import BadValue
 from icdgen.values.find import by_name, find_array, find_field, find_message, find_node
 from icdgen.values.frame import Frame, frame, violations
@@ -185,7 +185,7 @@ def _values(
             continue
         text = given[field.name]
         with wrong.collect(f"{field.name}: "):
-            values[field.name] = value = _read(field, text, raw, _is_open(message, field.name))
+            values[field.name] = value = typed(field, text, raw, _is_open(message, field.name))
             if isinstance(value, bytes):
                 continue
             _fits(field, value, text, raw)
@@ -202,14 +202,6 @@ def _differs(field: Field, raw: int, exact: Fraction) -> bool:
     if field.curve is not None:
         return codec.physical_double(field, raw) != float(exact)
     return codec.physical(field, raw) != exact
-
-
-def _read(field: Field, text: str, raw: bool, is_open: bool) -> int | bytes:
-    """The raw value; of open bytes and text as much as is given."""
-    if is_open and (raw or field.type == "bytes"):
-        return open_bytes(field, text)
-    value = (raw_value if raw else from_physical)(field, text)
-    return value[: len(text)] if is_open and isinstance(value, bytes) else value
 
 
 def _fits(field: Field, value: int, text: str, raw: bool) -> None:

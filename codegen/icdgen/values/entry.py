@@ -43,6 +43,14 @@ def from_physical(field: Field, text: str) -> int | bytes:
     return reader(field, text)
 
 
+def typed(field: Field, text: str, raw: bool = False, is_open: bool = False) -> int | bytes:
+    """The raw value of either; of open bytes and text as much as is given. Raises `BadValue`."""
+    if is_open and (raw or field.type == "bytes"):
+        return open_bytes(field, text)
+    value = (raw_value if raw else from_physical)(field, text)
+    return value[: len(text)] if is_open and isinstance(value, bytes) else value
+
+
 def _settable(field: Field) -> None:
     if field.view:
         raise BadValue("a view has no bits of its own", "set the fields that have them")

@@ -1,0 +1,77 @@
+"""Open parts in the simulator: what is set is there, and is counted."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.errors import UserError
+from icdgen.loading import load
+from icdgen.sim.run import Options, build
+
+ICD = """\
+icdgen: 1
+node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}
+protocol:
+  stream: {delimited_by: slip, header: [{at: 0, bits: 8, role: id}]}
+structs:
+  - {name: Key, length: 2, fields: [{at: 0, bits: 8, name: Week, type: uint}, {at: 8, bits: 8, name: Hour, type: uint}]}
+messages:
+  - name: Keys
+    id: 1
+    kind: telemetry
+    length: 3
+    fields:
+      - {at: 0, bits: 8, name: Keys Count, type: uint}
+      - {at: 8, bits: 8, name: Levels Last, type: uint}
+      - {at: 16, bits: 8, name: Age, type: uint}
+      - {at: 24, name: Keys, struct: Key, count: Keys Count, up_to: 3}
+      - {at: 24, after: Keys, bits: 8, name: Levels, type: uint, count: {field: Levels Last, plus: 1}, up_to: 4}
+      - {at: 24, after: Levels, name: Words, type: text, size: rest, up_to: 5}
+  - name: Data
+    id: 2
+    kind: telemetry
+    length: 0
+    fields: [{at: 0, name: Data, type: bytes, size: rest, up_to: 6}]
+"""
+
+
+@pytest.fixture(scope="module")
+def icd(tmp_path_factory):
+    file = tmp_path_factory.mktemp("icd") / "demo.yaml"
+    file.write_text(ICD, encoding="utf-8")
+    return load([file]).icd
+
+
+def frame(icd, message: str, *assigned: str) -> str:
+    """The frame of a message for which this was set, in hexadecimal; the same from the next start on."""
+    line, _ = build(icd, None, Options(values=[(message, one) for one in assigned]))
+    frames = [bytes(line.computer.program.values.frames[message])]
+    line.computer.restart(0)
+    frames.append(bytes(line.computer.program.values.frames[message]))
+    assert frames[0] == frames[1]
+    return frames[0].hex()
+
+
+@pytest.mark.parametrize(
+    ("message", "assigned", "expected"),
+    [
+        ("Keys", (), "00 00 00 00"),  # one level is always there
+        ("Keys", ("levels=[7, 8]", "words=hi"), "00 01 00 0708 6869"),
+        ("Keys", ("levels[2]=9",), "00 02 00 000009"),
+        ("Keys", ("keys[1].hour=3", "keys[0].week=1"), "02 00 00 0100 0003 00"),
+        ("Keys", ("keys[1].hour=3", "keys=[]"), "00 00 00 00"),
+        ("Keys", ("levels=[7, 8]", "levels=[6]"), "00 00 00 06"),
+        ("Keys", ("keys[0].hour=3", "keys count=2"), "02 00 00 0003 0000 00"),
+        ("Keys", ("words=hello", "words="), "00 00 00 00"),
+        ("Data", ("data=01 02 03",), "010203"),
+        ("Data", ("data=01 02 03", "data=04"), "04"),
+    ],
+)
+def test_what_is_set_is_there_and_is_counted(icd, message, assigned, expected):
+    assert frame(icd, message, *assigned) == expected.replace(" ", "")
+
+
+@pytest.mark.parametrize("assigned", ["levels=[1, 2, 3, 4, 5]", "levels=[]", "keys count=4", "words=longer", "data=1"])
+def test_what_there_cannot_be_is_refused(icd, assigned):
+    with pytest.raises(UserError):
+        frame(icd, "Keys", assigned)
