@@ -148,3 +148,40 @@ def test_the_step_of_the_version_and_its_reason(tmp_path, change, expected):
     assert found.step == expected and found.reason
     assert set(found.deciding) <= {change.code for change in comparison.changes}
     assert bool(found.deciding) == (expected != "none")
+
+
+ENVELOPED = BASE + """\
+protocol:
+  stream:
+    delimited_by: length
+    header:
+      - {at: 0, bits: 8, role: sync, value: {telecommand: 0x55, telemetry: 0x56}}
+      - {at: 8, bits: 16, role: length}
+      - {at: 24, bits: 8, role: id}
+    trailer: [{at: 0, bits: 8, role: checksum, checksum: sum}]
+    replies: {Set Mode: Status}
+  checksums:
+    sum: {kind: sum, width: 8, init: 0, covers: {from: length, to: data}}
+"""
+
+
+@pytest.mark.parametrize(
+    "change, telemetry, telecommands",
+    [
+        (("telemetry: 0x56", "telemetry: 0x57"), "no", "yes"),
+        (("telecommand: 0x55", "telecommand: 0x54"), "yes", "no"),
+        (("width: 8, init: 0,", "width: 8, init: 1,"), "no", "no"),
+        (("from: length", "from: id"), "no", "no"),
+        (("bits: 16, role: length", "bits: 16, role: length, byte_order: big"), "no", "no"),
+        (("bits: 16, role: length", "bits: 16, role: length, byte_order: little"), "yes", "yes"),
+        (("    replies: {Set Mode: Status}\n", ""), "yes", "yes"),
+    ],
+)
+def test_nobody_finds_messages_in_another_envelope(tmp_path, change, telemetry, telecommands):
+    got = answers(tmp_path, change, ENVELOPED)
+    assert (got["telemetry"].verdict, got["telecommands"].verdict) == (telemetry, telecommands)
+
+
+def test_an_order_that_is_stated_now_and_held_before_breaks_nothing(tmp_path):
+    new = ENVELOPED.replace("bits: 16, role: length", "bits: 16, role: length, byte_order: little")
+    assert [change.code for change in compared(tmp_path, ENVELOPED, new).changes] == ["DIF413"]

@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from icdgen.describe.numbers import length_text
-from icdgen.diff.changes.numbers import is_wider
+from icdgen.diff.changes.numbers import is_derived_otherwise, is_wider
 from icdgen.diff.compare import Comparison
+from icdgen.diff.envelopes import FACT, has_envelope
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
 from icdgen.diff.similar import other_senses
 from icdgen.diff.wording import read_as, some
@@ -49,12 +50,12 @@ Judge = Callable[[MessagePair], tuple[str, tuple[str, ...]]]
 
 def directions(comparison: Comparison) -> tuple[Direction, ...]:
     """The answers to the three questions that a team asks."""
-    wires, logs = _facts(comparison)
+    (heard, logs), (sent, _) = (_facts(comparison, one) for one in ("telemetry", "telecommand"))
     return (
         _answer("telemetry", "Can an old ground station read the new device's telemetry?",
-                _frames(comparison, "telemetry_id", lambda pair: _read(pair, pair.new, pair.old)), wires),
+                _frames(comparison, "telemetry_id", lambda pair: _read(pair, pair.new, pair.old)), heard),
         _answer("telecommands", "Can old telecommands still be sent?",
-                _frames(comparison, "telecommand_id", _new_obeys_old), wires),
+                _frames(comparison, "telecommand_id", _new_obeys_old), sent),
         _answer("logs", "Can new software read old log files?",
                 _frames(comparison, "telemetry_id", lambda pair: _read(pair, pair.old, pair.new), logged=True), logs),
     )  # fmt: skip
@@ -69,19 +70,29 @@ def _answer(key: str, question: str, frames: list[Frame | None], general: tuple[
     return Direction(key, question, verdict, odd, len(frames), general)
 
 
-def _facts(comparison: Comparison) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Changed facts of the protocol that concern every frame on the wire, and every frame in a log."""
+def _facts(comparison: Comparison, direction: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Changed facts of the protocol that concern every frame of a direction on the wire, and every frame in a log."""
     wires: list[str] = []
     logs: list[str] = []
     for change in comparison.changes:
         if change.code in ("DIF120", "DIF121", "DIF134") and change.breaks:
-            steps = change.where.section.split(".")
+            fact = change.where.section
+            if isinstance(change.pair, NodePair) and not _is_of_all(comparison, change.pair, fact, direction):
+                continue
+            steps = fact.split(".")
             (logs if any("log" in step for step in steps[1:2]) else wires).append(change.message)
         elif change.code == "DIF116" and change.breaks:
             wires.append(change.message)
         elif change.code in ("DIF122", "DIF123"):
             logs.append(change.message)
     return tuple(wires), tuple(logs)
+
+
+def _is_of_all(comparison: Comparison, node: NodePair, fact: str, direction: str) -> bool:
+    """Whether a fact concerns every message of a direction; of a node with envelopes only where these are others now."""
+    if not node.both or not all(map(has_envelope, comparison.context.sides(node))):
+        return True
+    return bool(FACT.fullmatch(fact)) and direction in comparison.context.other_envelopes(node)
 
 
 def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False) -> list[Frame | None]:
@@ -95,11 +106,14 @@ def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False
         for one in match.new.messages_of(node.new) if node.both else ():
             new.setdefault(getattr(one, key), []).append(one)
         wanted = _loggable(node) if logged else None
+        others = () if logged else comparison.context.other_envelopes(node)
         for number, message in old:
             if wanted is not None and number not in wanted:
                 continue
             now = _now(comparison, message, new.get(number, []))
             verdict, reasons = _verdict(comparison, key, message, now, judge)
+            if verdict != NO and key.removesuffix("_id") in others:
+                verdict, reasons = NO, ("its envelope is another",)
             if (id(message), verdict) in seen:
                 continue
             seen.add((id(message), verdict))
@@ -138,11 +152,12 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     if lengths == NO:
         return NO, odd
     own = [p for p in pair.parts if not p.any.view]  # views read what the others carry
+    derived = [(p, "another formula") for p in pair.kept if is_derived_otherwise(p)]
     absent = [p.any for p in own if not p.both and (p.before if reader is pair.old else p.after) is not None]
     wrong = [(p, why) for p in pair.kept if (why := _misread(p))]
-    if not absent and not wrong:
+    if not absent and not wrong and not derived:
         return lengths, odd
-    reasons = [*odd, *_together((p.any.name, why) for p, why in wrong)]
+    reasons = [*odd, *_together((p.any.name, why) for p, why in (*wrong, *derived))]
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
     verdict = NO if len(absent) + len(wrong) == len(reader.lines) - len(reader.views) else PARTLY

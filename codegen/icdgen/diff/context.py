@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from icdgen.diff.envelopes import differ, has_envelope
 from icdgen.diff.generated import Generated
 from icdgen.diff.moves import Moves, moves
 from icdgen.diff.pairs import DeclaredPair, FieldPair, Match, MessagePair, NodePair, Position, position
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.protocol.envelope import DIRECTIONS
 
 
 class Context:
@@ -16,6 +18,7 @@ class Context:
     def __init__(self, match: Match) -> None:
         self.match = match
         self._moves: dict[int, Moves] = {}
+        self._envelopes: dict[int, frozenset[str]] = {}
 
     @cached_property
     def generated(self) -> Generated:
@@ -39,6 +42,15 @@ class Context:
 
     def sides(self, node: NodePair) -> tuple[tuple[Icd, Node], tuple[Icd, Node]]:
         return (self.match.old, node.old), (self.match.new, node.new)
+
+    def other_envelopes(self, node: NodePair) -> frozenset[str]:
+        """The directions in which no message is as before, because its envelope is not: of nodes that have one in both ICDs."""
+        if id(node) not in self._envelopes:
+            old, new = self.sides(node) if node.both else (None, None)
+            both = old and new and has_envelope(old) and has_envelope(new)
+            found = (one for one in DIRECTIONS if old and new and differ(old, new, one)) if both else ()
+            self._envelopes[id(node)] = frozenset(found)
+        return self._envelopes[id(node)]
 
     def pair(self, message: Message) -> MessagePair:
         """The pair that a message is a side of."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from icdgen.diff.context import Context
+from icdgen.diff.envelopes import FACT, PART, has_envelope
 from icdgen.diff.facts import facts, shown
 from icdgen.diff.pairs import NodePair, differing, place_of
 from icdgen.diff.rule import Found, rule
@@ -13,7 +13,6 @@ from icdgen.icd.annex import Loggable
 from icdgen.icd.rules.wording import quote
 
 LONGEST = 80
-_ENVELOPE = re.compile(r"protocol\.stream(\.(header|trailer)(\.[^.]+)?)?")  # without which a message looks otherwise
 
 
 def _short(text: str) -> str:
@@ -25,14 +24,17 @@ def _short(text: str) -> str:
 @rule("DIF134", "node")
 @rule("DIF413", "node", severity="note")
 def fact_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
+    others, have_envelopes = ctx.other_envelopes(pair), all(map(has_envelope, ctx.sides(pair)))
     for fact in facts(pair.old, pair.new):
         was, now = shown(fact.old), shown(fact.new)
         keys: tuple[str, ...] = (fact.path.rsplit(".", 1)[-1],)
-        if fact.is_word:
+        is_around = have_envelopes and FACT.fullmatch(fact.path)
+        is_spelling = is_around and not others and "checksums" not in fact.path  # as an order that is the node's
+        if fact.is_word or is_spelling:
             code, said, keys = "DIF413", "says otherwise", ()
         else:
             was, now = _short(was), _short(now)
-            gone = "DIF134" if _ENVELOPE.fullmatch(fact.path) else "DIF121"
+            gone = "DIF134" if PART.fullmatch(fact.path) else "DIF120" if is_around else "DIF121"
             if fact.new is None:
                 code, said = gone, f"is no longer stated; it was {was}"
             elif fact.old is None:

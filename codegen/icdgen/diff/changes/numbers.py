@@ -14,7 +14,6 @@ from icdgen.diff.rule import Found, rule
 from icdgen.diff.similar import same_sense
 from icdgen.diff.wording import MOST, formula, number
 from icdgen.icd.curve import Curve
-from icdgen.icd.derived import Derivation
 from icdgen.icd.formula import RAW, Scale
 from icdgen.icd.model import Field, Limits, Special
 from icdgen.icd.rules.wording import count, listing, quote
@@ -24,7 +23,10 @@ from icdgen.icd.rules.wording import count, listing, quote
 @rule("DIF203", "field")
 def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     if pair.old.derived is not None and pair.new.derived is not None:
-        yield from _derived_otherwise(pair, pair.old.derived, pair.new.derived)
+        if is_derived_otherwise(pair):
+            was, now = pair.old.formula, pair.new.formula
+            text = f"{quote(pair.new.name)} is derived by {quote(now)}, was by {quote(was)}"
+            yield Found(text, ("formula",), was, now, code="DIF201")
         return
     old, new = (field.curve or field.scale or RAW for field in (pair.old, pair.new))
     if old == new:
@@ -41,12 +43,11 @@ def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         yield Found(text, ("formula", "unit"), was, now, _times(old, new), code="DIF201")
 
 
-def _derived_otherwise(pair: FieldPair, old: Derivation, new: Derivation) -> Iterator[Found]:
+def is_derived_otherwise(pair: FieldPair) -> bool:
+    """Whether a value is derived in both, and not in the same way."""
+    old, new = pair.old.derived, pair.new.derived
     names = {one.old.name: one.new.name for one in pair.owner.kept}
-    if old.sense(names) != new.sense({}):
-        was, now = pair.old.formula, pair.new.formula
-        text = f"{quote(pair.new.name)} is derived by {quote(now)}, was by {quote(was)}"
-        yield Found(text, ("formula",), was, now, code="DIF201")
+    return old is not None and new is not None and old.sense(names) != new.sense({})
 
 
 def _points(old: Curve | Scale, new: Curve | Scale) -> tuple[str, ...]:
