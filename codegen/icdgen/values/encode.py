@@ -118,6 +118,9 @@ def _count(message: Message, tail: Tail, given: dict[str, str], values: dict[str
     left = [f"`{name}`" for name in left if name not in given]
     if left:
         raise BadValue(f"no value for {', '.join(left)}", "give each field as name=value")
+    if count < tail.fewest:
+        least = f"{tail.fewest} element{'s' * (tail.fewest != 1)}"
+        raise BadValue(f"`{tail.name}` has at least {least}, {count} given", "give each field as name=value")
     if tail.counter not in given:
         values[tail.counter] = count - tail.plus
     elif values[tail.counter] != count - tail.plus:
@@ -218,4 +221,4 @@ def _allowed(field: Field, value: int, text: str) -> None:
         return
     found = violations(field, value)
     if found:
-        raise BadValue(f"{text} is not allowed: {'; '.join(found)}{members(field)}", "--raw sends it all the same")
+        raise BadValue(f"{text} is not allowed: {'; '.join(found)}{members(field)}", "--raw takes it all the same")

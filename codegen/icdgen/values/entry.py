@@ -52,6 +52,9 @@ def typed(field: Field, text: str, raw: bool = False, is_open: bool = False) -> 
 
 
 def _settable(field: Field) -> None:
+    if field.derived is not None:
+        of = ", ".join(f"`{name}`" for name in field.derived.fields)
+        raise BadValue(f"it is derived from {of or 'numbers'}", "set the fields that it is derived from")
     if field.view:
         raise BadValue("a view has no bits of its own", "set the fields that have them")
 
@@ -140,7 +143,7 @@ def _on_curve(field: Field, text: str) -> int:
         return codec.raw_from_physical(field, exact)
     except codec.CodecError as error:
         help = "" if field.leads_back else "--raw takes the raw value"
-        raise BadValue(str(error), help) from None
+        raise BadValue(str(error).removeprefix(f"{field.name!r} "), help) from None
 
 
 def without_unit(field: Field, text: str) -> str:

@@ -15,6 +15,7 @@ from icdgen.values.errors import Ambiguous, NotFound
 
 KINDS = (TELECOMMAND, TELEMETRY, CONFIGURATION)
 MOST_LISTED = 20
+_INDEX = re.compile(r"\[(.*?)\]")
 _NUMBER = re.compile(r"[0-9]{1,20}|0[xX][0-9A-Fa-f]{1,20}")
 
 
@@ -134,7 +135,7 @@ def by_name(items: Sequence[_Named], key: str, vocabulary: tuple[str, ...]) -> l
     steps: list[Callable[[_Named], bool]] = [
         lambda item: item.name == key,
         lambda item: item.name.casefold() == key.strip().casefold(),
-        lambda item: _joined(key, vocabulary) in (_joined(n, vocabulary) for n in _names(item)),
+        lambda item: _joined(key, vocabulary) in (_joined(n, vocabulary) for n in _names(item) if _is_indexed(key, n)),
     ]
     if not _joined(key, vocabulary):
         steps.pop()
@@ -171,10 +172,16 @@ def _joined(text: str, vocabulary: tuple[str, ...]) -> str:
     return "".join(naming.words(text, vocabulary))
 
 
+def _is_indexed(key: str, name: str) -> bool:
+    """Whether the indexes in brackets are those of a name: ``gain[-1]`` is no ``Gain[1]``, though the words are the same."""
+    return not (given := _INDEX.findall(key)) or given == _INDEX.findall(name)
+
+
 def _by_words(fields: Sequence[Field], key: str, vocabulary: tuple[str, ...]) -> list[Field]:
     wanted = set(naming.words(key, vocabulary))
     if not wanted:
         return []
+    fields = [f for f in fields if _is_indexed(key, f.name)]
     known = [(f, {w for n in _names(f) for w in naming.words(n, vocabulary)}) for f in fields]
     found = [f for f, words in known if wanted <= words]
     return found or [f for f, words in known if all(any(w.startswith(one) for w in words) for one in wanted)]
