@@ -111,13 +111,21 @@ def struct_names(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD144", severity="warning", whole=True)
 def struct_used(ctx: Context) -> Iterator[Fault]:
-    used, names = {id(field.struct) for field, _, _ in ctx.members}, [struct.name for struct, _ in ctx.structs]
-    meant = set()
-    for row, _, node in _uses(ctx):  # of a slip of the pen; the one that is meant is used
+    names = [struct.name for struct, _ in ctx.structs]
+    structs = {id(one) for node in ctx.icd.nodes for one in mappings(node.source.get("structs"))}
+    named: dict[str, set[str]] = {}  # by each struct; by a message: ""
+    for row, owner, node in _uses(ctx):
         known = [struct.name for n in ctx.scope(node) for struct in n.structs]
-        meant |= set() if row["struct"] in known else {close_to(row["struct"], known)}
+        name = row["struct"] if row["struct"] in known else close_to(row["struct"], known)  # a slip of the pen
+        named.setdefault(str(owner.get("name")) if id(owner) in structs else "", set()).add(name)
+    used: set[str] = set()  # by what is written: whatever else is wrong with a message, it uses what it names
+    found = [""]
+    while found:
+        new = named.get(found.pop(), set()) - used
+        used |= new
+        found += new
     for struct, _ in ctx.structs:
-        if id(struct) not in used and names.count(struct.name) == 1 and struct.name not in meant:
+        if struct.name not in used and names.count(struct.name) == 1:
             message = f"no message uses the struct {quote(struct.name)}"
             yield Fault(struct.source, struct.source.at("name"), message, "use or remove it")
 
