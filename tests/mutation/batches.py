@@ -36,7 +36,7 @@ def split(mutants: Iterable[Mutant]) -> Iterator[list[Mutant]]:
     batch: list[Mutant] = []
     fields = 0
     for mutant in mutants:
-        size = 1 + sum(len(message.get("fields") or ()) for message in mutant.tree.get("messages") or ())
+        size = 1 + sum(_size(message, mutant.tree) for message in mutant.tree.get("messages") or ())
         if batch and (fields + size > MOST_FIELDS or len(batch) >= MOST_MUTANTS):
             yield batch
             batch, fields = [], 0
@@ -44,6 +44,18 @@ def split(mutants: Iterable[Mutant]) -> Iterator[list[Mutant]]:
         fields += size
     if batch:
         yield batch
+
+
+def _size(owner: dict, tree: dict) -> int:
+    """Fields of a message or a struct, each element of an array and each field of a struct one."""
+    structs = {one["name"]: one for one in tree.get("structs") or ()}
+    size = 0
+    for row in owner.get("fields") or ():
+        count = row.get("count", 1)
+        struct = structs.get(row.get("struct"))
+        times = count if isinstance(count, int) else row.get("up_to", 1)
+        size += times * (_size(struct, tree) if struct is not None and struct is not owner else 1)
+    return size
 
 
 def prepare(mutants: list[Mutant], folder: Path, accepted: dict[tuple, set[str]] | None = None) -> Batch:

@@ -56,7 +56,7 @@ def icd(tmp_path_factory):
     ],
 )
 def test_fewer_elements_than_there_always_are_are_refused(icd, message, given, raw):
-    with pytest.raises(BadValue, match="`A` has at least (1 element|2 elements), [01] given"):
+    with pytest.raises(BadValue, match=r"`A` has at least (1 element|2 elements), [01] given"):
         encode(icd, "demo", message, given, raw)
 
 
