@@ -10,7 +10,9 @@ import sys
 
 import pytest
 
+from icdgen.loading import load
 from icdgen.recognize import recognize
+from tests.conftest import ROOT
 
 
 def test_the_first_icd_is_clean_formatted_and_generates_every_language(icdgen, tmp_path):
@@ -192,3 +194,15 @@ def test_a_style_that_there_is_not_is_said_and_nothing_is_written(icdgen, tmp_pa
     result = icdgen("init", "pump", "--from", origin)
     assert result.status == 2 and answer in result.err
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "examples" / "links").glob("*.yaml")), ids=lambda file: file.stem)
+def test_a_device_in_the_style_of_one_with_an_envelope_has_that(icdgen, tmp_path, file):
+    origin = load([file]).icd.nodes[0]
+    result = icdgen("init", "pump", "--from", origin.name, "--icd", file)
+    assert result.status == 0, result.err
+    checked = icdgen("check")
+    assert checked.status == 0 and "no findings" in checked.out, checked.out
+    pump = load([tmp_path / "icd" / "pump.yaml"]).icd.nodes[0]
+    assert pump.protocol["stream"].keys() == origin.protocol["stream"].keys() - {"replies"}
+    assert pump.protocol["stream"]["header"] == origin.protocol["stream"]["header"]

@@ -16,10 +16,11 @@ from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol_names import MESSAGES
 
 # Sections about the line, and about what every message has; the others are about files, logs, programs of that very node.
-_SECTIONS = ("message_id", "errors", "client", "identification", "uart", "i2c", "can", "crc8")
+_SECTIONS = ("message_id", "errors", "client", "identification", "uart", "i2c", "can", "crc8", "stream", "checksums")
+_OF_ITS_MESSAGES = {"stream": ("replies",)}  # what a section says of messages that are not taken along
 # What is said of a manual, and of frames that are not taken along.
 _ABOUT_THE_MANUAL = ("source", "assumptions", "listed", "group", "contains", "printed_constant")
-_BYTE = {TELECOMMAND: (0, 255), TELEMETRY: (0, 255)}
+_WAYS = (TELECOMMAND, TELEMETRY)
 
 Tree = dict[str, Any]
 
@@ -45,13 +46,16 @@ def of(icd: Icd, node: Node, texts: Mapping[str, str]) -> Style:
     protocol = {key: taken.plain(sections[key]) for key in _SECTIONS if key in sections}
     if not protocol:
         raise UserError(f"{node.name} does not say how its messages travel", "take the style of another node")
+    for key, left in _OF_ITS_MESSAGES.items():
+        if key in protocol:
+            protocol[key] = {name: value for name, value in protocol[key].items() if name not in left}
     named = set(_strings(protocol, MESSAGES))
     messages = [m.source for one in family for m in one.messages if m.name in named]
     fields = [field for message in messages for field in message.get("fields") or ()]
     units = {field.get("unit") for field in fields}
     enums = {field.get("enum") for field in fields} | set(_strings(protocol, None))
     return Style(
-        {key: node.source["node"][key] for key in ("byte_order", "bit_order")},
+        {key: node.source["node"][key] for key in ("byte_order", "bit_order", "id_bits") if key in node.source["node"]},
         protocol,
         [taken.plain(u) for one in family for u in one.source.get("units") or () if u["symbol"] in units],
         [taken.plain(e.source) for one in family for e in one.enums if e.name in enums],
@@ -66,7 +70,11 @@ def in_style(text: str, style: Style, origin: str) -> str:
     for child in _children(parts["node"]):
         if scalars.name(child.key) in style.node:
             child.value = emit.node(style.node[scalars.name(child.key)])
-    parts["protocol"].value = emit.branch(style.protocol)
+    mine = [_name(child) for child in _children(parts["messages"])]
+    there = {scalars.name(child.key) for child in _children(parts["node"])}
+    added = emit.branch({key: value for key, value in style.node.items() if key not in there})
+    parts["node"].value.children += added.children  # type: ignore[union-attr]
+    parts["protocol"].value = emit.branch(_seeded(style.protocol, mine))
     parts["protocol"].trailing = [f"# how messages travel, as {origin} has it"]
     for key, more in (("enums", style.enums), ("messages", style.messages)):
         names = {item["name"] for item in more}
@@ -81,9 +89,18 @@ def in_style(text: str, style: Style, origin: str) -> str:
     return emit.of(root)
 
 
+def _seeded(protocol: Tree, messages: list[str]) -> Tree:
+    """The section with seeds of these messages, 0 until they are known, where checksums have seeds of others."""
+    checksums = {
+        name: {**one, "seeds": dict.fromkeys(messages, 0)} if "seeds" in one else one
+        for name, one in protocol.get("checksums", {}).items()
+    }
+    return {**protocol, "checksums": checksums} if checksums else protocol
+
+
 def _renumber(messages: list[Child], style: Style) -> None:
     """Ids in the ranges of the style that its own messages leave free."""
-    ranges = _ranges(style.protocol.get("message_id") or {})
+    ranges = _ranges(style.protocol)
     used = {(way, m[key]) for m in style.messages for key, way in KEYS[m["kind"]]}
     for message in messages:
         entries = {scalars.name(child.key): child for child in _children(message)}
@@ -95,8 +112,12 @@ def _renumber(messages: list[Child], style: Style) -> None:
             used.add((way, _value(entries[key])))
 
 
-def _ranges(section: Tree) -> dict[str, tuple[int, int]]:
-    return {way: (part["first"], part["last"]) if (part := section.get(way)) else _BYTE[way] for way in _BYTE}
+def _ranges(protocol: Tree) -> dict[str, tuple[int, int]]:
+    """The ids that each direction can have."""
+    section, rows = protocol.get("message_id") or {}, protocol.get("stream", {}).get("header", ())
+    bits = min((row["bits"] for row in rows if row["role"] == "id"), default=8)
+    most = (1 << min(bits, 8)) - 1
+    return {way: (part["first"], part["last"]) if (part := section.get(way)) else (0, most) for way in _WAYS}
 
 
 class _Taken:
