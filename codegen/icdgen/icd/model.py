@@ -297,6 +297,11 @@ class Message:
         return next((one for one in self.fields if self.tail and one.name == self.tail.counter), None)
 
     @property
+    def field_count(self) -> int:
+        """How many fields there are, each element of an array one; a count that only the end of a frame tells is none."""
+        return sum(not one.implied for one in self.fields)
+
+    @property
     def owners(self) -> tuple[Field, ...]:
         """The fields that have bits of their own: what a message is made of. The others are views of these."""
         if not any(field.view for field in self.fields):

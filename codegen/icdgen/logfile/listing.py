@@ -33,7 +33,7 @@ def recording_text(recording: Recording, tally: Tally, width: int | None) -> str
     for name, message in recording.messages.items():
         if tally.messages[name]:
             id = message.telemetry_id if recording.direction == "telemetry" else message.telecommand_id
-            said = (f"{tally.messages[name]:,}", f"{tally.sizes[name]:,}", str(len(message.fields)))
+            said = (f"{tally.messages[name]:,}", f"{tally.sizes[name]:,}", str(message.field_count))
             rows.append((str(id), message.name, *said))
     text = clean(f"{line}{times:,} message{'' if times == 1 else 's'}") + "\n"
     text += "\n" + render(_MESSAGES, rows, width) if rows else ""

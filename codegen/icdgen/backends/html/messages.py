@@ -56,7 +56,7 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
 
 def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str, str, str]]:
     """Label, text, and where a link leads."""
-    facts = [("Length", length_text(message), ""), ("Fields", str(len(message.fields)), "")]
+    facts = [("Length", length_text(message), ""), ("Fields", str(message.field_count), "")]
     arrays = {one.path[0].name for one in message.fields if one.path}
     for part in message.open_parts:
         is_told = message.counter is not None and message.counter.implied and part is message.tail
@@ -74,7 +74,12 @@ def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str
         facts.append(("Id", told, ""))
     if message.group:
         facts.append(("Group", message.group, ""))
-    if message.telecommand_id is not None:
+    protocol = relations.icd.protocol_of(node) or {}
+    reply = protocol.get("stream", {}).get("replies", {}).get(message.name)
+    answer = next((one for one in relations.icd.messages_of(node) if one.name == reply), None)
+    if answer is not None:
+        facts.append(("Answered with", answer.name, relations.links.message(answer)))
+    elif message.telecommand_id is not None and "stream" not in protocol:
         facts.append(("Acknowledged", "yes" if message.acknowledge else "no", ""))
     for owner, row in relations.logged.get((message.node, message.name), []):
         facts.append(("Log mask", f"bit {row.bit}", relations.links.node(owner.name) + "#log-mask"))

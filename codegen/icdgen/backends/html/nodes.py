@@ -28,7 +28,7 @@ def home(relations: Relations) -> dict[str, object]:
     totals = [
         (texts.count(len(icd.nodes), "node").split()[0], "nodes"),
         (f"{len(messages):,}", "messages"),
-        (f"{sum(len(m.fields) for m in messages):,}", "fields"),
+        (f"{sum(m.field_count for m in messages):,}", "fields"),
         (f"{sum(len(n.enums) for n in icd.nodes):,}", "enumerations"),
         (f"{len(errata):,}", "known errata"),
         (f"{notes:,}", "notes"),
@@ -111,7 +111,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         "errata_count": sum(not erratum.is_note for erratum in node.errata),
         "notes_count": sum(erratum.is_note for erratum in node.errata),
         "own": len(node.messages),
-        "fields_count": sum(len(m.fields) for m in node.messages),
+        "fields_count": sum(m.field_count for m in node.messages),
     }
 
 
@@ -134,7 +134,7 @@ def _row(relations: Relations, node: Node, message: Message) -> dict[str, object
         "group": message.group,
         "length": message.length,
         "bytes": message.length if len(message.lengths) == 1 else f"{message.least}\u2013{message.length}",
-        "fields": len(message.fields),
+        "fields": message.field_count,
         "mask": mask,
         "of": "" if own else relations.icd.node(message.node).title,
         "errata": len(errata_of_message(message)),
