@@ -83,7 +83,8 @@ def spread(node: Node, message: Message, frame: bytes) -> bytes:
         for place, lacking in _gaps(message, _counts(node, message, frame)):
             frame = frame[:place] + bytes(lacking) + frame[place:]
     except CodecError:
-        raise LengthError(message, message.length, len(frame)) from None
+        begin, longest = message.inner[0].begin, message.length  # another length than it has, whatever its count says
+        raise LengthError(message, begin if len(frame) == longest else longest, len(frame)) from None
     return frame
 
 

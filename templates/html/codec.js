@@ -54,7 +54,7 @@ const icdgenCodec = (() => {
     const counts = message.inner.map(({ counter }) => read(message.fields[counter], frame));
     let whole = frame;
     for (const gap of gaps(message, counts)) {
-      if (!gap) throw misfit(message, message.length, frame.length);
+      if (!gap) throw misfit(message, frame.length === message.length ? message.inner[0].begin : message.length, frame.length);
       const [place, lacking] = gap;
       const wider = new Uint8Array(whole.length + lacking);
       wider.set(whole.subarray(0, place));

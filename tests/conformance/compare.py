@@ -13,6 +13,12 @@ class Maybe(NamedTuple):
     value: object
 
 
+class Not(NamedTuple):
+    """Anything but this value."""
+
+    value: object
+
+
 def difference(expected: dict, line: bytes | None) -> str | None:
     """What is wrong with an answer; None if nothing is. ``...`` in ``expected`` stands for anything."""
     if line is None:
@@ -44,6 +50,8 @@ def _is_array_of(name: object, element: object) -> bool:
 def _difference(expected: object, actual: object, path: str) -> str | None:
     if expected is ...:
         return None
+    if isinstance(expected, Not):
+        return f"{path}: {_short(actual)}, which it cannot be" if actual == expected.value else None
     if type(expected) is not type(actual):
         return f"{path or 'answer'}: {_short(actual)}, expected {_short(expected)}"
     if not isinstance(expected, dict):

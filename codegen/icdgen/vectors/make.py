@@ -125,6 +125,11 @@ def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[byt
         for told in (codec.elements_of(part, raw) - part.plus + step for step in (-1, 1, part.most)):
             if not counter.implied and counter.raw_min <= told <= counter.raw_max:
                 wrong.append(codec.frame_of(node, frame, {counter: told}))
+    highest = {fields[one.counter]: one.high for one in message.open_parts if not fields[one.counter].implied}
+    for counter, high in highest.items():
+        if high < counter.raw_max:  # more than there can be, in a frame that is as long as any
+            counts = highest | {counter: high + 1}
+            wrong.append(codec.frame_of(node, patterns.random_frame(message, "miscounted inside"), counts))
     yield from (one for one in dict.fromkeys(wrong) if not _is_frame(node, message, one))
 
 

@@ -79,7 +79,7 @@ def _members(
     yield from _ours(associated, used_constants)
     for field in message.all_members:
         is_view = field.model.view
-        if message.tail is not None and field.is_open:
+        if message.tail is not None and (field.is_open or field.is_inner):
             yield field.identifier(methods, names.field_name(field))
         yield field.identifier(methods if is_view else fields, names.field_name(field))
         if field.model.when:

@@ -67,7 +67,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "length_of_frame": "" if tail is None else _length(tail.least, tail.step),
         "length_of_elements": "" if tail is None else _length(tail.begin, tail.step),
         "counted_text": "" if tail is None else _counted_text(tail),
-        "number_of_elements": "" if tail is None else _number(tail),
+        "open_parts": [] if tail is None else [(one, _number(one)) for one in (*message.inner, tail)],
         "tables": sorted(tables),
         "literal": _literal(fields, readings),
         "views": views,
