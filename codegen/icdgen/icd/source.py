@@ -21,6 +21,7 @@ MAX_SCALAR = 20_000
 _INTEGER = re.compile(r"-?(?:0|[1-9][0-9]*)\Z")
 _HEX = re.compile(r"0x[0-9A-Fa-f]+\Z")
 _DECIMAL = re.compile(r"-?(?:0|[1-9][0-9]*)\.[0-9]+(?:[eE][-+][0-9]{1,2})?\Z")
+_SCIENTIFIC = re.compile(r"([-+]?)([0-9]+)(?:\.([0-9]*))?[eE]([-+]?)([0-9]+)\Z")
 _LONGEST_WORD = len("false")  # of those that mean something else to some reader of YAML
 _WORDS = {"true": True, "false": False, "null": None, "~": None, "": None}
 _UNPRINTABLE = (
@@ -235,7 +236,8 @@ class Builder:
         if _DECIMAL.match(text):
             return _number(text) if len(text) < 40 else text
         if _TREACHEROUS.match(text) and text not in (".", "-"):
-            help = f'write "{text}" in quotes if it is text, a plain decimal or 0x number if it is a number'
+            number = _spelled(text) or "a plain decimal or 0x number"
+            help = f'write "{text}" in quotes if it is text, {number} if it is a number'
             self.add(TREACHEROUS, f"YAML readers disagree about what `{text}` is", event, help)
             return self
         return text
@@ -254,6 +256,16 @@ class Builder:
 
     def add(self, code: str, message: str, event: Event, help: str) -> None:
         self.findings.append(Finding(code, message, place_of((self.name, event.start_mark, event.end_mark)), help))
+
+
+def _spelled(text: str) -> str:
+    """A number with an exponent as every reader takes it: ``1.0e+20`` for ``1e20``; empty if it is none, or there is no such way."""
+    found = _SCIENTIFIC.match(text)
+    if found is None or len(found[5]) > 2:
+        return ""
+    sign, whole, rest, _, exponent = found.groups()
+    spelled = f"{sign.strip('+')}{int(whole)}.{rest or '0'}e{found[4] or '+'}{exponent}"
+    return spelled if _DECIMAL.match(spelled) else ""
 
 
 def _number(text: str) -> int | float:
