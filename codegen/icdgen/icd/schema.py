@@ -109,7 +109,7 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
         from icdgen.icd import remedies
 
         message = f"{what} cannot be {_describe(error.instance)}"
-        help = remedies.of_value(str(path[-1]) if path else "", error.instance) or help
+        help = remedies.of_value(str(path[-1]) if path else "", error.instance) or _with_values(help, rule)
     elif name in ("minimum", "maximum"):
         side = "at least" if name == "minimum" else "at most"
         message = f"{what} must be {side} {rule[name]}, not {error.instance}"
@@ -137,7 +137,17 @@ def _unknown_key(key: str, known: list[str], place: Place) -> Finding:
     close = close_to(key, known)
     help = remedies.of_key(key, known)
     help = help or f"did you mean `{close}`?" if help or close else "known keys: " + ", ".join(known)
+    if " " in key and not close:
+        help = f"if it is the rest of a text with a comma, put that in quotes; {help}"
     return Finding(CODE, f"unknown key `{key[:60]}`", place, help)
+
+
+def _with_values(help: str, rule: dict[str, Any]) -> str:
+    """The help with what there is to choose from, unless it tells that already."""
+    values = [str(value).lower() if isinstance(value, bool) else str(value) for value in rule.get("enum", ())]
+    if not values or all(value in help for value in values):
+        return help
+    return "; ".join(filter(None, (help, f"it can be {', '.join(values)}")))
 
 
 def _rule_at(path: list[Any]) -> dict[str, Any]:
