@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
-from icdgen.icd.model import Field, Message, Node
+from icdgen.icd.model import Field, Message, Node, Struct
 from icdgen.icd.variants import Variant
 
 
@@ -93,7 +93,7 @@ class Gap(NamedTuple):
     bits: int
 
 
-def gaps(message: Message, node: Node) -> tuple[Gap, ...]:
+def gaps(message: Message | Struct, node: Node) -> tuple[Gap, ...]:
     """Bits of the frame that no field covers, in order."""
     if any(field.bit_order not in ("", node.bit_order) for field in message.owners):
         return tuple(_gaps_among(message, node))
@@ -107,7 +107,7 @@ def gaps(message: Message, node: Node) -> tuple[Gap, ...]:
     return tuple(found)
 
 
-def _gaps_among(message: Message, node: Node) -> Iterator[Gap]:
+def _gaps_among(message: Message | Struct, node: Node) -> Iterator[Gap]:
     """`gaps` where fields count bits in different ways."""
     covered = 0
     for field in message.owners:

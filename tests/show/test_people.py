@@ -106,3 +106,29 @@ def test_on_a_terminal_nothing_is_cut(icd, selection, width):
         for text in (to_text(icd, selection), to_text(icd, selection, width))
     )
     assert wide == narrow
+
+
+def test_a_struct_is_shown_by_its_name(tmp_path):
+    (tmp_path / "demo.yaml").write_text(
+        "icdgen: 1\n"
+        "node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}\n"
+        "structs:\n"
+        "  - name: Peak\n"
+        "    length: 4\n"
+        "    summary: A line of a spectrum.\n"
+        "    fields: [{at: 0, bits: 16, name: Frequency, type: uint, unit: kHz}]\n"
+        "messages:\n"
+        "  - {name: Peaks, id: 1, kind: telemetry, length: 4, fields: [{at: 0, name: Best, struct: Peak}]}\n",
+        encoding="utf-8",
+    )
+    expected = """\
+demo: Peak
+struct; 4 bytes
+A line of a spectrum.
+
+offset  bits  type      name       unit  from     to
+------  ----  --------  ---------  ----  ----  -----
+     0    16  uint      Frequency  kHz      0  65535
+    16    16  reserved
+"""
+    assert to_text(load([tmp_path / "demo.yaml"]).icd, ["demo", "peak"]) == expected

@@ -20,7 +20,7 @@ from icdgen.commands.common import icd_option, load_or_exit
 )
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 def show(node: str | None, item: str | None, icds: tuple[Path, ...], kind: str | None, form: str) -> None:
-    """Show the nodes, the messages of NODE, or one ITEM of it: a message by id or name, an enumeration, an erratum.
+    """Show the nodes, the messages of NODE, or one ITEM of it: a message by id or name, an enumeration, a struct, an erratum.
 
     NODE may be left out where there is one only.
 

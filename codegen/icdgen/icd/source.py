@@ -259,7 +259,7 @@ class Builder:
 
 
 def _spelled(text: str) -> str:
-    """A number with an exponent as every reader takes it: ``1.0e+20`` for ``1e20``; empty if it is none, or there is no such way."""
+    """A number with an exponent as every reader takes it: ``1.0e+20`` for ``1e20``; empty if there is no such way."""
     found = _SCIENTIFIC.match(text)
     if found is None or len(found[5]) > 2:
         return ""

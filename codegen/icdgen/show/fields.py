@@ -17,7 +17,7 @@ from icdgen.describe.numbers import (
     special_text,
     value_text,
 )
-from icdgen.icd.model import Field, Message, Node, Tail
+from icdgen.icd.model import Field, Message, Node, Struct, Tail
 from icdgen.tables import Column, render
 
 _COLUMNS = [
@@ -33,7 +33,7 @@ _COLUMNS = [
 ]
 
 
-def field_table(message: Message, node: Node, width: int | None = None) -> str:
+def field_table(message: Message | Struct, node: Node, width: int | None = None) -> str:
     """Fields and reserved bits in the order of the frame; empty for a message without any."""
     rows: list[tuple[int, tuple[str, ...]]] = [
         (field.at, _row(field, message)) for field in message.lines if not field.implied
@@ -43,13 +43,13 @@ def field_table(message: Message, node: Node, width: int | None = None) -> str:
     return render(_COLUMNS, [row for _, row in sorted(rows, key=lambda r: r[0])], width)
 
 
-def _row(field: Field, message: Message) -> tuple[str, ...]:
+def _row(field: Field, message: Message | Struct) -> tuple[str, ...]:
     low, high = ("" if bound is None else exact_text(bound) for bound in allowed_ends(field))
     resolution = factor_text(field.scale.factor) if field.scale else ""
     unit = field.unit.symbol if field.unit else ""
     kind = field.enum.name if field.enum else field.type
     bits = f"{field.count} x {field.bits}" if field.count else str(field.bits)
-    part = _open_part(message, field)
+    part = _open_part(message if isinstance(message, Message) else None, field)
     if part is not None and part.name == field.name:
         bits = f"up to {part.most} x {8 * part.step}"
     if field.derived is not None:
@@ -102,7 +102,7 @@ def _open_part(message: Message | None, field: Field) -> Tail | None:
     return next((part for part in (message.open_parts if message else ()) if part.name == name), None)
 
 
-def _notes(field: Field, message: Message) -> list[str]:
-    notes = list(remarks(field, message=message))
+def _notes(field: Field, message: Message | Struct) -> list[str]:
+    notes = list(remarks(field, message=message if isinstance(message, Message) else None))
     notes += [erratum.id for erratum in field.errata]
     return notes + ([field.summary] if field.summary else [])

@@ -9,7 +9,8 @@ from icdgen.describe.errata import errata_of_enum, errata_of_message
 from icdgen.describe.numbers import length_text
 from icdgen.describe.shared_ids import sharing
 from icdgen.icd.erratum import Erratum
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node, Struct
+from icdgen.icd.rules.wording import count
 from icdgen.icd.variants import ids_of
 from icdgen.icd.wire_ids import DEFAULT_BITS, size
 from icdgen.show.fields import field_table
@@ -45,7 +46,7 @@ _MESSAGES = [
 def to_text(icd: Icd, selection: Sequence[str] = (), width: int | None = None, kind: str | None = None) -> str:
     """Without a selection the nodes; of one node its messages; of a node and a name or id that message.
 
-    The second name may also be an enumeration or an erratum's id; the node need not be named if it is the only one.
+    The second name may also be an enumeration, a struct or an erratum's id; the node need not be named if it is the only one.
     ``width`` is that of the terminal, None for a pipe.
     Raises `NotFound` or `Ambiguous`.
     """
@@ -115,10 +116,19 @@ def _one(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) -
         enums = by_name([e for n in family for e in n.enums], name, node.vocabulary)
         if enums:
             return "\n".join(_enum(enum, width) for enum in enums)
+        structs = by_name([s for n in family for s in n.structs], name, node.vocabulary)
+        if structs:
+            return "\n".join(_struct(struct, icd.node(struct.node), width) for struct in structs)
         errata = [e for n in family for e in n.errata if e.id.casefold() == name.casefold()]
         if not errata:
             raise
         return "\n".join(_erratum(erratum, width) for erratum in errata)
+
+
+def _struct(struct: Struct, node: Node, width: int | None) -> str:
+    facts = ["struct", count(struct.length, "byte"), f"table {struct.table}" if struct.table else ""]
+    lines = [f"{node.name}: {struct.name}", "; ".join(filter(None, facts)), struct.summary]
+    return _lines(lines, width) + "\n" + field_table(struct, node, width)
 
 
 def _message(icd: Icd, message: Message, width: int | None) -> str:

@@ -61,11 +61,17 @@ def stream_encode(
     """A message, or the data of that id, as it is sent.
 
     ``values`` are those of ``sequence``, ``source``, ``destination``, ``type``, ``flags``
-    and ``time``; of what is not given, the ICD's. Raises `UnknownIdError`, `LengthError`,
-    `RangeError`.
+    and ``time``; of what is not given, the ICD's. ``direction`` is that of the sender: a
+    device sends ``"telemetry"``. Raises `UnknownIdError`, `LengthError`, `RangeError`.
     """
     form = need(link.stream, "stream")
+    if strange := [name for name in values if name not in GIVEN]:
+        raise TypeError(
+            f"stream_encode() takes no {strange[0]!r}, but {', '.join(GIVEN)}"
+        )
     if isinstance(message, Message):
+        if data:
+            raise TypeError("a message has its own data; direction= tells who sends it")
         id, data = spoken(link, direction, type(message)), message.to_bytes()
     else:
         id, data = message, bytes(data)

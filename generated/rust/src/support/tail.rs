@@ -124,7 +124,8 @@ pub(crate) fn spread<const N: usize>(
     for (_, size) in inner {
         match size {
             Some(size) => before += size,
-            None => return Error::length(N, actual),
+            // A length that it does not have: its count is none that there can be.
+            None => return Error::length(if actual == N { fixed } else { N }, actual),
         }
     }
     let (least, most) = (before + fewest, before + (N - end));
