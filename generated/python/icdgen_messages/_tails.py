@@ -106,13 +106,10 @@ def spread(message: _lazy.Any, data: _lazy.Buffer) -> tuple[bytes, int]:
         for byte, shift, bits, at in pieces:
             count += (frame[byte] >> shift & (1 << bits) - 1) << at
         if not max(0, part.plus) <= count <= part.most:
-            fixed, longest = (
-                message.INNER[0][1],
-                message.LENGTH,
-            )  # another one than it has
-            raise LengthError(
-                message.NAME, fixed if actual == longest else longest, actual
-            )
+            # Another length than it has: its count is none that there can be.
+            longest = message.LENGTH
+            expected = message.INNER[0][1] if actual == longest else longest
+            raise LengthError(message.NAME, expected, actual)
         place, lacking = (
             begin + count * part.step,
             bytes((part.most - count) * part.step),
