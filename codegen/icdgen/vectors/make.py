@@ -109,7 +109,8 @@ def _miscounted(node: Node, message: Message) -> Iterator[bytes]:
         return
     frame = patterns.random_frame(message, "miscounted")
     few, most, low, high = tail.fewest, tail.most, counter.raw_min + tail.plus, counter.raw_max + tail.plus
-    told_of = [(few, few + 1), (most, most - 1), (most - 1, most), (most, high)]
+    top = 1 << counter.bits - 1  # which a narrower field does not see
+    told_of = [(few, few + 1), (most, most - 1), (most - 1, most), (most, high), (few, few + top), (most, most + top)]
     for count, told in (*told_of, *([(few, few - 1), (most, low)] if tail.plus else ())):
         if told != count >= few and low <= told <= high:
             yield codec.counted(node, message, frame, told)[: message.begin + count * tail.step]
@@ -122,7 +123,8 @@ def _miscounted_inside(node: Node, message: Message, count: int) -> Iterator[byt
     wrong = [frame[:-1], frame[: message.fixed]]
     for part in message.open_parts:
         counter = fields[part.counter]
-        for told in (codec.elements_of(part, raw) - part.plus + step for step in (-1, 1, part.most)):
+        steps = (-1, 1, part.most, 1 << counter.bits - 1)
+        for told in (codec.elements_of(part, raw) - part.plus + step for step in steps):
             if not counter.implied and counter.raw_min <= told <= counter.raw_max:
                 wrong.append(codec.frame_of(node, frame, {counter: told}))
     highest = {fields[one.counter]: one.high for one in message.open_parts if not fields[one.counter].implied}
