@@ -77,10 +77,17 @@ def _spelled(formula: str) -> str:
 
 
 def _read(fields: list[dict], data: bytes) -> dict[str, object]:
-    """What ccsdspy makes of a packet with this data."""
+    """What ccsdspy makes of a packet with this data.
+
+    Of little-endian numbers it swaps the bytes of 16, 32 or 64 bits that hold them, so that those of another width, fills all
+    of them, come out wider than they are: these are left out.
+    """
     from ccsdspy import FixedLength, PacketField
 
-    narrow = [one for one in fields if one["type"] != "bytes"]
+    swapped = [
+        one for one in fields if one.get("byte_order") == "little" and one["bits"] not in (*range(1, 9), 16, 32, 64)
+    ]
+    narrow = [one for one in fields if one["type"] != "bytes" and one not in swapped]
     columns: list[Any] = [
         PacketField(one["name"], one["type"], one["bits"], 8 * HEADER + one["at"], one.get("byte_order", "big"))
         for one in narrow
