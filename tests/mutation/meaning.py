@@ -23,7 +23,7 @@ def _facts(node: Node, message: Message) -> tuple:
 
 
 def _place(node: Node, field: Field) -> object:
-    """Where each of its bits lies."""
-    if field.is_bytes:
+    """Where each of its bits lies; what only the end of a frame counts has none."""
+    if field.is_bytes or field.implied:
         return field.at
     return codec._runs(field.at, field.bits, *field.orders(node))
