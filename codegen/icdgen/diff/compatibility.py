@@ -8,7 +8,7 @@ from typing import NamedTuple
 from icdgen.describe.numbers import length_text
 from icdgen.diff.changes.numbers import is_derived_otherwise, is_wider
 from icdgen.diff.compare import Comparison
-from icdgen.diff.envelopes import FACT, has_envelope
+from icdgen.diff.envelopes import FACT
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
 from icdgen.diff.similar import other_senses
 from icdgen.diff.wording import read_as, some
@@ -90,7 +90,7 @@ def _facts(comparison: Comparison, direction: str) -> tuple[tuple[str, ...], tup
 
 def _is_of_all(comparison: Comparison, node: NodePair, fact: str, direction: str) -> bool:
     """Whether a fact concerns every message of a direction; of a node with envelopes only where these are others now."""
-    if not node.both or not all(map(has_envelope, comparison.context.sides(node))):
+    if not comparison.context.have_envelopes(node):
         return True
     return bool(FACT.fullmatch(fact)) and direction in comparison.context.other_envelopes(node)
 

@@ -43,12 +43,14 @@ class Context:
     def sides(self, node: NodePair) -> tuple[tuple[Icd, Node], tuple[Icd, Node]]:
         return (self.match.old, node.old), (self.match.new, node.new)
 
+    def have_envelopes(self, node: NodePair) -> bool:
+        """Whether messages of the node travel in envelopes in both ICDs."""
+        return node.both and all(map(has_envelope, self.sides(node)))
+
     def other_envelopes(self, node: NodePair) -> frozenset[str]:
         """The directions in which no message is as before, because its envelope is not: of nodes that have one in both ICDs."""
         if id(node) not in self._envelopes:
-            old, new = self.sides(node) if node.both else (None, None)
-            both = old and new and has_envelope(old) and has_envelope(new)
-            found = (one for one in DIRECTIONS if old and new and differ(old, new, one)) if both else ()
+            found = (one for one in DIRECTIONS if differ(*self.sides(node), one)) if self.have_envelopes(node) else ()
             self._envelopes[id(node)] = frozenset(found)
         return self._envelopes[id(node)]
 

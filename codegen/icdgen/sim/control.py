@@ -13,7 +13,7 @@ import yaml
 
 from icdgen import codec
 from icdgen.errors import UserError
-from icdgen.icd.model import Field, Icd, Message, Node, Tail
+from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.sim import faults
 from icdgen.sim.envelopes import EnvelopeLine
 from icdgen.sim.line import Line
@@ -21,7 +21,7 @@ from icdgen.sim.values import raw_of
 from icdgen.values.encode import listed
 from icdgen.values.entry import typed
 from icdgen.values.errors import BadValue, NotFound
-from icdgen.values.find import by_name, find_array, find_field, find_message, find_node
+from icdgen.values.find import by_name, find_array, find_field, find_message, find_node, open_part
 
 Wave = Mapping[str, Any]  # as a script has it
 WAVES = ("sine", "ramp", "steps", "noise")
@@ -134,8 +134,8 @@ def of_fields(icd: Icd, node: Node, name: str, key: str, value: object) -> list[
     message = locate_message(icd, node, name)
     vocabulary = find_node(icd, message.node).vocabulary
     elements = find_array(message, key, vocabulary)
-    parts = by_name([one for one in message.members if open_part(message, one)], key, vocabulary)
-    part = open_part(message, parts[0]) if parts else None
+    parts = by_name([one for one in message.members if open_part(message, one.name)], key, vocabulary)
+    part = open_part(message, parts[0].name) if parts else None
     is_none = part is not None and str(value).strip() == "[]"
     if not elements and not is_none:
         return [(message, find_field(message, key, vocabulary), value)]
@@ -149,11 +149,6 @@ def of_fields(icd: Icd, node: Node, name: str, key: str, value: object) -> list[
         return found
     counter = next(one for one in message.fields if one.name == part.counter)
     return [(message, counter, len(texts) - part.plus), *found]
-
-
-def open_part(message: Message, member: Field) -> Tail | None:
-    """The open part that a member is."""
-    return next((part for part in message.open_parts if part.name == member.name), None)
 
 
 def locate_message(icd: Icd, node: Node, name: str) -> Message:
@@ -176,7 +171,7 @@ def fitting(message: Message, one: Field, value: object) -> int | bytes:
     if one.view:
         raise UserError(f"{message.name}, {one.name}: a view has no bits of its own", "set the fields that have them")
     text = "true" if value is True else "false" if value is False else str(value)
-    raw = typed(one, text, is_open=open_part(message, one) is not None)
+    raw = typed(one, text, is_open=open_part(message, one.name) is not None)
     if isinstance(raw, int) and one.type != "float" and not one.raw_min <= raw <= one.raw_max:
         raise UserError(f"{message.name}, {one.name}: {value} does not fit", f"{one.bits} bits hold the raw value")
     return raw

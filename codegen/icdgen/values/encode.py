@@ -16,7 +16,7 @@ from icdgen.icd.model import Field, Icd, Message, Tail
 from icdgen.values import numbers
 from icdgen.values.entry import members, typed, without_unit
 from icdgen.values.errors import BadValue
-from icdgen.values.find import by_name, find_array, find_field, find_message, find_node
+from icdgen.values.find import by_name, find_array, find_field, find_message, find_node, open_part
 from icdgen.values.frame import Frame, frame, violations
 
 
@@ -129,7 +129,7 @@ def _count(message: Message, tail: Tail, given: dict[str, str], values: dict[str
 
 
 def _is_open(message: Message, name: str) -> bool:
-    return any(part.name == name for part in message.open_parts)
+    return open_part(message, name) is not None
 
 
 def split(message: Message, assignment: str, vocabulary: tuple[str, ...]) -> list[tuple[Field, str]]:

@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Protocol, TypeVar
 
 from icdgen import naming
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Field, Icd, Message, Node
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Field, Icd, Message, Node, Tail
 from icdgen.icd.paths import arrays_of
 from icdgen.suggest import close_words
 from icdgen.values.errors import Ambiguous, NotFound
@@ -128,6 +128,11 @@ def find_array(message: Message, key: str, vocabulary: tuple[str, ...] = ()) -> 
     arrays = arrays_of(message.fields)
     found = by_name(arrays, key, vocabulary)
     return found[0].elements if len(found) == 1 else ()
+
+
+def open_part(message: Message, name: str) -> Tail | None:
+    """The open part of that very name."""
+    return next((part for part in message.open_parts if part.name == name), None)
 
 
 def by_name(items: Sequence[_Named], key: str, vocabulary: tuple[str, ...]) -> list[_Named]:

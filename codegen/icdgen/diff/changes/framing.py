@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diff.context import Context
-from icdgen.diff.envelopes import FACT, PART, has_envelope
+from icdgen.diff.envelopes import FACT, PART
 from icdgen.diff.facts import facts, shown
 from icdgen.diff.pairs import NodePair, differing, place_of
 from icdgen.diff.rule import Found, rule
@@ -24,7 +24,7 @@ def _short(text: str) -> str:
 @rule("DIF134", "node")
 @rule("DIF413", "node", severity="note")
 def fact_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    others, have_envelopes = ctx.other_envelopes(pair), all(map(has_envelope, ctx.sides(pair)))
+    others, have_envelopes = ctx.other_envelopes(pair), ctx.have_envelopes(pair)
     for fact in facts(pair.old, pair.new):
         was, now = shown(fact.old), shown(fact.new)
         keys: tuple[str, ...] = (fact.path.rsplit(".", 1)[-1],)
