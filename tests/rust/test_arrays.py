@@ -34,10 +34,18 @@ messages:
       - {at: 352, bits: 32, count: 2, name: Floats, type: float, byte_order: big}
       - {at: 416, bits: 64, count: 2, name: Longs, type: uint, formula: raw*0.1}
       - {at: 544, bits: 12, count: 8, name: Levels, type: int, byte_order: big, bit_order: msb0, formula: raw/3}
+  - name: Versions
+    id: 3
+    kind: telemetry
+    length: 12
+    fields:
+      - {at: 0, bits: 64, name: Software, type: text}
+      - {at: 64, bits: 32, name: Serial, type: bytes}
+      - {at: 96, bits: 32, name: Extension, type: text, count: rest, up_to: 3}
 """
 
 USER = """\
-use icd::demo::{Everything, Heat};
+use icd::demo::{Everything, Heat, Versions};
 
 fn main() {
     let frame = [0x64, 0x00, 0xfa, 0x00, 0xd4, 0xfe, 0x01, 0xf0, 0xff];
@@ -60,6 +68,11 @@ fn main() {
     assert_eq!(Everything::default().octets, [0; 40]);
     let bytes: Vec<u8> = (0..80).collect();
     assert_eq!(Everything::from_bytes(&bytes).unwrap().to_bytes().unwrap(), *bytes);
+    let frame = b"1.0 (B)\\0\\x01\\x02\\x03\\xffGPS\\0\\xb0C\\0\\0";
+    let versions = Versions::from_bytes(frame).unwrap();
+    let shown = r#"Versions: Software "1.0 (B)", Serial [1, 2, 3, 255], Extension ["GPS", [176, 67, 0, 0]], "#;
+    assert!(versions.to_string().starts_with(shown), "{versions}");
+    assert!(Versions::default().to_string().contains("Extension [], "));
 }
 """
 

@@ -130,6 +130,8 @@ def field_row(field: FieldDescription) -> str:
     chain = [f"({string(one.name)}, {integer(one.at)}, {integer(one.bits)})"]
     if field.count:
         chain.append(f".array({field.count})")
+    if field.is_text:
+        chain.append(".text()")
     if field.struct is not None:
         chain.append(f".fields({struct_path(field.struct, field.message.node)}::FIELDS)")
     if one.unit is not None:

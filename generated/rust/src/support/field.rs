@@ -33,6 +33,7 @@ pub struct Field {
     pub limits: &'static [(&'static str, f64)],
     /// What a struct is made of, with places in it; empty of what is none.
     pub fields: &'static [Field],
+    is_text: bool,
     scale: Option<Formula>,
 }
 
@@ -61,6 +62,7 @@ impl Field {
             unit: "",
             limits: &[],
             fields: &[],
+            is_text: false,
             scale: None,
         }
     }
@@ -72,6 +74,11 @@ impl Field {
 
     pub(crate) const fn fields(mut self, fields: &'static [Self]) -> Self {
         self.fields = fields;
+        self
+    }
+
+    pub(crate) const fn text(mut self) -> Self {
+        self.is_text = true;
         self
     }
 
@@ -185,11 +192,21 @@ impl Row {
 /// What a member of a message, or of a struct, may be.
 pub(crate) trait Value {
     fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown;
+
+    /// The text that several of them are; None if they are none.
+    fn text(_: &[Self]) -> Option<&str>
+    where
+        Self: Sized,
+    {
+        None
+    }
 }
 
 macro_rules! numbers {
-    ($($type:ident)*) => {$(
+    ($($type:ident $({ $($text:tt)* })?)*) => {$(
         impl Value for $type {
+            $($($text)*)?
+
             fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
                 match field.converted((*self).into()) {
                     Some(value) => write!(out, "{value}"),
@@ -199,7 +216,12 @@ macro_rules! numbers {
         }
     )*};
 }
-numbers!(u8 u16 u32 u64 i8 i16 i32 i64);
+numbers!(u16 u32 u64 i8 i16 i32 i64);
+numbers!(u8 {
+    fn text(octets: &[Self]) -> Option<&str> {
+        super::text::text(octets)
+    }
+});
 
 macro_rules! others {
     ($($type:ident)*) => {$(
@@ -249,7 +271,11 @@ impl<T: Value, const N: usize> Value for [T; N] {
 
 impl<T: Value> Value for [T] {
     fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
-        let mut mark = "[";
+        if let Some(said) = T::text(self).filter(|_| field.is_text) {
+            return write!(out, "{said:?}");
+        }
+        out.write_str("[")?;
+        let mut mark = "";
         for one in self {
             out.write_str(core::mem::replace(&mut mark, ", "))?;
             one.show(out, field)?;

@@ -31,6 +31,7 @@ pub struct Field {
     pub limits: &'static [(&'static str, f64)],
     /// What a struct is made of, with places in it; empty of what is none.
     pub fields: &'static [Field],
+    is_text: bool,
     scale: Option<Formula>,
 }
 
@@ -59,6 +60,7 @@ impl Field {
             unit: "",
             limits: &[],
             fields: &[],
+            is_text: false,
             scale: None,
         }
     }
@@ -70,6 +72,11 @@ impl Field {
 
     pub(crate) const fn fields(mut self, fields: &'static [Self]) -> Self {
         self.fields = fields;
+        self
+    }
+
+    pub(crate) const fn text(mut self) -> Self {
+        self.is_text = true;
         self
     }
 
@@ -183,11 +190,21 @@ impl Row {
 /// What a member of a message, or of a struct, may be.
 pub(crate) trait Value {
     fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown;
+
+    /// The text that several of them are; None if they are none.
+    fn text(_: &[Self]) -> Option<&str>
+    where
+        Self: Sized,
+    {
+        None
+    }
 }
 
 macro_rules! numbers {
-    ($($type:ident)*) => {$(
+    ($($type:ident $({ $($text:tt)* })?)*) => {$(
         impl Value for $type {
+            $($($text)*)?
+
             fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
                 match field.converted((*self).into()) {
                     Some(value) => write!(out, "{value}"),
@@ -197,7 +214,12 @@ macro_rules! numbers {
         }
     )*};
 }
-numbers!(u8 u16 u32 u64 i8 i16 i32 i64);
+numbers!(u16 u32 u64 i8 i16 i32 i64);
+numbers!(u8 {
+    fn text(octets: &[Self]) -> Option<&str> {
+        super::text::text(octets)
+    }
+});
 
 macro_rules! others {
     ($($type:ident)*) => {$(
@@ -247,7 +269,11 @@ impl<T: Value, const N: usize> Value for [T; N] {
 
 impl<T: Value> Value for [T] {
     fn show(&self, out: &mut Formatter<'_>, field: &Field) -> Shown {
-        let mut mark = "[";
+        if let Some(said) = T::text(self).filter(|_| field.is_text) {
+            return write!(out, "{said:?}");
+        }
+        out.write_str("[")?;
+        let mut mark = "";
         for one in self {
             out.write_str(core::mem::replace(&mut mark, ", "))?;
             one.show(out, field)?;
